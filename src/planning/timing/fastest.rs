@@ -10,9 +10,9 @@ use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::keep::{Glance, greatest_of, kept};
 use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{ConstraintRow, Constraints, DriveLimit, LimitedQuantity, Limits};
+use crate::planning::timing::limits::{ConstraintRow, Constraints, DriveLimit, LimitedQuantity, Limits, Stretches};
 use crate::planning::timing::outcome::{Fastest, TimeError};
-use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::profile::{Profile, Span, after};
 use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
 use crate::planning::timing::topp::{Grid, NoSpeed, PAST, Sweep, UNLIMITED};
@@ -90,35 +90,85 @@ fn planned(
         _ if smooth && !(0..drives.1).any(|k| limits.jerk[k].is_finite()) => return Err(TimeError::NoJerkLimit),
         _ => {}
     }
-    if let Some(stations) = stations {
-        let grid = Grid::new(path, &constraints, stations.to_vec());
-        let bound = curved(path, &constraints, &grid, grid.fastest());
-        return if smooth { smooth::smooth(path, model, around, &constraints, &grid, bound) } else { bound };
-    }
-    let stretches = |at: &Progress| constraints.stretches(path, at);
-    let (mut grid, found) = Grid::new(path, &constraints, dense(path)).fastest_refined(path, &constraints);
-    let mut bound = curved(path, &constraints, &grid, found);
-    let mut mendings = 0..MENDINGS;
-    let glances = loop {
-        let Ok(found) = &bound else { break Vec::new() };
-        let glances: Vec<Glance> = found.profile.phases().map(|phase| Glance::of(phase, stretches)).collect();
-        let closer = |glance: &Glance| if glance.bound > 1.0 + PAST { glance.closer(stretches) } else { glance.seen };
-        let past: Vec<f64> = glances.iter().map(closer).collect();
-        let is_kept = past.iter().all(|past| *past <= 1.0 + PAST);
-        if is_kept || past.len() + 1 != grid.s.len() || mendings.next().is_none() {
-            break glances;
-        }
-        let found;
-        (grid, found) = grid.mended(path, &constraints, &past);
-        bound = curved(path, &constraints, &grid, found);
+    let nodes = match stations {
+        Some(stations) => stations.to_vec(),
+        None => dense(path),
     };
+    let grid = Grid::new(path, &constraints, nodes);
+    let (grid, timed, glances) = match stations {
+        Some(_) => {
+            let timed = curved(path, &grid, grid.fastest(), &constraints);
+            (grid, timed, None)
+        }
+        None => mended(path, &constraints, grid),
+    };
+    let bound = timed.map(|Timed { profile, x }| {
+        let limiting = leading(path, &grid, &constraints, &x);
+        Fastest { profile, gap: None, limiting }
+    });
     if smooth {
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
     }
     let found = bound?;
-    let profile = kept(&found.profile, greatest_of(glances, stretches)).ok_or(TimeError::Stuck { s: 0.0 })?;
+    let Some(glances) = glances else { return Ok(found) };
+    let factor = greatest_of(glances, |at: &Progress| constraints.stretches(path, at));
+    let profile = kept(&found.profile, factor).ok_or(TimeError::Stuck { s: 0.0 })?;
     Ok(Fastest { profile, ..found })
 }
+
+/// The fastest motion on a grid that is made finer where what is limited changes much and where limits are passed
+/// between stations, with a glance at each of its phases.
+fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<Timed, TimeError>, Option<Vec<Glance>>) {
+    let stretches = |at: &Progress| constraints.stretches(path, at);
+    let jumps = jumps(path);
+    let (mut grid, mut found) = grid.fastest_refined(path, constraints);
+    let mut mendings = 0..MENDINGS;
+    loop {
+        let timed = match curved(path, &grid, found, constraints) {
+            Ok(timed) => timed,
+            error => return (grid, error, None),
+        };
+        let glances = glanced(&timed.profile, &grid, &jumps, stretches);
+        let enough = 1.0 + PAST;
+        let closer = |glance: &Glance| match glance.bound > enough {
+            true => glance.closer(enough, stretches)[0],
+            false => glance.seen,
+        };
+        let past: Vec<f64> = glances.iter().map(closer).collect();
+        let is_kept = past.iter().all(|past| *past <= enough);
+        if is_kept || past.len() + 1 != grid.s.len() || mendings.next().is_none() {
+            return (grid, Ok(timed), Some(glances));
+        }
+        (grid, found) = grid.mended(path, constraints, &past);
+    }
+}
+
+/// A glance at each phase. What is limited is known at the stations, but for those where it may jump.
+fn glanced(profile: &Profile, grid: &Grid, jumps: &[f64], stretches: impl Fn(&Progress) -> Stretches) -> Vec<Glance> {
+    let may_jump =
+        |s: f64| jumps[jumps.partition_point(|jump| *jump < s - HAIR)..].first().is_some_and(|j| *j <= s + HAIR);
+    let has_stations = profile.phases().count() + 1 == grid.s.len();
+    let glance = |(i, phase): (usize, (Progress, f64))| {
+        if !has_stations || may_jump(grid.s[i]) || may_jump(grid.s[i + 1]) {
+            return Glance::of(phase, &stretches);
+        }
+        let (from, time) = phase;
+        let ends = [grid.stretches(i, &from), grid.stretches(i + 1, &after(&from, time))];
+        Glance::between(phase, ends.each_ref(), &stretches)
+    };
+    profile.phases().enumerate().map(glance).collect()
+}
+
+/// Where q′ or q″ may jump, s in order: nowhere in a table, which keeps both at its nodes.
+fn jumps(path: &Path) -> Vec<f64> {
+    match path {
+        Path::Table(_) => Vec::new(),
+        _ => path.joints(),
+    }
+}
+
+/// So near to a place, s, is at it.
+const HAIR: f64 = 1e-9;
 
 /// How often the grid is made finer where limits are passed between its stations.
 const MENDINGS: usize = 6;
@@ -179,18 +229,25 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> 
     Ok(Fastest { profile, gap, limiting: shares.sorted() })
 }
 
+/// A timing through stations.
+struct Timed {
+    profile: Profile,
+    /// ṡ² at each station, 1/s²; none where nothing moves.
+    x: Vec<f64>,
+}
+
 fn curved(
     path: &Path,
-    constraints: &Constraints,
     grid: &Grid,
     found: Result<Sweep, NoSpeed>,
-) -> Result<Fastest, TimeError> {
+    constraints: &Constraints,
+) -> Result<Timed, TimeError> {
     let stations = &grid.s;
     if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
         // Nothing moves, or nothing that moves has a limit.
         let moves = stations.iter().any(|s| path.at(*s).first.max_abs() > 0.0);
         return match (moves, grid.cap.iter().any(|x| x.is_finite() && *x < UNLIMITED)) {
-            (false, _) => Ok(nowhere()),
+            (false, _) => Ok(Timed { profile: Profile::none(), x: Vec::new() }),
             (true, true) => Err(TimeError::SpeedOnly),
             (true, false) => Err(TimeError::Unlimited { s: 0.0 }),
         };
@@ -200,7 +257,7 @@ fn curved(
         return Err(TimeError::Unlimited { s: stations[i] });
     }
     let profile = Profile::through(stations, &x, &rise).ok_or(TimeError::Stuck { s: 0.0 })?;
-    Ok(Fastest { limiting: leading(path, grid, constraints, &x), profile, gap: None })
+    Ok(Timed { profile, x })
 }
 
 /// What stands in the way.
@@ -221,7 +278,7 @@ fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeErro
 /// Which limits lead, for what share of the time.
 fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = TimeShares::default();
-    for i in 0..x.len() - 1 {
+    for i in 0..x.len().saturating_sub(1) {
         let way = grid.s[i + 1] - grid.s[i];
         let u = (x[i + 1] - x[i]) / (2.0 * way);
         let mut most: Option<(f64, DriveLimit)> = None;

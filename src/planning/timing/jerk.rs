@@ -18,7 +18,7 @@
 //! corrector of Mehrotra; where a side is not convex its curvature is left out). Rows touch three neighbouring
 //! coefficients each, so a step costs time in proportion to the nodes. It finds a local optimum.
 
-use crate::mechanics::planar::PerDrive;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
@@ -134,6 +134,8 @@ impl JerkProgram {
         let mut sides = Vec::with_capacity(2 * spaces * each);
         let mut rows = [ConstraintRow::default(); MAX_ROWS];
         let rows = &mut rows[..linear];
+        let mut speeds = [0.0; MAX_DRIVES];
+        let speeds = &mut speeds[..constraints.speeds()];
         for i in 0..spaces {
             let (h, shares) = (nodes[i + 1] - nodes[i], [share(&nodes, i), share(&nodes, i + 1)]);
             let near_end = i < ENDS || i + ENDS >= spaces;
@@ -146,7 +148,7 @@ impl JerkProgram {
                 let bend = by([1.0, -2.0, 1.0].map(|w| 2.0 / (h * h) * w));
                 let theta = nodes[i] + at * h;
                 let (point, third) = reckoned(path, theta);
-                let cap = constraints.at(&point, rows).min(most);
+                let cap = constraints.at(&point, rows, speeds).min(most);
                 let sum = |p: f64, q: f64, r: f64| [0, 1, 2].map(|k| p * bend[k] + q * slope[k] + r * y[k]);
                 let side = |v, g| Side { v, g, ..Side::default() };
                 sides.extend(rows.iter().map(|row| side(sum(0.0, row.a / 3.0, row.c), row.g)));

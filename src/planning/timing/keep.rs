@@ -15,6 +15,8 @@ const CLOSE: usize = 16;
 const INSIDE: f64 = 1e-6;
 /// What rounding may need.
 const SPARE: f64 = 1e-9;
+/// A motion may be slower than it has to be by this share of its time.
+const NEGLIGIBLE: f64 = 1e-7;
 
 /// Several quantities that are each smooth within a phase, seen at three instants of it. The greatest of them is not
 /// smooth where one takes over from another, so each is looked at by itself.
@@ -24,30 +26,59 @@ pub(super) struct Glance {
     pub(super) seen: f64,
     /// What a closer look may find at most: the tops of the parabolas through three values, and a quarter of the spread.
     pub(super) bound: f64,
+    /// Which quantity gives the bound, its three values, and the bound of the others.
+    likeliest: (usize, [f64; 3]),
+    others: f64,
 }
 
 impl Glance {
     /// At both ends of a phase and in its middle.
     pub(super) fn of<const N: usize>(phase: (Progress, f64), of: impl Fn(&Progress) -> [f64; N]) -> Self {
-        let three = [0.0, 0.5, 1.0].map(|u| within(&phase, u, &of));
-        let (mut seen, mut bound): (f64, f64) = (0.0, 0.0);
-        for k in 0..N {
-            let own = three.map(|values| values[k]);
-            let greatest = own.into_iter().fold(0.0, f64::max);
-            let spread = greatest - own.into_iter().fold(f64::INFINITY, f64::min);
-            seen = seen.max(greatest);
-            if spread > SPARE * greatest {
-                bound = bound.max(crest(own).max(greatest) + 0.25 * spread);
-            }
-        }
-        Self { phase, seen, bound: bound.max(seen) }
+        let [from, to] = [0.0, 1.0].map(|u| within(&phase, u, &of));
+        Self::between(phase, [&from, &to], of)
     }
 
-    /// The greatest value in the phase: the highest top of the parabolas through three of many instants.
-    pub(super) fn closer<const N: usize>(&self, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
+    /// The same where the quantities at both ends are known.
+    pub(super) fn between<const N: usize>(
+        phase: (Progress, f64),
+        [from, to]: [&[f64; N]; 2],
+        of: impl Fn(&Progress) -> [f64; N],
+    ) -> Self {
+        let middle = within(&phase, 0.5, &of);
+        let mut glance = Self { phase, seen: 0.0, bound: 0.0, likeliest: (0, [0.0; 3]), others: 0.0 };
+        for k in 0..N {
+            let own = [from[k], middle[k], to[k]];
+            let greatest = own[0].max(own[1]).max(own[2]);
+            let spread = greatest - own[0].min(own[1]).min(own[2]);
+            glance.seen = glance.seen.max(greatest);
+            if spread > SPARE * greatest {
+                let bound = crest(own).max(greatest) + 0.25 * spread;
+                if bound > glance.bound {
+                    (glance.others, glance.bound, glance.likeliest) = (glance.bound, bound, (k, own));
+                } else {
+                    glance.others = glance.others.max(bound);
+                }
+            }
+        }
+        glance.bound = glance.bound.max(glance.seen);
+        glance
+    }
+
+    /// The greatest value that is found in the phase, and what it is at most: the same, or less than is `enough`.
+    pub(super) fn closer<const N: usize>(&self, enough: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; 2] {
+        // By how much the parabola misses two more values is more than those through all five miss.
+        let (k, [a, b, c]) = self.likeliest;
+        let [p, q] = [0.25, 0.75].map(|u| within(&self.phase, u, &of)[k]);
+        let off = (p - 0.125 * (3.0 * a + 6.0 * b - c)).abs().max((q - 0.125 * (3.0 * c + 6.0 * b - a)).abs());
+        let top = [[a, p, b], [p, b, q], [b, q, c]].map(crest).into_iter().fold(self.seen, f64::max);
+        let bound = (top + off).max(self.others);
+        if bound <= enough {
+            return [top, bound];
+        }
         let near: [[f64; N]; CLOSE + 1] = std::array::from_fn(|i| within(&self.phase, i as f64 / CLOSE as f64, &of));
         let tops = |w: &[[f64; N]]| (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]])).fold(0.0, f64::max);
-        near.windows(3).map(tops).fold(self.seen, f64::max)
+        let top = near.windows(3).map(tops).fold(self.seen, f64::max);
+        [top, top]
     }
 }
 
@@ -64,18 +95,23 @@ pub(super) fn greatest<const N: usize>(
     greatest_of(phases.map(|phase| Glance::of(phase, &of)).collect(), of)
 }
 
-/// The same of phases that have been glanced at: those in which it may be are looked at closely, the likeliest first.
+/// The same of phases that have been glanced at, or a negligible bit more: those in which it may be are looked at
+/// closely, the likeliest first.
 pub(super) fn greatest_of<const N: usize>(mut glances: Vec<Glance>, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
     let mut most = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
+    let mut at_most = most;
     glances.retain(|glance| glance.bound > most);
     glances.sort_unstable_by(|x, y| y.bound.total_cmp(&x.bound));
     for glance in glances {
-        if glance.bound <= most {
+        let enough = most * (1.0 + NEGLIGIBLE);
+        if glance.bound <= enough {
+            at_most = at_most.max(glance.bound);
             break;
         }
-        most = most.max(glance.closer(&of));
+        let [found, bound] = glance.closer(enough, &of);
+        (most, at_most) = (most.max(found), at_most.max(bound));
     }
-    most
+    most.max(at_most)
 }
 
 /// The top of the parabola through three values at even distances, if it lies between them; else the greatest of them.

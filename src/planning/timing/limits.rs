@@ -144,6 +144,20 @@ impl ConstraintRow {
 /// The most rows there can be: torque and acceleration of every drive.
 pub const MAX_ROWS: usize = 2 * MAX_DRIVES;
 
+/// A factor on time for each row and each speed; 0 where there is none.
+pub(super) type Stretches = [f64; MAX_ROWS + MAX_DRIVES];
+
+/// The factors on time with which a place that is passed so just keeps its rows and speeds.
+#[inline]
+pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &Progress) -> Stretches {
+    let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
+    let (by_row, by_speed) = factors.split_at_mut(rows.len());
+    let square = at.rate * at.rate;
+    by_row.iter_mut().zip(rows).for_each(|(factor, row)| *factor = row.stretch(at.acceleration, square));
+    by_speed.iter_mut().zip(speeds).for_each(|(factor, speed)| *factor = (speed * at.rate).abs());
+    factors
+}
+
 /// The limits of a machine in its surroundings as constraints along a path.
 #[derive(Clone, Debug)]
 pub struct Constraints<'a> {
@@ -153,6 +167,8 @@ pub struct Constraints<'a> {
     /// Where torque is D_k q̈_k in every pose: 1/limit of q̈_k from both.
     constant: Option<PerDrive>,
     rows: Vec<DriveLimit>,
+    /// Drives with a limit on speed.
+    quick: Vec<usize>,
 }
 
 impl<'a> Constraints<'a> {
@@ -175,12 +191,18 @@ impl<'a> Constraints<'a> {
             torques.chain((0..n).filter(limited(acceleration)).map(of(acceleration))).collect()
         };
         let constant = constant.then(|| PerDrive::from_fn(n, |k| 1.0 / by_torque(k).min(limits.acceleration[k])));
-        Self { model, around: *around, limits, constant, rows }
+        let quick = (0..n).filter(limited(LimitedQuantity::Speed)).collect();
+        Self { model, around: *around, limits, constant, rows, quick }
     }
 
     /// What each row limits, in the order of [`at`](Self::at).
     pub fn rows(&self) -> &[DriveLimit] {
         &self.rows
+    }
+
+    /// How many drives have a limit on speed.
+    pub(super) fn speeds(&self) -> usize {
+        self.quick.len()
     }
 
     /// The limits they come from.
@@ -198,9 +220,10 @@ impl<'a> Constraints<'a> {
         self.constant.is_some()
     }
 
-    /// The rows at a point of a path, as many as [`rows`](Self::rows), and the greatest x that speeds allow, 1/s².
+    /// The rows at a point of a path, as many as [`rows`](Self::rows), the speeds of drives at ṡ = 1 as parts of their
+    /// limits, as many as [`speeds`](Self::speeds), and the greatest x that speeds allow, 1/s².
     #[inline]
-    pub fn at(&self, point: &PathPoint, rows: &mut [ConstraintRow]) -> f64 {
+    pub(super) fn at(&self, point: &PathPoint, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64 {
         let PathPoint { q, first, second } = point;
         if let Some(per) = &self.constant {
             for (row, limit) in rows.iter_mut().zip(&self.rows) {
@@ -224,27 +247,21 @@ impl<'a> Constraints<'a> {
                 };
             }
         }
+        if self.quick.is_empty() {
+            return f64::INFINITY;
+        }
         let first = self.model.motors().turns(first);
-        let slow = self.limits.speed.iter().zip(first.iter()).fold(0.0, |m: f64, (v, d)| m.max(d.abs() / v));
+        speeds.iter_mut().zip(&self.quick).for_each(|(speed, k)| *speed = first[*k].abs() / self.limits.speed[*k]);
+        let slow = speeds.iter().copied().fold(0.0, f64::max);
         1.0 / (slow * slow)
     }
 
     /// The factors on time with which a place on a path, passed so, just keeps each limit but those on jerk.
-    pub(super) fn stretches(&self, path: &Path, at: &Progress) -> [f64; MAX_ROWS + MAX_DRIVES] {
-        let mut rows = [ConstraintRow::default(); MAX_ROWS];
-        let rows = &mut rows[..self.rows.len()];
-        let point = path.at(at.s);
-        self.at(&point, rows);
-        let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
-        let (by_row, by_speed) = factors.split_at_mut(MAX_ROWS);
-        for (factor, row) in by_row.iter_mut().zip(rows) {
-            *factor = row.stretch(at.acceleration, at.rate * at.rate);
-        }
-        let first = self.model.motors().turns(&point.first);
-        for (factor, (first, limit)) in by_speed.iter_mut().zip(first.iter().zip(self.limits.speed.iter())) {
-            *factor = (first * at.rate).abs() / limit;
-        }
-        factors
+    pub(super) fn stretches(&self, path: &Path, at: &Progress) -> Stretches {
+        let (mut rows, mut speeds) = ([ConstraintRow::default(); MAX_ROWS], [0.0; MAX_DRIVES]);
+        let (rows, speeds) = (&mut rows[..self.rows.len()], &mut speeds[..self.quick.len()]);
+        self.at(&path.at(at.s), rows, speeds);
+        stretches(rows, speeds, at)
     }
 
     /// The drive whose limit on speed is nearest, whatever ṡ.

@@ -10,7 +10,8 @@
 //! exact to second order.
 
 use crate::planning::curves::path::Path;
-use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
 /// The greatest x that counts as limited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
@@ -33,8 +34,13 @@ pub(super) struct Grid {
     /// Rows in one.
     pub(super) m: usize,
     pub(super) rows: Vec<ConstraintRow>,
+    /// Speeds in one, and all of them.
+    per: usize,
+    speeds: Vec<f64>,
     /// The greatest x that speeds allow.
     pub(super) cap: Vec<f64>,
+    /// 1/√ of it.
+    slow: Vec<f64>,
 }
 
 /// Where the sweeps end without a motion.
@@ -48,30 +54,46 @@ pub(super) enum NoSpeed {
 
 impl Grid {
     pub(super) fn new(path: &Path, constraints: &Constraints, s: Vec<f64>) -> Self {
-        let mut grid = Self { s: Vec::new(), m: constraints.rows().len(), rows: Vec::new(), cap: Vec::new() };
-        grid.rows.reserve(grid.m * s.len());
-        grid.cap.reserve(s.len());
+        let mut grid = Self::with_room([constraints.rows().len(), constraints.speeds()], s.len());
         s.iter().for_each(|s| grid.push(path, constraints, *s));
         Self { s, ..grid }
     }
 
+    /// No stations yet, but room for some with so many rows and speeds each.
+    fn with_room([m, per]: [usize; 2], stations: usize) -> Self {
+        let room = Vec::with_capacity;
+        let rows = Vec::with_capacity(m * stations);
+        Self {
+            s: room(stations),
+            m,
+            rows,
+            per,
+            speeds: room(per * stations),
+            cap: room(stations),
+            slow: room(stations),
+        }
+    }
+
     /// Rows of one more station, which s does not hold yet.
     fn push(&mut self, path: &Path, constraints: &Constraints, s: f64) {
-        let from = self.rows.len();
-        self.rows.resize(from + self.m, ConstraintRow::default());
-        let cap = constraints.at(&path.at(s), &mut self.rows[from..]);
-        self.cap.push(cap.min(10.0 * UNLIMITED));
+        let (row, speed) = (self.rows.len(), self.speeds.len());
+        self.rows.resize(row + self.m, ConstraintRow::default());
+        self.speeds.resize(speed + self.per, 0.0);
+        let cap = constraints.at(&path.at(s), &mut self.rows[row..], &mut self.speeds[speed..]).min(10.0 * UNLIMITED);
+        self.cap.push(cap);
+        self.slow.push(cap.sqrt().recip());
     }
 
     /// The same with each space cut into as many even parts as asked.
     fn cut(&self, path: &Path, constraints: &Constraints, parts: &[usize]) -> Self {
         let total = 1 + parts.iter().sum::<usize>();
-        let rows = Vec::with_capacity(self.m * total);
-        let mut fine = Self { s: Vec::with_capacity(total), m: self.m, rows, cap: Vec::with_capacity(total) };
+        let mut fine = Self::with_room([self.m, self.per], total);
         for i in 0..self.s.len() {
             fine.s.push(self.s[i]);
             fine.rows.extend_from_slice(self.rows_at(i));
+            fine.speeds.extend_from_slice(self.speeds_at(i));
             fine.cap.push(self.cap[i]);
+            fine.slow.push(self.slow[i]);
             let count = parts.get(i).copied().unwrap_or(1);
             for k in 1..count {
                 let s = self.s[i] + (self.s[i + 1] - self.s[i]) * k as f64 / count as f64;
@@ -84,16 +106,17 @@ impl Grid {
 
     /// The fastest motion on a grid that is made finer wherever what is limited changes much within a space.
     pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, NoSpeed>) {
-        let mut found = self.fastest();
+        let mut level = self.level();
         for _ in 0..ROUNDS {
-            let Ok(sweep) = &found else { break };
-            let (parts, most) = self.parts(sweep);
+            let Ok(x) = &level else { break };
+            let (parts, most) = self.parts(x);
             if most == 1 || parts.iter().sum::<usize>() > MOST_SPACES {
                 break;
             }
             self = self.cut(path, constraints, &parts);
-            found = self.fastest();
+            level = self.level();
         }
+        let found = level.map(|x| self.risen(x));
         (self, found)
     }
 
@@ -112,8 +135,7 @@ impl Grid {
     }
 
     /// Into how many parts each space should be cut, and the most of them.
-    fn parts(&self, sweep: &Sweep) -> (Vec<usize>, usize) {
-        let Sweep { x, .. } = sweep;
+    fn parts(&self, x: &[f64]) -> (Vec<usize>, usize) {
         let of = |i: usize| {
             let way = self.s[i + 1] - self.s[i];
             let u = (x[i + 1] - x[i]) / (2.0 * way);
@@ -137,19 +159,36 @@ impl Grid {
         &self.rows[i * self.m..(i + 1) * self.m]
     }
 
+    fn speeds_at(&self, i: usize) -> &[f64] {
+        &self.speeds[i * self.per..(i + 1) * self.per]
+    }
+
+    /// The factors on time with which a station that is passed so just keeps each limit but those on jerk.
+    pub(super) fn stretches(&self, i: usize, at: &Progress) -> Stretches {
+        stretches(self.rows_at(i), self.speeds_at(i), at)
+    }
+
     /// The fastest motion from rest to rest.
     pub(super) fn fastest(&self) -> Result<Sweep, NoSpeed> {
-        let flat = vec![0.0; self.s.len().saturating_sub(1)];
-        let first = Sweep { x: self.sweep(&flat)?, rise: flat };
-        let rise = self.rises(&first.x);
-        Ok(match self.sweep(&rise) {
+        Ok(self.risen(self.level()?))
+    }
+
+    /// The first pass: x at every station with u constant over each space.
+    fn level(&self) -> Result<Vec<f64>, NoSpeed> {
+        self.sweep(&vec![0.0; self.s.len().saturating_sub(1)])
+    }
+
+    /// The second pass, from the x of the first one.
+    fn risen(&self, level: Vec<f64>) -> Sweep {
+        let rise = self.rises(&level);
+        match self.sweep(&rise) {
             Ok(x) => {
                 // As much as the new x can bear.
                 let rise = (0..rise.len()).map(|i| self.bearable(&x, i, rise[i])).collect();
                 Sweep { x, rise }
             }
-            Err(_) => first,
-        })
+            Err(_) => Sweep { rise: vec![0.0; rise.len()], x: level },
+        }
     }
 
     /// Two sweeps over the grid: x at every station of the fastest motion with given rises of u.
@@ -252,7 +291,7 @@ impl Space {
         self.strips[0] = Strip { low: arrive[0] / twice, high: arrive[1] / twice, slope: -1.0 / twice };
         self.len = 1;
         // The bound by speeds, 1/(q′)², is curved: kept in the middle of the space too, where q′ is nearly the mean.
-        let slow = 0.5 * (grid.cap[i].sqrt().recip() + grid.cap[i + 1].sqrt().recip());
+        let slow = 0.5 * (grid.slow[i] + grid.slow[i + 1]);
         let middle = 1.0 / (slow * slow);
         if middle < UNLIMITED {
             let (per, high) = (2.0 / twice, middle + 0.125 * twice * rise);
