@@ -44,7 +44,7 @@ impl PoseMap {
             _ if machine.drives() < 4 => Lead::LeastEnergy,
             Posture::LeastRates => Lead::LeastEnergy,
             Posture::Orientation => Lead::Keep(machine.resolved_links()[machine.end_link()].drive),
-            Posture::LeastTorque => Postures::of(machine, &space, posture)
+            Posture::LeastTorque => Postures::of(machine, &space)
                 .least_torque()
                 .map_or(Lead::LeastEnergy, |inverse| Lead::Weighed(Box::new(inverse))),
             Posture::MidRange => Lead::Middle,

@@ -26,13 +26,17 @@ for line in sys.stdin:
             for c in units:
                 moment.append(-(np.conj(e[k]) * c * turned[l] + np.conj(c * e[l]) * turned[k]).imag)
         moment += [-qdd[k] for k in range(n)]
-        centred = lambda rows: np.array([row - row.mean() for row in rows]).T
+        # Sensors have an offset and a drift in each motion: a straight line over time is taken out of every row.
+        time = np.array(motion["t"])
+        line = np.column_stack([np.ones_like(time), time])
+        straight = lambda row: row - line @ np.linalg.lstsq(line, row, rcond=None)[0]
+        centred = lambda rows: np.array([straight(row) for row in rows]).T
         columns_force.append(centred(force))
         columns_moment.append(centred(moment))
         measured = np.array(motion["force"]) @ np.array([1, 1j])
-        forces.append(measured - measured.mean())
+        forces.append(straight(measured))
         read = np.array(motion["moment"])
-        moments.append(read - read.mean())
+        moments.append(straight(read))
     force, moment = np.vstack(columns_force), np.vstack(columns_moment)
     x = [np.vstack([force.real, force.imag]), moment]
     y = [np.concatenate([np.concatenate(forces).real, np.concatenate(forces).imag]), np.concatenate(moments)]

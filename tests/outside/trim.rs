@@ -53,7 +53,7 @@ fn asked(machine: &Machine, recording: &Recording) -> Value {
     let list = |all: &[PerDrive]| all.iter().map(|x| x.to_vec()).collect::<Vec<_>>();
     let motion = |m: &Motion| {
         let force: Vec<[f64; 2]> = m.force.iter().map(|f| [f.re, f.im]).collect();
-        json!({ "q": list(&m.q), "qd": list(&m.qd), "qdd": list(&m.qdd), "force": force, "moment": m.moment })
+        json!({ "t": m.t, "q": list(&m.q), "qd": list(&m.qd), "qdd": list(&m.qdd), "force": force, "moment": m.moment })
     };
     let motions: Vec<Value> = recording.motions.iter().map(motion).collect();
     json!({ "gravity": machine.spec().gravity, "motions": motions })

@@ -12,6 +12,7 @@ mod outline;
 mod pose_ends;
 mod pose_space;
 mod posture;
+mod posture_laws;
 mod price;
 mod proposals;
 mod reach;

@@ -52,7 +52,13 @@ impl PerDrive {
     /// Σ_k a_k b_k.
     #[inline]
     pub fn dot(&self, other: &[f64]) -> f64 {
-        self.iter().zip(other).map(|(a, b)| a * b).sum()
+        // Plain loops are quick in builds that do not optimise, too.
+        let (count, mut sum, mut k) = (self.len.min(other.len()), 0.0, 0);
+        while k < count {
+            sum += self.values[k] * other[k];
+            k += 1;
+        }
+        sum
     }
 
     /// self + factor · other.
@@ -60,7 +66,11 @@ impl PerDrive {
     #[must_use]
     pub fn plus(&self, factor: f64, other: &Self) -> Self {
         let mut v = *self;
-        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v += factor * x);
+        let mut k = 0;
+        while k < MAX_DRIVES {
+            v.values[k] += factor * other.values[k];
+            k += 1;
+        }
         v
     }
 
@@ -68,7 +78,13 @@ impl PerDrive {
     #[inline]
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        Self { len: self.len, values: self.values.map(|v| factor * v) }
+        let mut v = *self;
+        let mut k = 0;
+        while k < MAX_DRIVES {
+            v.values[k] *= factor;
+            k += 1;
+        }
+        v
     }
 
     /// self − other.
@@ -76,7 +92,11 @@ impl PerDrive {
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         let mut v = *self;
-        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v -= x);
+        let mut k = 0;
+        while k < MAX_DRIVES {
+            v.values[k] -= other.values[k];
+            k += 1;
+        }
         v
     }
 

@@ -70,7 +70,7 @@ impl PoseSpace {
     }
 
     /// The end effector, m, and ∂p/∂a_i with b held, m.
-    pub(super) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
+    pub(in crate::planning) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
         let i = Vector::new(0.0, 1.0);
         let mut arm = [Vector::default(); MAX_DRIVES];
         let mut lambda = *self.lambda.padded();
@@ -91,7 +91,7 @@ impl PoseSpace {
     }
 
     /// The pose at p, m, and b, rad, that Newton's iteration finds from another one within these ranges.
-    pub(super) fn solved(
+    pub(in crate::planning) fn solved(
         &self,
         p: Vector,
         b: f64,

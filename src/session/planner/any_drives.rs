@@ -3,8 +3,8 @@
 use super::along::{Parts, along_parts, curves, proved, refusal, timed};
 use super::off_plane::smooth;
 use super::plan::{Plan, dynamics_of, keeps_rules};
-use super::pose::{faced, reached, start};
-use super::{given, off_space};
+use super::pose::{faced, posed, reached, start};
+use super::{given, off_space, posture};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Forecast;
 use crate::planning::common::unreached;
@@ -14,7 +14,6 @@ use crate::planning::off_plane::b_course::Reaction;
 use crate::planning::off_plane::least_reaction::{FixedB, MinimumNorm, Verdicts};
 use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::posture::{Posture, Postures};
 use crate::planning::reactionless::BSet;
 use crate::planning::timing::{Limits, TimeLaw};
 use crate::session::refusal::Refusal;
@@ -69,29 +68,12 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
             "with {drives} drives the least reaction holds b, here to end at {b_to} rad: want change-b, or b_to = default"
         )));
     }
-    // With any use of the freedoms that are left.
     let holding = |b: f64| {
-        let all = [Posture::LeastRates, Posture::MidRange, Posture::Orientation, Posture::LeastTorque];
-        let mut refused = None;
-        for posture in all {
-            let task = Task {
-                kind: TaskKind::Reactionless,
-                shape: Some(task.shape()),
-                b,
-                b_to: None,
-                posture,
-                ..task.clone()
-            };
-            let own = Scenario { task, ..scenario.clone() };
-            match along_parts(&own, &|scenario| reactionless(scenario)) {
-                Ok(plan) => return Ok(plan),
-                Err(why) => refused = refused.or(Some(why)),
-            }
-        }
-        Err(refused.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
+        let own = Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), b, b_to: None, ..task.clone() };
+        along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario))
     };
     let why = match holding(task.b) {
-        Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario, &plan)?), ..plan }),
+        Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario)?), ..plan }),
         Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
         Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
             return Err(Refusal::Unreachable { point, unreachable });
@@ -120,9 +102,8 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
 }
 
 /// The verdicts on a motion that holds b.
-fn nothing(scenario: &Scenario, plan: &Plan) -> Result<Verdicts, Refusal> {
-    let usual =
-        by_least_rates(scenario, plan.motion.path.at(0.0).q, None).and_then(|parts| Ok(timed(scenario, parts)?.0));
+fn nothing(scenario: &Scenario) -> Result<Verdicts, Refusal> {
+    let usual = minimum_norm(scenario).and_then(|parts| Ok(timed(scenario, parts)?.0));
     let minimum_norm = match usual {
         Ok(motion) => {
             let (model, around) = dynamics_of(scenario);
@@ -155,12 +136,14 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
             space.drives()
         ))),
         _ => {
-            let start = faced(scenario, &space, (&points, 0), (&space.middle(), None))?;
+            let curves = curves(task, &points)?;
             // Three drives have one motion of each b.
-            if task.posture == Posture::LeastRates || space.drives() == 3 {
+            if space.drives() == 3 {
+                let start = posed(task, &space, (&points, 0), &space.middle())?;
                 return by_least_rates(scenario, start, Some(&space));
             }
-            in_posture(scenario, &Postures::of(&scenario.machine, &space, task.posture), start)
+            let tables = posture::tables(scenario, &space, &curves, Some(task.law))?;
+            Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
         }
     }
 }
@@ -209,19 +192,6 @@ fn by_least_rates(scenario: &Scenario, start: DriveAngles, held: Option<&PoseSpa
             Some(space) => least_rate_curve(tip, Some(space.lambda()), q, &curve)?,
             None => minimum_norm_curve(tip, q, &curve)?,
         };
-        q = table.nodes().last().map_or(q, |last| last.q);
-        parts.push((Path::Table(table), curve.length()));
-    }
-    Ok(parts)
-}
-
-/// Along the curves of a task from a pose at its start, with b held and the freedoms that are left used as it says.
-fn in_posture(scenario: &Scenario, postures: &Postures<'_>, start: DriveAngles) -> Result<Parts, Refusal> {
-    let task = &scenario.task;
-    let mut q = postures.settled(start, task.points()[0], task.b).unwrap_or(start);
-    let mut parts = Vec::new();
-    for curve in curves(task, &task.points())? {
-        let table = postures.path(q, &curve)?;
         q = table.nodes().last().map_or(q, |last| last.q);
         parts.push((Path::Table(table), curve.length()));
     }

@@ -3,6 +3,7 @@
 use super::along::start;
 use super::plan::{Plan, dynamics_of, keeps_rules};
 use super::pose::{posed, start as start_of};
+use super::posture;
 use crate::planning::Motion;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path, PathTable};
@@ -10,7 +11,6 @@ use crate::planning::following::{Rule, trace};
 use crate::planning::forecast::Forecast;
 use crate::planning::pose_constant::Planes;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::posture::{Posture, Postures};
 use crate::planning::timing::{Limits, Profile};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
@@ -96,12 +96,11 @@ fn sampled(scenario: &Scenario, curve: &Curve) -> Result<PathTable, Refusal> {
             counted(space.drives(), "drive")
         )));
     }
-    let start = posed(task, &space, (&task.points()[..1], 0), &space.middle())?;
     // Three drives have one motion of each b.
-    if task.posture == Posture::LeastRates || space.drives() == 3 {
+    if space.drives() == 3 {
+        let start = posed(task, &space, (&task.points()[..1], 0), &space.middle())?;
         return Ok(least_rate_curve(tip, Some(space.lambda()), start, curve)?);
     }
-    let postures = Postures::of(&scenario.machine, &space, task.posture);
-    let start = postures.settled(start, task.points()[0], task.b).unwrap_or(start);
-    Ok(postures.path(start, curve)?)
+    let mut tables = posture::tables(scenario, &space, std::slice::from_ref(curve), None)?;
+    tables.pop().ok_or_else(|| Refusal::Task("the samples give no path".into()))
 }

@@ -8,6 +8,7 @@ mod off_plane;
 mod off_space;
 mod plan;
 mod pose;
+mod posture;
 
 pub use along::curves;
 pub(super) use choose::plan;

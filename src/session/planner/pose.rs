@@ -41,14 +41,13 @@ pub(super) fn faced(
     (points, i): (&[Vector], usize),
     (near, kept): (&[f64], Option<f64>),
 ) -> Result<DriveAngles, Refusal> {
-    let (task, machine, p) = (&scenario.task, &scenario.machine, points[i]);
+    let (task, p) = (&scenario.task, points[i]);
     let Some(angle) = task.orientation.filter(|_| scenario.idle("task.orientation").is_none()) else {
         return posed(task, space, (points, i), near);
     };
-    let link = &machine.resolved_links()[machine.end_link()];
-    let of_drive = |angle: f64| if link.sign < 0.0 { angle - PI } else { angle };
-    let poses = |angle: f64| space.facing(p, task.b, (link.drive, of_drive(angle)), near);
-    let goes = |q: &DriveAngles| kept.is_none_or(|kept| (q[link.drive] - kept).abs() < 1e-6);
+    let (drive, turned) = hand_of(scenario);
+    let poses = |angle: f64| space.facing(p, task.b, (drive, angle - turned), near);
+    let goes = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
     if let Some(q) = poses(angle).into_iter().find(goes) {
         return Ok(q);
     }
@@ -73,6 +72,13 @@ pub(super) fn faced(
         Short(task.b),
         Short(angle)
     )))
+}
+
+/// The drive of the last link, and by how much the link is turned from it, rad.
+pub(super) fn hand_of(scenario: &Scenario) -> (usize, f64) {
+    let machine = &scenario.machine;
+    let link = &machine.resolved_links()[machine.end_link()];
+    (link.drive, if link.sign < 0.0 { PI } else { 0.0 })
 }
 
 /// A point that no b reaches.

@@ -1,0 +1,93 @@
+//! A path through the poses at all stations, with its derivatives, and how well it is one.
+
+use super::goal::{Weight, times};
+use super::refine::Bound;
+use super::rows::Held;
+use super::stations::{GAUSS, Leg, Stations, weights};
+use crate::mechanics::planar::PerDrive;
+use crate::planning::curves::{PathPoint, PathTable};
+
+/// Places within a space at which limits are looked at.
+const LOOKS: usize = 4;
+
+/// Tables of all legs of a path.
+pub(super) fn tables(held: &Held<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
+    stations.legs.iter().map(|leg| table(held, leg, &q[leg.first..=leg.last()])).collect()
+}
+
+fn table(held: &Held<'_>, leg: &Leg, q: &[PerDrive]) -> Option<PathTable> {
+    let count = q.len();
+    let stencil = count.min(5);
+    let nodes = (0..count).map(|i| {
+        let from = i.saturating_sub(2).min(count - stencil);
+        let w = weights(&leg.s[from..from + stencil], leg.s[i]);
+        let sum = |order: usize| {
+            (0..stencil).fold(PerDrive::zeros(q[i].len()), |sum, j| sum.plus(w[order][j], &q[from + j].minus(&q[i])))
+        };
+        let way = &leg.points[i];
+        let (first, second) = held.along(&q[i], (&sum(1), &sum(2)), [way.first, way.second])?;
+        Some(PathPoint { q: crate::mechanics::planar::DriveAngles(q[i]), first, second })
+    });
+    PathTable::new(leg.s.clone(), nodes.collect::<Option<_>>()?)
+}
+
+/// By how much paths miss their curves between stations, m.
+pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTable]) -> f64 {
+    let legs = stations.legs.iter().zip(tables);
+    let each =
+        legs.flat_map(|(leg, table)| leg.between.iter().map(|(s, p)| (held.space.place(&table.at(*s).q) - p).norm()));
+    each.fold(0.0, f64::max)
+}
+
+/// By how much each limit is passed at most, rad.
+pub(super) fn past(bounds: &[Bound], stations: &Stations, tables: &[PathTable]) -> Vec<f64> {
+    let mut most = vec![f64::NEG_INFINITY; bounds.len()];
+    for (leg, table) in stations.legs.iter().zip(tables) {
+        for w in leg.s.windows(2) {
+            for k in 0..=LOOKS {
+                let q = table.at(w[0] + k as f64 / LOOKS as f64 * (w[1] - w[0])).q;
+                most.iter_mut().zip(bounds).for_each(|(most, bound)| *most = most.max(bound.past(&q.0)));
+            }
+        }
+    }
+    most
+}
+
+/// ∫ q′ᵀ S q′ ds along all legs, s by their length.
+pub(super) fn rates(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
+    along(stations, tables, |point| point.first.dot(&times(weight, &point.first)), |share| 1.0 / share)
+}
+
+/// ∫ what ds along all legs, s by their length.
+pub(super) fn places(stations: &Stations, tables: &[PathTable], what: impl Fn(&PerDrive) -> f64) -> f64 {
+    along(stations, tables, |point| what(&point.q.0), |share| share)
+}
+
+fn along(
+    stations: &Stations,
+    tables: &[PathTable],
+    what: impl Fn(&PathPoint) -> f64,
+    counted: impl Fn(f64) -> f64,
+) -> f64 {
+    let leg = |(leg, table): (&Leg, &PathTable)| {
+        let space = |w: &[f64]| {
+            let at = |[share, weight]: [f64; 2]| weight * (w[1] - w[0]) * what(&table.at(w[0] + share * (w[1] - w[0])));
+            GAUSS.into_iter().map(at).sum::<f64>()
+        };
+        counted(leg.share) * leg.s.windows(2).map(space).sum::<f64>()
+    };
+    stations.legs.iter().zip(tables).map(leg).sum()
+}
+
+/// ∫ q̈ᵀ S q̈ dt along all legs in a time of 1.
+pub(super) fn accelerations(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
+    let leg = |(leg, table): (&Leg, &PathTable)| {
+        let at = |(_, [s, rate, acceleration, time]): (usize, [f64; 4])| {
+            let point = table.at(s);
+            let turned = point.second.scaled(rate * rate).plus(acceleration, &point.first);
+            time * turned.dot(&times(weight, &turned))
+        };
+        leg.instants().into_iter().map(at).sum::<f64>()
+    };
+    stations.legs.iter().zip(tables).map(leg).sum()
+}

@@ -1,0 +1,149 @@
+//! [`Goal`]: what a path is to have least, as a quadratic form of its poses at all stations.
+
+use super::stations::{Stations, weights};
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
+
+/// Stations that a row of a form joins: its own and three more.
+const BAND: usize = 4;
+/// Waves of so many spaces are smoothed away.
+const SMOOTHED: f64 = 8.0;
+
+/// A matrix over the drives.
+pub(super) type Weight = [[f64; MAX_DRIVES]; MAX_DRIVES];
+
+/// A form ½ Σ κ_ij (q_i − c)ᵀ S (q_j − c) over stations i and j.
+#[derive(Clone, Debug)]
+pub(super) struct Term {
+    /// κ_ij of j = i … i + 3.
+    pub kappa: Vec<[f64; BAND]>,
+    /// S.
+    pub weight: Weight,
+}
+
+/// Several forms about one pose c.
+#[derive(Clone, Debug)]
+pub(super) struct Goal {
+    pub terms: Vec<Term>,
+    pub centre: PerDrive,
+}
+
+/// 1 for every drive.
+pub(super) fn even(n: usize) -> Weight {
+    std::array::from_fn(|k| std::array::from_fn(|l| f64::from(u8::from(k == l && k < n))))
+}
+
+/// S x.
+pub(super) fn times(weight: &Weight, x: &PerDrive) -> PerDrive {
+    PerDrive::from_fn(x.len(), |k| x.dot(&weight[k]))
+}
+
+/// A weight, scaled.
+pub(super) fn scaled(weight: &Weight, by: f64) -> Weight {
+    weight.map(|row| row.map(|x| by * x))
+}
+
+impl Term {
+    fn zeros(stations: &Stations, weight: Weight) -> Self {
+        Self { kappa: vec![[0.0; BAND]; stations.places.len()], weight }
+    }
+
+    /// Adds weight · (Σ c_j q_(i+j))².
+    fn add(&mut self, i: usize, c: &[f64], weight: f64) {
+        for (j, x) in c.iter().enumerate() {
+            c.iter().enumerate().skip(j).for_each(|(k, y)| self.kappa[i + j][k - j] += 2.0 * weight * x * y);
+        }
+    }
+
+    /// ∫ |q′|²_S ds.
+    pub fn rates(stations: &Stations, weight: Weight) -> Self {
+        let mut term = Self::zeros(stations, weight);
+        for leg in &stations.legs {
+            for (i, w) in leg.s.windows(2).enumerate() {
+                term.add(leg.first + i, &[-1.0, 1.0], 1.0 / (leg.share * (w[1] - w[0])));
+            }
+        }
+        term
+    }
+
+    /// ∫ ½ |q − c|²_S ds.
+    pub fn places(stations: &Stations, weight: Weight) -> Self {
+        let mut term = Self::zeros(stations, weight);
+        for leg in &stations.legs {
+            for (i, w) in leg.s.windows(2).enumerate() {
+                let part = 0.25 * leg.share * (w[1] - w[0]);
+                (0..2).for_each(|j| term.add(leg.first + i + j, &[1.0], part));
+            }
+        }
+        term
+    }
+
+    /// ∫ |q̈|²_S dt, in a time of 1.
+    pub fn accelerations(stations: &Stations, weight: Weight) -> Self {
+        let mut term = Self::zeros(stations, weight);
+        for leg in &stations.legs {
+            let stencil = BAND.min(leg.s.len());
+            for (space, [s, rate, acceleration, time]) in leg.instants() {
+                let from = space.saturating_sub(1).min(leg.s.len() - stencil);
+                let w = weights(&leg.s[from..from + stencil], s);
+                let c: [f64; BAND] = std::array::from_fn(|j| rate * rate * w[2][j] + acceleration * w[1][j]);
+                term.add(leg.first + from, &c[..stencil], time);
+            }
+        }
+        term
+    }
+
+    /// What keeps short waves out, where a wave of so many spaces counts as much as rates do.
+    pub fn smooth(stations: &Stations, weight: Weight, factor: f64) -> Self {
+        let mut term = Self::zeros(stations, weight);
+        for leg in stations.legs.iter().filter(|leg| leg.s.len() >= BAND) {
+            for i in 0..=leg.s.len() - BAND {
+                let s = &leg.s[i..i + BAND];
+                let h = (s[BAND - 1] - s[0]) / 3.0;
+                let w = weights(s, 0.5 * (s[1] + s[2]));
+                let wave = (SMOOTHED * h / std::f64::consts::TAU).powi(4);
+                term.add(leg.first + i, &w[3][..BAND], factor * wave * h / leg.share);
+            }
+        }
+        term
+    }
+}
+
+impl Goal {
+    /// Its gradient at each station.
+    pub fn gradient(&self, q: &[PerDrive]) -> Vec<PerDrive> {
+        let n = self.centre.len();
+        let mut all = vec![PerDrive::zeros(n); q.len()];
+        let off: Vec<PerDrive> = q.iter().map(|q| q.minus(&self.centre)).collect();
+        for term in &self.terms {
+            let mut joined = vec![PerDrive::zeros(n); q.len()];
+            for (i, row) in term.kappa.iter().enumerate() {
+                for (j, kappa) in row.iter().enumerate().filter(|(_, kappa)| **kappa != 0.0) {
+                    joined[i] = joined[i].plus(*kappa, &off[i + j]);
+                    if j > 0 {
+                        joined[i + j] = joined[i + j].plus(*kappa, &off[i]);
+                    }
+                }
+            }
+            for (all, joined) in all.iter_mut().zip(&joined) {
+                *all = all.plus(1.0, &times(&term.weight, joined));
+            }
+        }
+        all
+    }
+
+    /// Its value where its gradient is known.
+    pub fn value(&self, q: &[PerDrive], gradient: &[PerDrive]) -> f64 {
+        0.5 * q.iter().zip(gradient).map(|(q, g)| q.minus(&self.centre).dot(g)).sum::<f64>()
+    }
+
+    /// κ_ii S summed over the drives and averaged: how stiff a single pose is held.
+    pub fn stiffness(&self) -> f64 {
+        let of = |term: &Term| {
+            let trace: f64 = (0..MAX_DRIVES).map(|k| term.weight[k][k]).sum();
+            let mut own: Vec<f64> = term.kappa.iter().map(|row| row[0]).collect();
+            own.sort_by(f64::total_cmp);
+            trace * own[own.len() / 2]
+        };
+        self.terms.iter().map(of).sum::<f64>() / self.centre.len() as f64
+    }
+}

@@ -1,0 +1,75 @@
+//! [`Postures`]: what torques and ranges weigh.
+
+use nalgebra::SMatrix;
+
+use super::goal::Weight;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
+use crate::planning::pose_space::PoseSpace;
+
+/// What a drive that turns nothing costs, as a share of all: a little keeps rates finite.
+const LIGHT: f64 = 1e-9;
+
+/// Weights of a machine's drives.
+#[derive(Clone, Debug)]
+pub struct Postures<'a> {
+    space: &'a PoseSpace,
+    /// TᵀT as a share of its trace.
+    pub(super) torque: Weight,
+    /// ∂x_i/∂q_k.
+    shares: Vec<PerDrive>,
+}
+
+impl<'a> Postures<'a> {
+    /// Of a machine with its poses of a b.
+    pub fn of(machine: &Machine, space: &'a PoseSpace) -> Self {
+        let n = machine.drives();
+        let inertia = Inertia::of(machine);
+        let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
+        let asked: Vec<PerDrive> =
+            (0..n).map(|l| inertia.motors().torques(&PerDrive::from_fn(n, |k| inertia.constant(k, l)))).collect();
+        let trace: f64 = asked.iter().map(|column| column.dot(column)).sum();
+        let mut torque = [[0.0; MAX_DRIVES]; MAX_DRIVES];
+        for (k, row) in torque.iter_mut().enumerate().take(n) {
+            (0..n).for_each(|l| row[l] = asked[k].dot(&asked[l]) / trace);
+            row[k] += LIGHT;
+        }
+        let turned: Vec<PerDrive> = (0..n).map(|k| space.angle_rates(&one(k))).collect();
+        let half = |i: usize| half_range(space, i);
+        let shares = (0..space.joints().len()).map(|i| PerDrive::from_fn(n, |k| turned[k][i] / half(i))).collect();
+        Self { space, torque, shares }
+    }
+
+    /// The inverse of what weighs rates by the torques that they take, TᵀT as a share of its trace.
+    pub fn least_torque(&self) -> Option<[[f64; MAX_DRIVES]; MAX_DRIVES]> {
+        let n = self.space.drives();
+        let weigh = |k: usize, l: usize| if k < n && l < n { self.torque[k][l] } else { f64::from(u8::from(k == l)) };
+        let inverse = SMatrix::<f64, MAX_DRIVES, MAX_DRIVES>::from_fn(weigh).try_inverse()?;
+        let sound = inverse.iter().all(|x| x.is_finite());
+        sound.then(|| {
+            std::array::from_fn(|k| std::array::from_fn(|l| if k < n && l < n { inverse[(k, l)] } else { 0.0 }))
+        })
+    }
+
+    /// ½ Σ x_i²: how far relative angles are from the middle of their ranges.
+    pub fn off_middle(&self, q: &DriveAngles) -> f64 {
+        let (a, middle) = (self.space.angles(q), self.space.middle());
+        (0..a.len()).map(|i| 0.5 * ((a[i] - middle[i]) / half_range(self.space, i)).powi(2)).sum()
+    }
+
+    /// ∂²/∂q_k∂q_l of ½ Σ x².
+    pub(super) fn ranges(&self) -> Weight {
+        std::array::from_fn(|k| {
+            std::array::from_fn(|l| {
+                let inside = k < self.space.drives() && l < self.space.drives();
+                if inside { self.shares.iter().map(|share| share[k] * share[l]).sum() } else { 0.0 }
+            })
+        })
+    }
+}
+
+/// Half of what a relative angle may turn, rad.
+fn half_range(space: &PoseSpace, i: usize) -> f64 {
+    let [low, high] = space.joints()[i].bounds();
+    if low.is_finite() { 0.5 * (high - low).max(1e-6) } else { f64::INFINITY }
+}

@@ -1,0 +1,140 @@
+//! [`Route`]: the shortest way from pose to pose over the layers.
+
+use std::collections::HashSet;
+
+use super::layers::{Layer, Layers, bounds, near};
+use super::rows::lifted;
+use super::stations::Stations;
+use crate::mechanics::planar::PerDrive;
+
+/// A pose goes on to those that are so near to where it is taken, as a multiple of the distance of poses.
+const NEAR: f64 = 1.25;
+/// Routes that turn out to be none, before it is given up.
+const MAX_TRIES: usize = 40;
+/// Starts of closed paths that are tried at most.
+const MAX_STARTS: usize = 60;
+/// What a step of a path may be longer than its share of a step of the route, as a factor and by how much, rad.
+const LONGER: f64 = 4.0;
+const SPARE: f64 = 0.02;
+
+/// What a step of a route costs, by the layer that it leaves: both poses.
+pub(super) type Cost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
+
+/// Steps between layers: the pose that is gone to, and the cost.
+type Steps = Vec<Vec<Vec<(usize, f64)>>>;
+
+impl Layers<'_> {
+    /// Poses at all stations along the cheapest way, or one that ends where it began.
+    pub fn route(&self, stations: &Stations, cost: Cost<'_>, closed: bool) -> Option<Vec<PerDrive>> {
+        let mut steps = self.steps(cost);
+        if closed {
+            self.closing(&mut steps, cost);
+        }
+        let mut banned: HashSet<(usize, usize, usize)> = HashSet::new();
+        for _ in 0..MAX_TRIES {
+            let way = if closed { self.cheapest_round(&steps, &banned) } else { self.cheapest(&steps, &banned, None) };
+            let (way, _) = way?;
+            match self.expanded(stations, &way, closed) {
+                Ok(path) => return Some(path),
+                Err(step) => {
+                    banned.insert((step, way[step], way[step + 1]));
+                }
+            }
+        }
+        None
+    }
+
+    /// The last layer of a closed path is the first one again.
+    fn closing(&self, steps: &mut Steps, cost: Cost<'_>) {
+        let last = self.all.len() - 1;
+        steps[last - 1] = self.leaving(last - 1, &self.all[0], cost);
+    }
+
+    fn steps(&self, cost: Cost<'_>) -> Steps {
+        (0..self.all.len() - 1).map(|i| self.leaving(i, &self.all[i + 1], cost)).collect()
+    }
+
+    fn leaving(&self, i: usize, onto: &Layer, cost: Cost<'_>) -> Vec<Vec<(usize, f64)>> {
+        let (layer, square) = (&self.all[i], (NEAR * self.apart).powi(2));
+        let each = |(k, there): (usize, &Option<PerDrive>)| {
+            let Some(there) = there else { return Vec::new() };
+            let beside = onto.angles.iter().enumerate().filter(|(_, a)| near(a, there, square));
+            beside.map(|(l, _)| (l, cost(i, &layer.poses[k], &onto.poses[l]))).collect()
+        };
+        layer.next.iter().enumerate().map(each).collect()
+    }
+
+    /// The pose of each layer along the cheapest way, from one start or any, and what it costs.
+    fn cheapest(
+        &self,
+        steps: &Steps,
+        banned: &HashSet<(usize, usize, usize)>,
+        start: Option<usize>,
+    ) -> Option<(Vec<usize>, f64)> {
+        let first = self.all[0].poses.len();
+        let mut costs: Vec<f64> =
+            (0..first).map(|k| if start.is_none_or(|s| s == k) { 0.0 } else { f64::INFINITY }).collect();
+        let mut from: Vec<Vec<usize>> = Vec::with_capacity(steps.len());
+        for (i, layer) in steps.iter().enumerate() {
+            let count = match start {
+                Some(_) if i + 1 == steps.len() => first,
+                _ => self.all[i + 1].poses.len(),
+            };
+            let (mut next, mut own) = (vec![f64::INFINITY; count], vec![usize::MAX; count]);
+            for (k, ways) in layer.iter().enumerate().filter(|(k, _)| costs[*k].is_finite()) {
+                for (l, cost) in ways {
+                    let whole = costs[k] + cost;
+                    if whole < next[*l] && (banned.is_empty() || !banned.contains(&(i, k, *l))) {
+                        (next[*l], own[*l]) = (whole, k);
+                    }
+                }
+            }
+            costs = next;
+            from.push(own);
+        }
+        let end = match start {
+            Some(start) => start,
+            None => (0..costs.len()).min_by(|x, y| costs[*x].total_cmp(&costs[*y]))?,
+        };
+        if !costs[end].is_finite() {
+            return None;
+        }
+        let mut way = vec![end];
+        for own in from.iter().rev() {
+            way.push(own[*way.last()?]);
+        }
+        way.reverse();
+        Some((way, costs[end]))
+    }
+
+    /// The same of ways that end where they began.
+    fn cheapest_round(&self, steps: &Steps, banned: &HashSet<(usize, usize, usize)>) -> Option<(Vec<usize>, f64)> {
+        let count = self.all[0].poses.len();
+        let every = count.div_ceil(MAX_STARTS);
+        let rounds = (0..count).step_by(every).filter_map(|start| self.cheapest(steps, banned, Some(start)));
+        rounds.min_by(|x, y| x.1.total_cmp(&y.1))
+    }
+
+    /// The poses at all stations, or the step of the route that is none.
+    fn expanded(&self, stations: &Stations, way: &[usize], closed: bool) -> Result<Vec<PerDrive>, usize> {
+        let windows = bounds(self.space);
+        let last = self.all.len() - 1;
+        let angles = |i: usize| &self.all[if closed && i == last { 0 } else { i }].angles[way[i]];
+        let mut path = vec![*angles(0)];
+        for i in 0..last {
+            let (from, to) = (angles(i), angles(i + 1));
+            let [first, end] = [self.all[i].at, self.all[i + 1].at];
+            let step = to.minus(from);
+            let allowed = LONGER * step.max_abs() / (end - first) as f64 + SPARE;
+            for k in first + 1..=end {
+                let share = (k - first) as f64 / (end - first) as f64;
+                let guess = from.plus(share, &step);
+                let a =
+                    if k == end { Some(*to) } else { self.space.solved(stations.places[k], self.b, &guess, &windows) };
+                let before = path[path.len() - 1];
+                path.push(a.filter(|a| a.minus(&before).max_abs() <= allowed).ok_or(i)?);
+            }
+        }
+        Ok(path.iter().map(|a| lifted(self.space, a, self.b)).collect())
+    }
+}

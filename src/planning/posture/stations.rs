@@ -1,0 +1,133 @@
+//! [`Stations`]: the places along the curves of a task at which poses are sought.
+
+use crate::mechanics::planar::Vector;
+use crate::planning::curves::{Curve, CurvePoint};
+use crate::planning::timing::{Profile, TimeLaw};
+
+/// On each of several curves there are at least so many spaces as on a whole path, a share.
+const LEAST: f64 = 1.0 / 3.0;
+/// Of these at least so many between two joints of a curve, but for curves with very many joints.
+const A_PIECE: f64 = 1.0 / 16.0;
+const MANY: usize = 100;
+/// Gauss's places and weights in a space of length 1.
+pub(super) const GAUSS: [[f64; 2]; 3] =
+    [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
+
+/// A curve from rest to rest.
+#[derive(Clone, Debug)]
+pub(super) struct Leg {
+    /// Its first station among all; the last one is the first of the next leg.
+    pub first: usize,
+    /// s of each station on this curve alone, 0 to 1.
+    pub s: Vec<f64>,
+    /// The curve there, by this s.
+    pub points: Vec<CurvePoint>,
+    /// Places between the stations, where the path is looked at as well: s and the curve there.
+    pub between: Vec<(f64, Vector)>,
+    /// Its length as a share of all.
+    pub share: f64,
+    /// When it is where, in a time of `share`.
+    pub profile: Profile,
+}
+
+impl Leg {
+    /// The place of its last station among all.
+    pub fn last(&self) -> usize {
+        self.first + self.s.len() - 1
+    }
+
+    /// Instants at which its spaces are looked at: the space, s, ṡ, s̈ and the time that each counts for.
+    pub fn instants(&self) -> Vec<(usize, [f64; 4])> {
+        let ends: Vec<f64> = self.s.iter().map(|s| self.profile.when(*s)).collect();
+        let last = ends.len() - 2;
+        let each = |i: usize| {
+            let from = if i == 0 { 0.0 } else { ends[i] };
+            let to = if i == last { self.profile.duration() } else { ends[i + 1] };
+            GAUSS.map(|[share, weight]| {
+                let now = self.profile.at(from + share * (to - from));
+                (i, [now.s, now.rate, now.acceleration, weight * (to - from)])
+            })
+        };
+        (0..=last).flat_map(each).collect()
+    }
+}
+
+/// All stations of curves, one after another.
+#[derive(Clone, Debug)]
+pub(super) struct Stations {
+    pub legs: Vec<Leg>,
+    /// Where the end effector is, m.
+    pub places: Vec<Vector>,
+}
+
+impl Stations {
+    /// Of curves that are passed by a law each, from rest to rest, or evenly where there is none; with about so many
+    /// spaces on the whole way.
+    pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
+        let total: f64 = curves.iter().map(Curve::length).sum();
+        let mut legs: Vec<Leg> = Vec::with_capacity(curves.len());
+        let mut places: Vec<Vector> = Vec::new();
+        for curve in curves {
+            let share = if total > 0.0 { curve.length() / total } else { 1.0 / curves.len() as f64 };
+            let own = (spaces as f64 * share.max(LEAST)).ceil();
+            let joints: Vec<f64> = curve.joints().collect();
+            let least = if joints.len() > MANY { 1 } else { (A_PIECE * spaces as f64) as usize };
+            let mut s: Vec<f64> = Vec::new();
+            for ends in joints.windows(2) {
+                let run = ends[1] - ends[0];
+                let count = ((own * run).ceil() as usize).max(least);
+                s.extend((0..count).map(|i| ends[0] + run * i as f64 / count as f64));
+            }
+            s.push(1.0);
+            let points: Vec<CurvePoint> = s.iter().map(|s| curve.at(*s)).collect();
+            let between = s.windows(2).map(|w| 0.5 * (w[0] + w[1])).map(|s| (s, curve.at(s).p)).collect();
+            let first = places.len().saturating_sub(1);
+            places.extend(points.iter().skip(usize::from(!places.is_empty())).map(|point| point.p));
+            let profile = match law {
+                Some(law) => Profile::of(if law.is_fastest() { TimeLaw::Quintic } else { law }, share),
+                None => Profile::running(share),
+            };
+            legs.push(Leg { first, s, points, between, share, profile });
+        }
+        Self { legs, places }
+    }
+
+    /// The share of the whole way up to a station.
+    pub fn done(&self, station: usize) -> f64 {
+        let part = |leg: &Leg| match station {
+            i if i >= leg.last() => leg.share,
+            i if i > leg.first => leg.share * leg.s[i - leg.first],
+            _ => 0.0,
+        };
+        self.legs.iter().map(part).sum()
+    }
+}
+
+/// Weights with which values at up to five places give the value and three derivatives at another one (Fornberg 1988).
+pub(super) fn weights(places: &[f64], at: f64) -> [[f64; 5]; 4] {
+    let mut w = [[0.0; 5]; 4];
+    let mut c1 = 1.0;
+    let mut c4 = places[0] - at;
+    w[0][0] = 1.0;
+    for i in 1..places.len() {
+        let most = i.min(3);
+        let (mut c2, c5) = (1.0, c4);
+        c4 = places[i] - at;
+        for j in 0..i {
+            let c3 = places[i] - places[j];
+            c2 *= c3;
+            if j == i - 1 {
+                for k in (1..=most).rev() {
+                    w[k][i] = c1 * (k as f64 * w[k - 1][i - 1] - c5 * w[k][i - 1]) / c2;
+                }
+                w[0][i] = -c1 * c5 * w[0][i - 1] / c2;
+            }
+            for k in (1..=most).rev() {
+                w[k][j] = (c4 * w[k][j] - k as f64 * w[k - 1][j]) / c3;
+            }
+            w[0][j] = c4 * w[0][j] / c3;
+        }
+        c1 = c2;
+    }
+    w
+}
