@@ -143,15 +143,35 @@ fn every_edge_has_the_workspace_on_its_left() {
 }
 
 #[test]
-#[ignore = "a campaign of minutes: 300 machines with three and four drives"]
+#[ignore = "a campaign of minutes: 360 machines, from three drives to six"]
 fn every_edge_of_hundreds_has_the_workspace_on_its_left() {
     let mut noise = Noise::of(11);
-    let any = |i: usize| if i % 3 == 2 { limited(&mut noise) } else { a_space(&mut noise, 3 + i % 3).1 };
-    let spaces: Vec<PoseSpace> = (0..300).map(any).collect();
+    let any = |i: usize| match i % 6 {
+        2 | 5 => limited(&mut noise),
+        k => a_space(&mut noise, [3, 4, 5, 4, if i % 5 == 0 { 6 } else { 5 }, 0][k]).1,
+    };
+    let spaces: Vec<PoseSpace> = (0..360).map(any).collect();
     adds_up(&mut noise, &spaces);
     let [right, all] = edges_are_edges(&mut noise, &spaces);
     println!("{right} of {all} points");
     assert!(right as f64 >= 0.995 * all as f64, "{right} of {all}");
+}
+
+/// Between two circles of this machine poses begin whose joints all have to be near to one place.
+#[test]
+fn what_lies_outside_is_reached_by_no_pose() {
+    let (space, b) = (a_space(&mut Noise::of(15), 5).1, 0.7);
+    let outline = space.outline(b);
+    let mut noise = Noise::of(16);
+    let poses: Vec<Vec<f64>> = (0..2000).map(|_| a_pose(&mut noise, &space).to_vec()).collect();
+    let turns = (0..100).map(|i| f64::from(i) / 100.0 * TAU);
+    for p in turns.flat_map(|turn| [1.3216, 1.3218].map(|r| Vector::from_polar(r, turn))) {
+        let off = outline.distance(p);
+        if off < -1e-5 && off > -0.02 {
+            let near = approached(&space, p, b, &poses);
+            assert!(near > 1e-6, "{p} is reached to {near:e} m, {off:e} m from the boundary");
+        }
+    }
 }
 
 /// Poses at random, some with joints at their limits, have their ends inside; what lies inside is reached by a pose that

@@ -37,29 +37,26 @@ pub(super) struct Effort {
     max_steps: usize,
     /// The shortest of them, as a share of the whole way.
     least_step: f64,
+    /// So many steps of Newton's iteration that bring nothing lead nowhere.
+    max_vain: usize,
 }
 
 /// Where no pose is found yet.
-pub(super) const THOROUGH: Effort = Effort { max_steps: 60, least_step: 1e-5 };
+pub(super) const THOROUGH: Effort = Effort { max_steps: 60, least_step: 1e-5, max_vain: usize::MAX };
 /// Where others are wanted.
-pub(super) const BRIEF: Effort = Effort { max_steps: 8, least_step: 0.05 };
+pub(super) const BRIEF: Effort = Effort { max_steps: 8, least_step: 0.05, max_vain: usize::MAX };
+/// Where most likely there is none.
+pub(super) const GLANCE: Effort = Effort { max_steps: 4, least_step: 0.2, max_vain: 2 };
 /// The longest way along a curvature, rad, and how often a shorter one is tried.
 const LEAP: f64 = 0.2;
 const MAX_LEAPS: usize = 4;
 /// Gains and curvatures below this share of the largest are rounding.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
-/// A critical pose of points at a distance from B.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Start {
-    pub a: PerDrive,
-    pub critical: Critical,
-}
-
-/// A way from a critical pose to a b: the start, and by how much b has to rise, rad.
+/// A way from a critical pose to a b: by how much b has to rise, rad.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Climb<'a> {
-    pub start: &'a Start,
+    pub from: &'a Critical,
     pub rise: f64,
 }
 
@@ -98,7 +95,19 @@ impl PoseSpace {
         from: &PerDrive,
         windows: &[[f64; 2]; MAX_DRIVES],
     ) -> Option<PerDrive> {
+        self.solved_by(p, b, from, (windows, usize::MAX))
+    }
+
+    /// The same, with so many steps at most that bring nothing.
+    fn solved_by(
+        &self,
+        p: Vector,
+        b: f64,
+        from: &PerDrive,
+        (windows, max_vain): (&[[f64; 2]; MAX_DRIVES], usize),
+    ) -> Option<PerDrive> {
         let (n, reach) = (self.joints.len(), self.farthest());
+        let mut vain = 0;
         let (even, none) = (PerDrive::from_fn(n, |_| 1.0), PerDrive::zeros(n));
         let mut a = *from;
         let (place, mut columns) = self.columns(&self.lift(&a, b));
@@ -122,7 +131,8 @@ impl PoseSpace {
                 }
             } else {
                 longest = 0.25 * step.max_abs();
-                if longest < SHORTEST {
+                vain += 1;
+                if longest < SHORTEST || vain > max_vain {
                     break;
                 }
             }
@@ -144,7 +154,7 @@ impl PoseSpace {
         for _ in 0..effort.max_steps {
             let last = step.abs() >= (to - b).abs();
             let next = if last { to } else { b + step };
-            match self.solved(p, next, &a, windows) {
+            match self.solved_by(p, next, &a, (windows, effort.max_vain)) {
                 Some(there) if last => return Some(there),
                 Some(there) => {
                     (a, b) = (there, next);
@@ -160,29 +170,29 @@ impl PoseSpace {
     }
 
     /// All critical poses of points at a distance from B, m; of B itself none.
-    pub(super) fn starts(&self, distance: f64) -> Vec<Start> {
+    pub(super) fn starts(&self, distance: f64) -> Vec<Critical> {
         let mut starts = Vec::new();
         if distance > 0.0 {
-            self.criticals(distance, |critical| starts.push(Start { a: critical.a, critical }));
+            self.criticals(distance, |critical| starts.push(critical));
         }
         starts
     }
 
     /// The ways from critical poses to a b, rad, the shortest first; b beside the end of a set by rounding is at that end.
-    pub(super) fn climbs<'a>(&self, starts: &'a [Start], b: f64) -> Vec<Climb<'a>> {
+    pub(super) fn climbs<'a>(&self, starts: &'a [Critical], b: f64) -> Vec<Climb<'a>> {
         let period = self.period();
         let mut climbs: Vec<Climb<'a>> = Vec::with_capacity(starts.len());
-        for start in starts {
-            let by = (b - start.critical.b).rem_euclid(period);
+        for from in starts {
+            let by = (b - from.b).rem_euclid(period);
             if by.min(period - by) <= BESIDE_END {
-                climbs.push(Climb { start, rise: if by <= BESIDE_END { by } else { by - period } });
+                climbs.push(Climb { from, rise: if by <= BESIDE_END { by } else { by - period } });
                 continue;
             }
-            if start.critical.up {
-                climbs.push(Climb { start, rise: by });
+            if from.up {
+                climbs.push(Climb { from, rise: by });
             }
-            if start.critical.down {
-                climbs.push(Climb { start, rise: by - period });
+            if from.down {
+                climbs.push(Climb { from, rise: by - period });
             }
         }
         climbs.sort_by(|x, y| x.rise.abs().total_cmp(&y.rise.abs()));
@@ -191,23 +201,18 @@ impl PoseSpace {
 
     /// The pose at p, m, on the x axis, to which a way leads.
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
-        let Climb { start: Start { a, critical }, rise } = climb;
-        let (windows, to) = (self.windows(), critical.b + rise);
-        self.left(p, climb, (&windows, effort)).or_else(|| {
-            let there = || (self.place(&self.lift(a, to)) - p).norm() <= ON_POINT * self.farthest();
-            (rise.abs() <= BESIDE_END && there()).then_some(*a)
+        let Climb { from, rise } = climb;
+        self.left(p, climb, effort).or_else(|| {
+            let there = || (self.place(&self.lift(&from.a, from.b + rise)) - p).norm() <= ON_POINT * self.farthest();
+            (rise.abs() <= BESIDE_END && there()).then_some(from.a)
         })
     }
 
     /// The same without what rounding makes of an end.
-    fn left(
-        &self,
-        p: Vector,
-        climb: &Climb<'_>,
-        (windows, effort): (&[[f64; 2]; MAX_DRIVES], Effort),
-    ) -> Option<PerDrive> {
-        let Climb { start: Start { a, critical }, rise } = climb;
-        let (b, to) = (critical.b, critical.b + rise);
+    pub(super) fn left(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
+        let Climb { from: Critical { a, b, .. }, rise } = climb;
+        let (b, to) = (*b, b + rise);
+        let windows = &self.windows();
         let leave = self.leaving(a, b, rise.signum());
         if leave.gains
             && let Some(there) = self.continued(p, (a, b), to, (windows, effort))
@@ -221,7 +226,7 @@ impl PoseSpace {
                 let by = side * (2.0 * rise / bend).sqrt();
                 let beside = PerDrive::from_fn(a.len(), |i| (a[i] + by * way[i]).clamp(windows[i][0], windows[i][1]));
                 let level = b + rise.copysign(to - b);
-                if let Some(there) = self.solved(p, level, &beside, windows) {
+                if let Some(there) = self.solved_by(p, level, &beside, (windows, effort.max_vain)) {
                     if let Some(there) = self.continued(p, (&there, level), to, (windows, effort)) {
                         return Some(there);
                     }

@@ -1,17 +1,41 @@
-//! Whether any pose is at a distance from B between two critical values of b: a quick look over the last joints, with the
-//! three arms that are left in closed form.
+//! Whether any pose is at a distance from B between two critical values of b.
+//!
+//! # Method
+//! What lies between two critical values goes on to both of them, and ends or joins another piece at critical poses
+//! beyond. So it is found by climbing from the nearest critical poses below and by descending from the nearest ones
+//! above. Only pieces on which b goes round without an end come from none: for these, a look over the last joints, with
+//! the three arms that are left in closed form.
 
+use super::continuation::{Climb, GLANCE};
+use super::critical::Critical;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 /// Looks over the range of the joints that are left free, for one, two, three and more of them.
 const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
-/// From how many of these the nearest place is gone to where none will do, how often in each direction.
-const STARTS: usize = 4;
-const SWEEPS: usize = 3;
-/// How fast b's ends go with an angle at most, for a look to be worth it.
-const FAR: f64 = 4.0;
+/// Of how many critical poses on either side of a gap, the nearest ones, ways lead into it.
+const NEAREST: usize = 3;
+/// How far into it, as a share of it, and of b's period at most.
+const INTO: f64 = 0.3;
+const AT_MOST: f64 = 0.02;
+/// Critical values that are one, to rounding, rad.
+const SAME: f64 = 1e-9;
+
+/// What lies between two critical values of b, rad.
+pub(super) struct Gap {
+    pub from: f64,
+    pub to: f64,
+    /// How far below and above poses in it may come from, rad.
+    pub free: [f64; 2],
+}
+
+impl Gap {
+    /// Some of its b, as where a set is about to part few poses are left.
+    fn places(&self) -> [f64; 5] {
+        [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| self.from + part * (self.to - self.from))
+    }
+}
 
 /// What reaches a point with the last joints held at each place of a grid: the same for every b, so it is looked up once.
 #[derive(Default)]
@@ -19,9 +43,6 @@ pub(super) struct Looks {
     /// Spans of b, rad, and where those of each look end.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
-    /// Of the b that are asked for: how far each look is off them, rad, and which lead anywhere.
-    offs: Vec<f64>,
-    order: Vec<usize>,
 }
 
 impl Looks {
@@ -33,25 +54,43 @@ impl Looks {
 }
 
 impl PoseSpace {
-    /// Whether some pose is on the x axis at a distance from B, m, at one of these b.
-    pub(super) fn has_pose(&self, distance: f64, b: &[f64], looks: &mut Looks) -> bool {
+    /// Whether some pose is on the x axis at a distance from B, m, in a gap between its critical poses, which are sorted
+    /// by b.
+    pub(super) fn has_pose(&self, distance: f64, gap: &Gap, criticals: &[Critical], looks: &mut Looks) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.held_for(p, b, looks).is_some();
+            return self.is_climbed_into(p, gap, criticals) || self.is_seen(p, Some(&gap.places()), looks);
         }
-        let mut any = false;
-        for b in b {
-            self.each_pose(p, *b, &mut |_| {
-                any = true;
-                false
-            });
-        }
-        any
+        gap.places().iter().any(|b| self.is_there(p, *b))
     }
 
-    /// Angles of the joints that are held, more than three drives, with which the three arms that are left reach p at b:
-    /// where no look finds any, by going to where they come nearest. What lies at the first two joints is not used.
-    fn held_for(&self, p: Vector, b: &[f64], looks: &mut Looks) -> Option<PerDrive> {
+    /// Whether a way from a critical pose near a gap leads into it.
+    fn is_climbed_into(&self, p: Vector, gap: &Gap, criticals: &[Critical]) -> bool {
+        let (period, n) = (self.period(), criticals.len());
+        let into = (INTO * (gap.to - gap.from)).min(AT_MOST * period);
+        let past = |by: f64| (by + SAME).rem_euclid(period) - SAME;
+        let at_most = |by: &f64, free: f64| *by <= free + SAME;
+        let first = criticals.partition_point(|c| c.b <= gap.from + SAME);
+        let mut below = (1..=n)
+            .map(|k| &criticals[(first + n - k) % n])
+            .map(|c| (c, past(gap.from - c.b)))
+            .take_while(|(_, by)| at_most(by, gap.free[0]))
+            .filter(|(c, _)| c.up);
+        let last = criticals.partition_point(|c| c.b < gap.to - SAME);
+        let mut above = (0..n)
+            .map(|k| &criticals[(last + k) % n])
+            .map(|c| (c, past(c.b - gap.to)))
+            .take_while(|(_, by)| at_most(by, gap.free[1]))
+            .filter(|(c, _)| c.down);
+        (0..NEAREST).any(|_| {
+            let rise = below.next().map(|(from, by)| Climb { from, rise: by + into });
+            let fall = above.next().map(|(from, by)| Climb { from, rise: -(by + into) });
+            rise.iter().chain(&fall).any(|climb| self.left(p, climb, GLANCE).is_some())
+        })
+    }
+
+    /// Whether a pose at one of these b, or at any, is seen with the last joints held at places of a grid.
+    fn is_seen(&self, p: Vector, b: Option<&[f64]>, looks: &mut Looks) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -67,73 +106,21 @@ impl PoseSpace {
             }
             held
         };
-        let count = each.pow((n - first) as u32);
-        looks.offs.clear();
-        for code in 0..count {
+        (0..each.pow((n - first) as u32)).any(|code| {
             if code == looks.ends.len() {
                 self.spans(p, &look(code), |span| looks.spans.push(span));
                 looks.ends.push(looks.spans.len());
             }
             let from = if code > 0 { looks.ends[code - 1] } else { 0 };
-            let of = &looks.spans[from..looks.ends[code]];
-            let off = of.iter().fold(f64::INFINITY, |off, span| off.min(self.gap(*span, b)));
-            if off == 0.0 {
-                return Some(look(code));
-            }
-            looks.offs.push(off);
-        }
-        // Where it is much farther than the looks are apart, it does not come near between them. Along a single joint
-        // only looks that are nearer than those beside them lead anywhere.
-        let apart = (first..n).map(|i| at(i, 1) - at(i, 0)).fold(0.0, f64::max);
-        let Looks { offs, order, .. } = looks;
-        let beside = |i: usize, j: Option<usize>| j.and_then(|j| offs.get(j)).is_none_or(|other| offs[i] <= *other);
-        let leads = |i: usize| n - first > 1 || (beside(i, i.checked_sub(1)) && beside(i, Some(i + 1)));
-        order.clear();
-        order.extend((0..count).filter(|i| offs[*i] <= FAR * apart && leads(*i)));
-        order.sort_unstable_by(|x, y| offs[*x].total_cmp(&offs[*y]).then(x.cmp(y)));
-        for code in order.iter().take(STARTS) {
-            let (mut best, mut held) = (offs[*code], look(*code));
-            for _ in 0..if n - first > 1 { SWEEPS } else { 1 } {
-                let before = best;
-                for i in first..n {
-                    let [low, high] = self.joints[i].limits;
-                    let step = (high - low) / each as f64;
-                    let on = |x: f64| {
-                        let mut there = held;
-                        there[i] = x;
-                        (self.off(p, b, &there), there)
-                    };
-                    let found = lowest(on, [(held[i] - step).max(low), (held[i] + step).min(high)]);
-                    if found.0 < best {
-                        (best, held) = found;
-                    }
-                    if best == 0.0 {
-                        return Some(held);
-                    }
-                }
-                if best >= before {
-                    break;
-                }
-            }
-        }
-        None
+            looks.spans[from..looks.ends[code]]
+                .iter()
+                .any(|span| b.is_none_or(|b| b.iter().any(|b| self.holds(*span, *b))))
+        })
     }
 
-    /// How far the nearest b is from what reaches p with these joints held, rad; infinite where nothing does.
-    fn off(&self, p: Vector, b: &[f64], held: &PerDrive) -> f64 {
-        let mut off = f64::INFINITY;
-        self.spans(p, held, |span| off = off.min(self.gap(span, b)));
-        off
-    }
-
-    /// How far the nearest b is from a span, by the shorter way round, rad.
-    fn gap(&self, [low, high]: [f64; 2], b: &[f64]) -> f64 {
-        let period = self.period();
-        let gap = |b: &f64| {
-            let past = (b - low) - period * ((b - low) / period).floor();
-            (past - (high - low)).max(0.0).min(period - past)
-        };
-        b.iter().map(gap).fold(f64::INFINITY, f64::min)
+    /// Whether a span holds a b, whole turns aside.
+    fn holds(&self, [low, high]: [f64; 2], b: f64) -> bool {
+        (b - low).rem_euclid(self.period()) <= high - low
     }
 
     /// The spans of b that reach p with these joints held.
@@ -143,9 +130,20 @@ impl PoseSpace {
         }
     }
 
-    /// Whether any pose is at a distance from B, m.
+    /// Whether any pose is at a distance from B, m, where b goes round without an end: at one b as at any.
     pub(super) fn any_pose(&self, distance: f64) -> bool {
-        self.has_pose(distance, &[0.0], &mut Looks::default())
+        let p = Vector::new(distance, 0.0);
+        if self.drives() > 3 { self.is_seen(p, None, &mut Looks::default()) } else { self.is_there(p, 0.0) }
+    }
+
+    /// Up to three drives.
+    fn is_there(&self, p: Vector, b: f64) -> bool {
+        let mut any = false;
+        self.each_pose(p, b, &mut |_| {
+            any = true;
+            false
+        });
+        any
     }
 
     /// The plane of the first two joints, with all others held, and what its b lacks.
@@ -182,28 +180,4 @@ impl PoseSpace {
             (0..n).map(|k| self.lambda[k] * delta[k]).sum::<f64>() - (0..3).map(|i| lambda[i] * lean[i]).sum::<f64>();
         Some((map, shift))
     }
-}
-
-/// The least of a function between two places by golden sections, or the first place at which it is 0; only as near as
-/// it takes to know that it does not come to 0.
-fn lowest<T: Copy>(f: impl Fn(f64) -> (f64, T), [mut low, mut high]: [f64; 2]) -> (f64, T) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut fx, mut fy) = (f(x), f(y));
-    for _ in 0..16 {
-        // Nor does it come to 0 from farther than this.
-        if fx.0 == 0.0 || fy.0 == 0.0 || fx.0.min(fy.0) > FAR * (high - low) {
-            break;
-        }
-        if fx.0 < fy.0 {
-            (high, y, fy) = (y, x, fx);
-            x = high - GOLDEN * (high - low);
-            fx = f(x);
-        } else {
-            (low, x, fx) = (x, y, fy);
-            y = low + GOLDEN * (high - low);
-            fy = f(y);
-        }
-    }
-    if fx.0 < fy.0 { fx } else { fy }
 }

@@ -22,6 +22,7 @@
 
 mod boxed;
 mod continuation;
+mod covered;
 mod critical;
 mod facing;
 mod joint;
