@@ -106,22 +106,30 @@ fn a_change_of_b_costs_what_it_says() {
 }
 
 /// Limits are a box, so a straight line of joint space joins any two poses: no change between two b that reach their points
-/// is refused.
+/// is refused, to a b that is given or to the nearest one.
+fn changes_of_b(noise: &mut Noise, n: usize) {
+    let (machine, space) = a_space(noise, n);
+    let b = [noise.between(-5.0, 5.0), noise.between(-5.0, 5.0)];
+    let [from, to] = b.map(|b| space.place(&space.lift(&a_pose(noise, &space), b)));
+    let ends = format!("kind = 'change-b'\n{}{}b = {:?}\n", point("from", from), point("to", to), b[0]);
+    for text in [format!("{ends}b_to = {:?}\n", b[1]), ends] {
+        let motion = run(&machine, &text).plan().motion.clone();
+        assert!((0..=20).all(|i| keeps_limits(&machine, &motion.path.at(f64::from(i) / 20.0).q)), "{n} drives");
+        assert!((space.b(&motion.path.at(0.0).q) - b[0]).abs() < 1e-9, "{n} drives");
+    }
+}
+
 #[test]
 fn no_change_of_b_between_two_poses_is_refused() {
     let mut noise = Noise::of(13);
-    for n in [4, 4, 4, 4, 5] {
-        let (machine, space) = a_space(&mut noise, n);
-        let b = [noise.between(-5.0, 5.0), noise.between(-5.0, 5.0)];
-        let [from, to] = b.map(|b| space.place(&space.lift(&a_pose(&mut noise, &space), b)));
-        let ends = format!("kind = 'change-b'\n{}{}b = {:?}\n", point("from", from), point("to", to), b[0]);
-        // To a b that is given, and to the nearest one.
-        for text in [format!("{ends}b_to = {:?}\n", b[1]), ends] {
-            let motion = run(&machine, &text).plan().motion.clone();
-            assert!((0..=20).all(|i| keeps_limits(&machine, &motion.path.at(f64::from(i) / 20.0).q)), "{n} drives");
-            assert!((space.b(&motion.path.at(0.0).q) - b[0]).abs() < 1e-9, "{n} drives");
-        }
-    }
+    [4, 4, 4, 4, 5].into_iter().for_each(|n| changes_of_b(&mut noise, n));
+}
+
+#[test]
+#[ignore = "minutes: 300 machines with four drives to six"]
+fn no_change_of_b_of_hundreds_is_refused() {
+    let mut noise = Noise::of(1300);
+    (0..300).for_each(|i| changes_of_b(&mut noise, 4 + i % 3));
 }
 
 /// Without a b for B: the least change from where A is.

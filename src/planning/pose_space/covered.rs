@@ -3,12 +3,8 @@
 use super::critical::Critical;
 use crate::planning::reactionless::BSet;
 
-/// Values as near to a gap as this, as a share of b's period, may pass it from one circle to the next, if they move so far:
-/// by the farthest move of any such value, and so many times more.
+/// Values as near to a gap as this, as a share of b's period, may pass it from one circle to the next.
 const NEAR_GAP: f64 = 0.125;
-const MOVES: f64 = 4.0;
-/// rad.
-const ROUNDING: f64 = 1e-9;
 
 /// What of the circle of b is covered at a distance. Sets begin and end at critical values only, so at a distance near by
 /// what lies between the same two is covered as well, or not, unless a third one has passed both: then there are mostly
@@ -56,85 +52,49 @@ impl Covered {
         }
     }
 
-    /// The gap between the same two values as one of another distance, whatever passed it in between. Two values that
-    /// pass each other keep their order round the circle: of two, it has to be the same from 0 on.
-    fn named(&self, of: &Self, i: usize) -> Option<usize> {
+    /// The names of the values about gap i, two on either side.
+    fn around(&self, i: usize) -> [u64; 4] {
         let n = self.ends.len();
-        let names = |one: &Self, i: usize| [i, i + 1].map(|j| one.ends[j % one.ends.len()].name);
-        let wanted = names(of, i);
-        let same = |j: &usize| names(self, *j) == wanted;
+        [n - 1, 0, 1, 2].map(|j| self.ends[(i + j) % n].name)
+    }
+
+    /// The gap between the same two values as one of another distance; with the same ones on either side of it, too, if
+    /// all have to be. Two values that pass each other keep their order round the circle: of two, it has to be the same
+    /// from 0 on.
+    pub fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
+        let (n, around) = (self.ends.len(), of.around(i));
+        let same = |j: &usize| {
+            let own = self.around(*j);
+            own[1..3] == around[1..3] && (!all || (own == around && self.has_sides(*j, of, i)))
+        };
         if n < 3 || of.ends.len() < 3 {
             return (n == of.ends.len() && same(&i)).then_some(i);
         }
         (0..n).find(same)
     }
 
-    /// The gap that goes on to one of another distance; if that has to be sure, with no value that may have passed it in
-    /// between.
-    pub fn gap(&self, of: &Self, i: usize, sure: bool) -> Option<usize> {
-        let named = self.named(of, i);
-        if !sure {
-            return named;
-        }
-        let there = || (of.ends.len() > 2 && self.ends.len() > 2).then(|| self.about(of.middle(i)));
-        named.or_else(there).filter(|j| self.has_sides(*j, of, i))
-    }
-
-    /// Whether no value has passed gap j on its way to gap i of another distance: all that are near have kept their sides,
-    /// and those that are new or gone would have had to move much faster than the others. Poses that are new or gone have
-    /// their least value on one side and their greatest on the other; a gap that opens or closes has both its ends so.
+    /// Whether no value has passed gap j on its way to gap i of another distance: those near either have kept their sides,
+    /// and none is new or gone.
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
-        let [here, there] = [self.edges(j), of.edges(i)];
-        let (mut moved, mut least): (f64, f64) = (0.0, f64::INFINITY);
-        for (one, edges, other, others) in [(self, here, of, there), (of, there, self, here)] {
-            let (mut across, mut ends) = ([false; 2], 0);
-            for c in &one.ends {
-                let [off, side] = one.beside(c, &edges);
-                if off > NEAR_GAP * self.period {
-                    continue;
-                }
-                match other.ends.iter().find(|d| d.name == c.name) {
-                    Some(d) if other.beside(d, &others)[1] != side => return false,
-                    Some(d) => moved = moved.max(one.apart(c.b, d.b)),
-                    None => {
-                        least = least.min(off);
-                        ends += usize::from(off == 0.0);
-                        across[0] |= side < 0.0 && c.up && !c.down;
-                        across[1] |= side > 0.0 && c.down && !c.up;
-                    }
-                }
-            }
-            if across == [true; 2] || ends > 1 {
-                return false;
-            }
-        }
-        let width = (here[1] - here[0]).min(there[1] - there[0]);
-        least + width > MOVES * moved
+        let near = NEAR_GAP * self.period;
+        let (here, there) = (self.middle(j), of.middle(i));
+        let off = |c: &Critical, middle: f64| {
+            let half = 0.5 * self.period;
+            (c.b - middle + half).rem_euclid(self.period) - half
+        };
+        let keeps = |one: &Self, middle: f64, other: &Self, others: f64| {
+            one.ends.iter().all(|c| {
+                let own = off(c, middle);
+                own.abs() > near || other.ends.iter().any(|d| d.name == c.name && (off(d, others) > 0.0) == (own > 0.0))
+            })
+        };
+        keeps(self, here, of, there) && keeps(of, there, self, here)
     }
 
-    /// The gap in which b lies.
-    fn about(&self, b: f64) -> usize {
-        let n = self.ends.len();
-        (self.ends.partition_point(|c| c.b <= b.rem_euclid(self.period)) + n - 1) % n
-    }
-
+    /// The b in the middle of a gap, rad.
     fn middle(&self, i: usize) -> f64 {
         let [from, to] = self.edges(i);
         0.5 * (from + to)
-    }
-
-    /// How far a value is from a gap, rad, and on which side, by the shorter way round.
-    fn beside(&self, c: &Critical, [from, to]: &[f64; 2]) -> [f64; 2] {
-        let half = 0.5 * self.period;
-        let off = (c.b - 0.5 * (from + to) + half).rem_euclid(self.period) - half;
-        let past = off.abs() - 0.5 * (to - from);
-        [if past > ROUNDING { past } else { 0.0 }, off.signum()]
-    }
-
-    /// How far two values are apart, by the shorter way round, rad.
-    fn apart(&self, x: f64, y: f64) -> f64 {
-        let by = (x - y).rem_euclid(self.period);
-        by.min(self.period - by)
     }
 
     /// The b at which a gap begins and ends, rad.

@@ -11,7 +11,7 @@ use crate::mechanics::planar::{Vector, unit};
 /// Circles to begin with.
 const FIRST: usize = 128;
 /// Of so many circles one is looked at without what is known of the one before.
-const AGAIN: usize = 32;
+const AGAIN: usize = 16;
 /// Circles between which the boundary changes are found to be as near as this, as a share of the reach: more than twice as
 /// far as one is moved.
 const FOUND: f64 = 2e-8;
