@@ -258,6 +258,9 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
         TaskKind::Reactionless | TaskKind::Given if session.scenario().idle("task.posture").is_none() => {
             let width = ui.available_width() - 10.0;
             choose(ui, session, ("Freedoms left", "posture"), &POSTURES, task.posture, width, commands);
+            if let Some(drift) = plan.drift().next() {
+                note(ui, p, &format!("the drives end up to {} rad from where they began", signed(drift, 3)));
+            }
             if session.scenario().idle("task.orientation").is_none() {
                 let machine = &session.scenario().machine;
                 let link = &machine.resolved_links()[machine.end_link()];

@@ -148,7 +148,7 @@ fn every_edge_of_hundreds_has_the_workspace_on_its_left() {
     let mut noise = Noise::of(11);
     let any = |i: usize| match i % 6 {
         2 | 5 => limited(&mut noise),
-        k => a_space(&mut noise, [3, 4, 5, 4, if i % 5 == 0 { 6 } else { 5 }, 0][k]).1,
+        k => a_space(&mut noise, [3, 4, 5, 4, if i.is_multiple_of(5) { 6 } else { 5 }, 0][k]).1,
     };
     let spaces: Vec<PoseSpace> = (0..360).map(any).collect();
     adds_up(&mut noise, &spaces);

@@ -5,6 +5,7 @@ use stillbase::mechanics::dynamics::{Surroundings, inverse};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
+use stillbase::planning::common::common;
 use stillbase::planning::curves::path::least_rate_curve;
 use stillbase::planning::curves::{Curve, Path};
 use stillbase::planning::pose_space::PoseSpace;
@@ -272,4 +273,42 @@ fn lines_are_refused_only_where_no_way_exists() {
 #[ignore = "minutes: 300 lines"]
 fn lines_are_refused_only_where_no_way_exists_over_many() {
     println!("{} of 300 refused", refused_rightly(300, 4));
+}
+
+/// Lines at a b just inside an end of what serves all their points, against the same graph: how many there were.
+fn goes_near_the_ends(lines: usize, share: f64, seed: u64) -> [usize; 2] {
+    let mut noise = Noise::of(seed);
+    let (mut count, mut refused) = (0, 0);
+    while count < lines {
+        let mut case = a_case(&mut noise, 4);
+        let way = case.ends[1] - case.ends[0];
+        let points: Vec<Vector> = (0..=400).map(|i| case.ends[0] + f64::from(i) / 400.0 * way).collect();
+        let Some(serving) = common(&case.space, &points) else { continue };
+        let Some([low, high]) = serving.intervals.first().copied() else { continue };
+        if high - low > 0.999 * case.space.period() {
+            continue;
+        }
+        count += 1;
+        let inside = share * (high - low);
+        case.b = if noise.between(0.0, 1.0) > 0.5 { low + inside } else { high - inside };
+        if let Err(why) = case.path(Posture::LeastRates) {
+            refused += 1;
+            println!("line {count}, b {}: {why}", case.b);
+            assert!(!case.goes_densely(80, 600, 0.06), "line {count}: {why}, but a way exists");
+        }
+    }
+    [count, refused]
+}
+
+#[test]
+fn lines_near_the_ends_of_b_are_refused_only_where_no_way_exists() {
+    goes_near_the_ends(4, 1e-3, 5);
+}
+
+#[test]
+#[ignore = "minutes: 400 lines"]
+fn lines_near_the_ends_of_b_are_refused_rightly_over_many() {
+    for share in [1e-1, 1e-2, 1e-3, 1e-4] {
+        println!("{share}: {:?} refused", goes_near_the_ends(100, share, 6));
+    }
 }

@@ -30,6 +30,12 @@ fn proposals(task: &Scenario, words: &str, is_joint_line: bool) -> (Option<usize
     if let Some(b) = number(words, "; b = ").or_else(|| number(words, "want b = ")) {
         return (Some(1), vec![with(task, &format!("b = {b:?}"))]);
     }
+    if let Some((name, rest)) = words.split_once("want limits.").and_then(|(_, rest)| rest.split_once(" = ")) {
+        let value = rest.trim_end_matches(" rad at this b");
+        let machine = task.machine.set(&format!("limits.{name}"), value).expect("limits");
+        let b = words.rfind("at b = ").and_then(|at| number(&words[at..], "at b = ")).expect("b");
+        return (Some(1), vec![Scenario { machine, ..with(task, &format!("b = {b:?}")) }]);
+    }
     if words.contains("want b ") && is_joint_line {
         let mut tries = Vec::new();
         for range in words[words.find("want b ").expect("a range")..].split("from ").skip(1) {
@@ -113,6 +119,12 @@ fn typed_back_on(drives: &[usize], shape: &str, tasks: usize, seed: u64) -> [usi
 fn what_is_proposed_for_any_number_of_drives_works_as_printed() {
     let [points, b, nothing] = typed_back_on(&[2, 2, 2, 3, 3, 4], "joint-line", 3, 61);
     assert!(points > 8 && b > 0, "{points} points, {b} b, {nothing} without");
+}
+
+#[test]
+fn what_is_proposed_for_lines_of_four_drives_works_as_printed() {
+    let [points, b, nothing] = typed_back_on(&[4], "line", 2, 73);
+    assert!(points + b > 0, "{points} points, {b} b, {nothing} without");
 }
 
 #[test]

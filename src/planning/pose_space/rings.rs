@@ -112,7 +112,9 @@ impl PoseSpace {
                 return None;
             }
             let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
-            let last = all.last().map(|(_, covered)| covered).filter(|_| i % AGAIN > 0);
+            // Three drives and fewer are asked at once.
+            let knows = self.drives() > 3 && i % AGAIN > 0;
+            let last = all.last().map(|(_, covered)| covered).filter(|_| knows);
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
         }

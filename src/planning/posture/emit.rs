@@ -4,7 +4,7 @@ use super::goal::{Weight, times};
 use super::refine::Bound;
 use super::rows::Held;
 use super::stations::{GAUSS, Leg, Stations, weights};
-use crate::mechanics::planar::PerDrive;
+use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::curves::{PathPoint, PathTable};
 
 /// Places within a space at which limits are looked at.
@@ -31,12 +31,11 @@ fn table(held: &Held<'_>, leg: &Leg, q: &[PerDrive]) -> Option<PathTable> {
     PathTable::new(leg.s.clone(), nodes.collect::<Option<_>>()?)
 }
 
-/// By how much paths miss their curves between stations, m.
-pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTable]) -> f64 {
+/// By how much paths miss their curves between stations, m, by leg and space.
+pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTable]) -> Vec<Vec<f64>> {
+    let off = |table: &PathTable, (s, p): &(f64, Vector)| (held.space.place(&table.at(*s).q) - p).norm();
     let legs = stations.legs.iter().zip(tables);
-    let each =
-        legs.flat_map(|(leg, table)| leg.between.iter().map(|(s, p)| (held.space.place(&table.at(*s).q) - p).norm()));
-    each.fold(0.0, f64::max)
+    legs.map(|(leg, table)| leg.between.iter().map(|between| off(table, between)).collect()).collect()
 }
 
 /// By how much each limit is passed at most, rad.

@@ -44,6 +44,8 @@ pub(super) struct Layers<'a> {
 
 /// Poses nearer to another than this share of the distance are left out.
 const THIN: f64 = 0.5;
+/// Fewer poses than this that can be taken along are few.
+pub(super) const FEW: usize = 8;
 /// Directions that keep less than this share of the reach depend on each other.
 const NO_RANK: f64 = 1e-9;
 /// How far beyond its window an angle without limits is filled, rad.
@@ -70,7 +72,7 @@ impl<'a> Layers<'a> {
             if angles_here.is_empty() {
                 return Err(*at);
             }
-            let next: Vec<Option<PerDrive>> = match ats.get(i + 1) {
+            let mut next: Vec<Option<PerDrive>> = match ats.get(i + 1) {
                 Some(to) => angles_here
                     .iter()
                     .map(|a| taken((space, b), a, &stations.places[*at..=*to], &windows, detail.apart))
@@ -78,6 +80,16 @@ impl<'a> Layers<'a> {
                 None => vec![None; angles_here.len()],
             };
             angles.extend(next.iter().flatten());
+            // Where few poses are left, steps along the path miss them: they are found from where they end.
+            if let Some(to) = ats.get(i + 1)
+                && angles.len() < FEW
+            {
+                let all = space.sheets(stations.places[*to], b);
+                for (a, next) in angles_here.iter().zip(&mut next).filter(|(_, next)| next.is_none()) {
+                    *next = nearest(&all, a, 2.0 * detail.apart);
+                    angles.extend(*next);
+                }
+            }
             let poses = angles_here.iter().map(|a| lifted(space, a, b)).collect();
             all.push(Layer { at: *at, angles: angles_here, poses, next });
         }
@@ -120,6 +132,12 @@ fn taken(
         a = space.solved(*p, b, &a, windows).filter(|next| next.minus(&a).max_abs() <= 2.0 * apart)?;
     }
     Some(a)
+}
+
+/// The nearest of some poses, if it is no farther than this, rad.
+pub(super) fn nearest(all: &[PerDrive], a: &PerDrive, most: f64) -> Option<PerDrive> {
+    let far = |other: &PerDrive| other.minus(a).max_abs();
+    all.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y))).filter(|other| far(other) <= most)
 }
 
 /// Orthonormal directions of the relative angles that move neither the end effector nor b.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::layers::{Layer, Layers, bounds, near};
+use super::layers::{FEW, Layer, Layers, bounds, near, nearest};
 use super::rows::lifted;
 use super::stations::Stations;
 use crate::mechanics::planar::PerDrive;
@@ -129,10 +129,17 @@ impl Layers<'_> {
             for k in first + 1..=end {
                 let share = (k - first) as f64 / (end - first) as f64;
                 let guess = from.plus(share, &step);
-                let a =
-                    if k == end { Some(*to) } else { self.space.solved(stations.places[k], self.b, &guess, &windows) };
                 let before = path[path.len() - 1];
-                path.push(a.filter(|a| a.minus(&before).max_abs() <= allowed).ok_or(i)?);
+                let beside = |a: &PerDrive| a.minus(&before).max_abs() <= allowed;
+                let p = stations.places[k];
+                let a = match k == end {
+                    true => Some(*to).filter(beside),
+                    false => self.space.solved(p, self.b, &guess, &windows).filter(beside).or_else(|| {
+                        let few = self.all[i].poses.len() < FEW || self.all[i + 1].poses.len() < FEW;
+                        few.then(|| nearest(&self.space.sheets(p, self.b), &guess, allowed)).flatten().filter(beside)
+                    }),
+                };
+                path.push(a.ok_or(i)?);
             }
         }
         Ok(path.iter().map(|a| lifted(self.space, a, self.b)).collect())

@@ -23,7 +23,10 @@ const DETAILS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 
 const APART: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
 /// Spaces between stations, at first and for the paths that are taken, and when steps of their refinement are done, rad.
 const ROUGH: (usize, f64) = (48, 1e-5);
-const FINE: [(usize, f64); 2] = [(192, 1e-10), (384, 1e-10)];
+const FINE: (usize, f64) = (192, 1e-10);
+/// How often spaces are parted in which a fine path misses its curve, and how many stations there are at most.
+const MAX_PARTINGS: usize = 5;
+const MAX_STATIONS: usize = 2400;
 /// Rough paths are made fine if they cost at most so much more than the least, and how many at most.
 const DEARER: f64 = 0.15;
 const MADE_FINE: usize = 4;
@@ -89,6 +92,26 @@ pub enum NoWay {
     Abrupt,
 }
 
+impl NoWay {
+    /// How near it came to a path.
+    fn rank(&self) -> f64 {
+        match self {
+            Self::Ends { share } => *share,
+            Self::Turns => 2.0,
+            Self::Abrupt => 3.0,
+        }
+    }
+}
+
+/// Why a way makes no path.
+#[derive(Clone, Debug)]
+enum Missed {
+    /// It misses its curve in the spaces that are marked, by leg.
+    Between(Vec<Vec<bool>>),
+    /// It does not come to an end, or passes limits.
+    Elsewhere,
+}
+
 /// A path with what it has of each goal.
 #[derive(Clone, Debug)]
 struct Way {
@@ -121,38 +144,62 @@ impl Asked<'_> {
     /// # Errors
     /// How far a way goes.
     pub fn path(&self, posture: Posture) -> Result<Found, NoWay> {
-        let rough = Search::of(self, ROUGH);
+        self.looked(posture, &DETAILS)
+    }
+
+    /// The same after a quick look. Where that finds a path, [`path`](Self::path) finds one, too.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub fn quick_path(&self, posture: Posture) -> Result<Found, NoWay> {
+        self.looked(posture, &DETAILS[..1])
+    }
+
+    fn looked(&self, posture: Posture, details: &[(usize, f64, usize)]) -> Result<Found, NoWay> {
+        let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH.0), ROUGH.1);
         let starts = self.space.sheets(rough.stations.places[0], self.b);
         let mut refused = NoWay::Ends { share: 0.0 };
-        for detail in DETAILS {
-            let layers = match rough.layers(&starts, detail) {
-                Ok(layers) => layers,
-                Err(at) => {
-                    refused = NoWay::Ends { share: rough.stations.done(at) };
-                    continue;
+        for detail in details {
+            let why = match rough.layers(&starts, *detail) {
+                Err(at) => NoWay::Ends { share: rough.stations.done(at) },
+                Ok(layers) => {
+                    let ways = match posture {
+                        Posture::Orientation => rough.oriented(&layers, self.hand.1),
+                        _ => rough.ways(&layers),
+                    };
+                    if let Some(found) = self.finest(&ways, posture) {
+                        return Ok(found);
+                    }
+                    match posture {
+                        Posture::Orientation if ways.is_empty() => NoWay::Turns,
+                        _ => NoWay::Abrupt,
+                    }
                 }
             };
-            let ways = match posture {
-                Posture::Orientation => rough.oriented(&layers, self.hand.1),
-                _ => rough.ways(&layers),
-            };
-            if let Some(found) = FINE.iter().find_map(|fine| rough.finest(&Search::of(self, *fine), &ways, posture)) {
-                return Ok(found);
-            }
-            refused = match posture {
-                Posture::Orientation if ways.is_empty() => NoWay::Turns,
-                _ if ways.is_empty() => NoWay::Ends { share: 1.0 },
-                _ => NoWay::Abrupt,
-            };
+            refused = if why.rank() > refused.rank() { why } else { refused };
         }
         Err(refused)
+    }
+
+    /// The best of rough ways, made fine; with more stations where they turn sharply.
+    fn finest(&self, ways: &[Way], posture: Posture) -> Option<Found> {
+        let mut fine = Search::on(self, Stations::of(self.curves, self.law, FINE.0), FINE.1);
+        for _ in 0..=MAX_PARTINGS {
+            match fine.finest_of_all(ways, posture) {
+                Ok(way) => return Some(Found { tables: way.tables }),
+                Err(Missed::Between(marked)) if fine.stations.places.len() < MAX_STATIONS => {
+                    fine = Search::on(self, fine.stations.parted(self.curves, self.law, &marked), FINE.1);
+                }
+                Err(_) => return None,
+            }
+        }
+        None
     }
 }
 
 impl<'a> Search<'a> {
-    fn of(asked: &'a Asked<'a>, (spaces, done): (usize, f64)) -> Self {
+    fn on(asked: &'a Asked<'a>, stations: Stations, done: f64) -> Self {
         let (space, n) = (asked.space, asked.space.drives());
-        let stations = Stations::of(asked.curves, asked.law, spaces);
         let weights = Postures::of(asked.machine, space);
         let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
         let none = PerDrive::zeros(n);
@@ -201,7 +248,7 @@ impl<'a> Search<'a> {
             let mut ways: Vec<Way> = Vec::new();
             for goal in 0..GOALS.len() {
                 let route = self.route(layers, goal, *closed);
-                ways.extend(route.and_then(|route| self.refined(&self.held(), goal, &route, *closed)));
+                ways.extend(route.and_then(|route| self.refined(&self.held(), goal, &route, *closed).ok()));
             }
             if ways.is_empty() {
                 continue;
@@ -240,12 +287,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best of the ways that are worth it, made fine.
-    fn finest(&self, fine: &Search<'_>, ways: &[Way], posture: Posture) -> Option<Found> {
-        let goal = GOALS.iter().position(|goal| *goal == posture).unwrap_or(0);
+    /// The best of the rough ways that are worth it, on these stations; `turned` where they keep the orientation that
+    /// they have.
+    fn finest(&self, ways: &[Way], goal: usize, turned: bool) -> Result<Way, Missed> {
         let mut order: Vec<&Way> = ways.iter().collect();
         order.sort_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
         let mut best: Option<Way> = None;
+        let mut missed = Missed::Elsewhere;
         let (mut dearest, mut count) = (f64::INFINITY, 0);
         let mut before: Vec<&Way> = Vec::new();
         for way in order {
@@ -257,23 +305,51 @@ impl<'a> Search<'a> {
             }
             before.push(way);
             let held = Held { hand: way.hand, ..self.held() };
-            let free = if posture == Posture::Orientation { held } else { self.held() };
-            let start: Option<Vec<PerDrive>> = self.placed(fine, way, &held);
-            let made = start.and_then(|start| fine.refined(&free, goal, &start, way.closed));
-            if let Some(made) = made {
-                dearest = dearest.min((1.0 + DEARER) * way.values[goal]);
-                count += 1;
-                let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
-                best = if better { Some(made) } else { best };
+            let Some(start) = self.placed(way, &held) else { continue };
+            match self.refined(&if turned { held } else { self.held() }, goal, &start, way.closed) {
+                Ok(made) => {
+                    dearest = dearest.min((1.0 + DEARER) * way.values[goal]);
+                    count += 1;
+                    let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
+                    best = if better { Some(made) } else { best };
+                }
+                // The spaces of the cheapest such way.
+                Err(why) => {
+                    let is_first = matches!((&missed, &why), (Missed::Elsewhere, Missed::Between(_)));
+                    count += usize::from(matches!(why, Missed::Between(_)));
+                    missed = if is_first { why } else { missed };
+                }
             }
         }
-        best.map(|way| Found { tables: way.tables })
+        best.ok_or(missed)
     }
 
-    /// The poses of a way at the stations of another search.
-    fn placed(&self, fine: &Search<'_>, way: &Way, held: &Held<'_>) -> Option<Vec<PerDrive>> {
-        let mut q: Vec<PerDrive> = Vec::with_capacity(fine.stations.places.len());
-        for (leg, table) in fine.stations.legs.iter().zip(&way.tables) {
+    /// The same, and what becomes of the best of every other goal: rough values mislead.
+    fn finest_of_all(&self, ways: &[Way], posture: Posture) -> Result<Way, Missed> {
+        let goal = GOALS.iter().position(|goal| *goal == posture).unwrap_or(0);
+        let own = self.finest(ways, goal, posture == Posture::Orientation);
+        if goal == 0 {
+            return own;
+        }
+        let others = (0..GOALS.len()).filter(|other| *other != goal);
+        let firsts = others.filter_map(|other| self.finest(ways, other, false).ok());
+        let more = firsts.flat_map(|first| {
+            let then = self.refined(&self.held(), goal, &first.q, first.closed).ok();
+            [Some(first), then].into_iter().flatten()
+        });
+        let all: Vec<Way> = more.collect();
+        let best = all.into_iter().min_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
+        match (own, best) {
+            (Ok(own), Some(best)) if own.values[goal] <= best.values[goal] => Ok(own),
+            (_, Some(best)) => Ok(best),
+            (own, None) => own,
+        }
+    }
+
+    /// The poses of a rough way at these stations.
+    fn placed(&self, way: &Way, held: &Held<'_>) -> Option<Vec<PerDrive>> {
+        let mut q: Vec<PerDrive> = Vec::with_capacity(self.stations.places.len());
+        for (leg, table) in self.stations.legs.iter().zip(&way.tables) {
             for (s, point) in leg.s.iter().zip(&leg.points).skip(usize::from(!q.is_empty())) {
                 q.push(held.onto(&table.at(*s).q.0, point.p)?);
             }
@@ -313,40 +389,46 @@ impl<'a> Search<'a> {
     }
 
     /// The best way beside another one by a goal.
-    fn refined(&self, held: &Held<'_>, goal: usize, start: &[PerDrive], closed: bool) -> Option<Way> {
-        let mut best: Option<Way> = None;
+    fn refined(&self, held: &Held<'_>, goal: usize, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
+        let mut best: Result<Way, Missed> = Err(Missed::Elsewhere);
         let mut q = start.to_vec();
         for goal in &self.goals[goal] {
             match self.kept(held, goal, &q, closed) {
-                Some(way) => {
+                Ok(way) => {
                     q.clone_from(&way.q);
-                    best = Some(way);
+                    best = Ok(way);
                 }
-                None => break,
+                Err(_) if best.is_ok() => break,
+                Err(why) => return Err(why),
             }
         }
         best
     }
 
     /// The same within the limits between stations as well, but where only a rough path is wanted.
-    fn kept(&self, held: &Held<'_>, goal: &Goal, start: &[PerDrive], closed: bool) -> Option<Way> {
+    fn kept(&self, held: &Held<'_>, goal: &Goal, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
         let mut bounds = self.bounds.clone();
         let mut q = start.to_vec();
         let rough = self.done >= ROUGH.1;
+        let on_curve = held.space.farthest() * if rough { NEAR_CURVE } else { ON_CURVE };
         for i in 0..MAX_MARGINS {
             let refining = Refining { held, stations: &self.stations, bounds: &bounds, closed, done: self.done };
-            q = refining.refined(goal, &q)?;
-            let tables = emit::tables(held, &self.stations, &q)?;
-            let off = emit::off_curve(held, &self.stations, &tables) / held.space.farthest();
-            if off > if rough { NEAR_CURVE } else { ON_CURVE } {
-                return None;
+            q = refining.refined(goal, &q).ok_or(Missed::Elsewhere)?;
+            let tables = emit::tables(held, &self.stations, &q).ok_or(Missed::Elsewhere)?;
+            let off = emit::off_curve(held, &self.stations, &tables);
+            if off.iter().flatten().any(|off| off.is_nan()) {
+                return Err(Missed::Elsewhere);
+            }
+            if off.iter().flatten().any(|off| *off > on_curve) {
+                let marks = off.iter().map(|leg| leg.iter().map(|off| *off > on_curve).collect());
+                return Err(Missed::Between(marks.collect()));
             }
             let past = emit::past(&self.bounds, &self.stations, &tables);
             let worst = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             if rough || worst <= KEPT || (i + 1 == MAX_MARGINS && worst <= AT_LIMIT) {
                 let values = self.values(&tables);
                 let closed = closed || gap(&q) < KEPT;
-                return Some(Way { q, tables, closed, hand: held.hand, values });
+                return Ok(Way { q, tables, closed, hand: held.hand, values });
             }
             for (bound, past) in bounds.iter_mut().zip(&past) {
                 if *past > KEPT {
@@ -356,7 +438,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        None
+        Err(Missed::Elsewhere)
     }
 
     fn values(&self, tables: &[PathTable]) -> [f64; GOALS.len()] {
@@ -393,9 +475,9 @@ impl<'a> Search<'a> {
             }
         }
         found.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let ways = found
-            .into_iter()
-            .filter_map(|(_, path)| self.refined(&held(&path[0]), 0, &path, false).filter(|way| self.is_kept(way)));
+        let ways = found.into_iter().filter_map(|(_, path)| {
+            self.refined(&held(&path[0]), 0, &path, false).ok().filter(|way| self.is_kept(way))
+        });
         let mut ways: Vec<Way> = ways.take(2 * MADE_FINE).collect();
         ways.sort_by(|x, y| x.values[0].total_cmp(&y.values[0]));
         ways

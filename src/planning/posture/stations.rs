@@ -64,11 +64,8 @@ impl Stations {
     /// Of curves that are passed by a law each, from rest to rest, or evenly where there is none; with about so many
     /// spaces on the whole way.
     pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
-        let total: f64 = curves.iter().map(Curve::length).sum();
-        let mut legs: Vec<Leg> = Vec::with_capacity(curves.len());
-        let mut places: Vec<Vector> = Vec::new();
-        for curve in curves {
-            let share = if total > 0.0 { curve.length() / total } else { 1.0 / curves.len() as f64 };
+        let shares = shares(curves);
+        let grid = |(curve, share): (&Curve, &f64)| {
             let own = (spaces as f64 * share.max(LEAST)).ceil();
             let joints: Vec<f64> = curve.joints().collect();
             let least = if joints.len() > MANY { 1 } else { (A_PIECE * spaces as f64) as usize };
@@ -79,6 +76,34 @@ impl Stations {
                 s.extend((0..count).map(|i| ends[0] + run * i as f64 / count as f64));
             }
             s.push(1.0);
+            s
+        };
+        Self::at(curves, law, curves.iter().zip(&shares).map(grid).collect())
+    }
+
+    /// The same with the spaces that are marked parted in four, and those beside them in two; marks by leg and space.
+    pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
+        let grid = |(leg, marked): (&Leg, &Vec<bool>)| {
+            let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);
+            let parts = |i: usize| match () {
+                () if is_marked(i) => 4,
+                () if is_marked(i + 1) || (i > 0 && is_marked(i - 1)) => 2,
+                () => 1,
+            };
+            let spaces = leg.s.windows(2).enumerate();
+            let places = spaces.flat_map(|(i, w)| {
+                let count = parts(i);
+                (0..count).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / count as f64)
+            });
+            places.chain([1.0]).collect()
+        };
+        Self::at(curves, law, self.legs.iter().zip(marked).map(grid).collect())
+    }
+
+    fn at(curves: &[Curve], law: Option<TimeLaw>, grids: Vec<Vec<f64>>) -> Self {
+        let mut legs: Vec<Leg> = Vec::with_capacity(curves.len());
+        let mut places: Vec<Vector> = Vec::new();
+        for ((curve, share), s) in curves.iter().zip(shares(curves)).zip(grids) {
             let points: Vec<CurvePoint> = s.iter().map(|s| curve.at(*s)).collect();
             let between = s.windows(2).map(|w| 0.5 * (w[0] + w[1])).map(|s| (s, curve.at(s).p)).collect();
             let first = places.len().saturating_sub(1);
@@ -101,6 +126,13 @@ impl Stations {
         };
         self.legs.iter().map(part).sum()
     }
+}
+
+/// The length of each curve as a share of all.
+fn shares(curves: &[Curve]) -> Vec<f64> {
+    let total: f64 = curves.iter().map(Curve::length).sum();
+    let share = |curve: &Curve| if total > 0.0 { curve.length() / total } else { 1.0 / curves.len() as f64 };
+    curves.iter().map(share).collect()
 }
 
 /// Weights with which values at up to five places give the value and three derivatives at another one (Fornberg 1988).

@@ -1,19 +1,24 @@
 //! Along curves and joint lines, on a plane or by least rates.
 
 use super::plan::{Pace, Plan, dynamics_of, keeps_rules};
+use super::posture::Effort;
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Motion;
-use crate::planning::common::Reaching;
+use crate::planning::common::{Reaching, common};
 use crate::planning::curves::path::{Chained, SameTip, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path};
 use crate::planning::following::{Rule, trace};
 use crate::planning::pose_constant::{Mend, Planes, Unreachable};
-use crate::planning::reactionless::{Decimal, PlanePoint};
+use crate::planning::reactionless::{BSet, Decimal, PlanePoint};
 use crate::planning::timing::{Limits, Profile, TimeLaw, Usage, fastest};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
+
+/// How far inside a set of b, as a share of half its width, values are tried, and their decimals.
+const INWARDS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
+const DECIMALS: usize = 4;
 
 /// A path through the points of a task, and its timing.
 pub(super) fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
@@ -55,7 +60,7 @@ pub(super) fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f
     let points = task.points();
     match (task.kind, task.shape()) {
         (TaskKind::Reactionless, _) => reactionless(task, planes)
-            .map_err(|refusal| proved(task, planes.map(), &|task| reactionless(task, planes).map(|_| ()), refusal)),
+            .map_err(|refusal| proved(task, planes.map(), &|task, _| reactionless(task, planes).map(|_| ()), refusal)),
         (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points),
         _ => {
             if !task.via.is_empty() || task.closed {
@@ -83,7 +88,7 @@ pub(super) fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f6
 pub(super) fn proved(
     task: &Task,
     map: &dyn Reaching,
-    goes: &dyn Fn(&Task) -> Result<(), Refusal>,
+    goes: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
     refusal: Refusal,
 ) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
@@ -96,11 +101,16 @@ pub(super) fn proved(
         Refusal::NoCommonPlane { mut why, .. } => {
             if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
                 let moved = task.moved(mend.point, shown.point());
-                let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value())));
+                let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value()), Effort::Trial));
                 shown.does = match result {
                     Some(Ok(_)) => true,
                     Some(Err(stopped)) => {
-                        let other = another(&stopped).map(|(_, other)| other);
+                        let other = another(&stopped).map(|(_, other)| other).or_else(|| {
+                            let moved = moved.as_ref()?;
+                            let serving = common(map, &moved.points())?;
+                            inner(&serving, shown.b.value())
+                                .find(|b| goes(&at(moved, b.value()), Effort::Trial).is_ok())
+                        });
                         shown.b = other.unwrap_or(shown.b);
                         other.is_some()
                     }
@@ -111,14 +121,18 @@ pub(super) fn proved(
             Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
         }
         Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
-            tried(map, refusal, |b| goes(&at(task, b)))
+            tried(map, refusal, |b, effort| goes(&at(task, b), effort))
         }
         other => other,
     }
 }
 
 /// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
-pub(super) fn tried(map: &dyn Reaching, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
+pub(super) fn tried(
+    map: &dyn Reaching,
+    refusal: Refusal,
+    goes: impl Fn(f64, Effort) -> Result<(), Refusal>,
+) -> Refusal {
     let Refusal::Unreachable {
         point,
         unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
@@ -130,9 +144,9 @@ pub(super) fn tried(map: &dyn Reaching, refusal: Refusal, goes: impl Fn(f64) -> 
         let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
-    let stopped = match goes(shown.value()) {
+    let stopped = match goes(shown.value(), Effort::Whole) {
         Ok(()) => {
-            let exact = if goes(*nearest).is_ok() { *nearest } else { shown.value() };
+            let exact = if goes(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
             return made(format!("b = {shown} rad"), Some(exact), Some(*shown));
         }
         Err(stopped) => stopped,
@@ -144,13 +158,17 @@ pub(super) fn tried(map: &dyn Reaching, refusal: Refusal, goes: impl Fn(f64) -> 
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
     let own = map.b_of(Vector::new(*x, *y)).ok();
-    for share in [0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9] {
-        let inner = own.as_ref().and_then(|set| set.decimal(set.inwards(*nearest, share), 4));
-        if let Some(shown) = inner.filter(|b| goes(b.value()).is_ok()) {
-            return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
-        }
+    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| goes(b.value(), Effort::Trial).is_ok())) {
+        return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
     }
-    made(format!("another path: at b = {shown} rad, {stopped}"), None, None)
+    // What stops a path of four drives and more names its b itself.
+    let (said, at) = (stopped.to_string(), format!("at b = {shown} rad "));
+    made(format!("another path: {at}{}", said.strip_prefix(&at).unwrap_or(&said)), None, None)
+}
+
+/// Values of b farther and farther inside a set, from its end beside a given b, rad, on to the other end.
+pub(super) fn inner(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
+    INWARDS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
 }
 
 /// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.

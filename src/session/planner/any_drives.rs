@@ -4,7 +4,8 @@ use super::along::{Parts, along_parts, curves, proved, refusal, timed};
 use super::off_plane::smooth;
 use super::plan::{Plan, dynamics_of, keeps_rules};
 use super::pose::{faced, posed, reached, start};
-use super::{given, off_space, posture};
+use super::posture::{self, Effort};
+use super::{given, off_space};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Forecast;
 use crate::planning::common::unreached;
@@ -43,11 +44,12 @@ pub(super) fn plan(scenario: &Scenario) -> Result<Plan, Refusal> {
 /// With b held; a refusal proposes only what has been tried.
 fn held(scenario: &Scenario) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    along_parts(scenario, &|scenario| reactionless(scenario)).map_err(|refusal| {
+    along_parts(scenario, &|scenario| reactionless(scenario, Effort::Whole)).map_err(|refusal| {
         let Ok(space) = PoseSpace::of(&scenario.machine) else { return refusal };
         // Where a path goes does not depend on the time law.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
-        let goes = |task: &Task| along_parts(&own(task), &|scenario| reactionless(scenario)).map(|_| ());
+        let goes =
+            |task: &Task, effort| along_parts(&own(task), &|scenario| reactionless(scenario, effort)).map(|_| ());
         proved(task, &space, &goes, refusal)
     })
 }
@@ -68,11 +70,11 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
             "with {drives} drives the least reaction holds b, here to end at {b_to} rad: want change-b, or b_to = default"
         )));
     }
-    let holding = |b: f64| {
+    let holding = |b: f64, effort| {
         let own = Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), b, b_to: None, ..task.clone() };
-        along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario))
+        along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario, effort))
     };
-    let why = match holding(task.b) {
+    let why = match holding(task.b, Effort::Whole) {
         Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario)?), ..plan }),
         Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
         Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
@@ -84,7 +86,7 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
     let common = BSet::overlap(&sets.unwrap_or_default());
     let tries =
         common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
-    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value()).is_ok());
+    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), Effort::Trial).is_ok());
     let would_do = match does {
         Some(b) => format!("at b = {b} rad it can: want that"),
         None => "want minimum-norm, or change-b from point to point".into(),
@@ -118,7 +120,7 @@ fn nothing(scenario: &Scenario) -> Result<Verdicts, Refusal> {
 }
 
 /// A path that holds b.
-fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
+fn reactionless(scenario: &Scenario, effort: Effort) -> Result<Parts, Refusal> {
     let task = &scenario.task;
     let (space, free) = match PoseSpace::of(&scenario.machine) {
         Err(NoPoseSpace::Free) => (PoseSpace::nominal(&scenario.machine)?, true),
@@ -142,7 +144,7 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
                 let start = posed(task, &space, (&points, 0), &space.middle())?;
                 return by_least_rates(scenario, start, Some(&space));
             }
-            let tables = posture::tables(scenario, &space, &curves, Some(task.law))?;
+            let tables = posture::tables(scenario, &space, &curves, Some(task.law), effort)?;
             Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
         }
     }

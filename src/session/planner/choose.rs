@@ -60,5 +60,5 @@ fn elsewhere(scenario: &Scenario, planes: &Planes, refusal: Refusal) -> Refusal 
     // Where a path goes does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
-    tried(planes.map(), refusal, |b| directly(&at(b), planes).map(|_| ()))
+    tried(planes.map(), refusal, |b, _| directly(&at(b), planes).map(|_| ()))
 }

@@ -3,7 +3,7 @@
 use super::along::start;
 use super::plan::{Plan, dynamics_of, keeps_rules};
 use super::pose::{posed, start as start_of};
-use super::posture;
+use super::posture::{self, Effort};
 use crate::planning::Motion;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path, PathTable};
@@ -101,6 +101,6 @@ fn sampled(scenario: &Scenario, curve: &Curve) -> Result<PathTable, Refusal> {
         let start = posed(task, &space, (&task.points()[..1], 0), &space.middle())?;
         return Ok(least_rate_curve(tip, Some(space.lambda()), start, curve)?);
     }
-    let mut tables = posture::tables(scenario, &space, std::slice::from_ref(curve), None)?;
+    let mut tables = posture::tables(scenario, &space, std::slice::from_ref(curve), None, Effort::Whole)?;
     tables.pop().ok_or_else(|| Refusal::Task("the samples give no path".into()))
 }

@@ -30,12 +30,16 @@ pub struct Plan {
     pub price: Option<Price>,
     /// For the least reaction: what other ways would cost.
     pub verdicts: Option<Verdicts>,
-    /// For motions of zero momentum: the drives at the start and after each cycle, rad.
+    /// For motions of zero momentum: the drives at the start and after each cycle, rad. For closed paths of four drives
+    /// and more whose drives end elsewhere than they began: both.
     pub cycles: Vec<DriveAngles>,
     /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion
     /// rests.
     pub blended: Option<f64>,
 }
+
+/// Drives that end as near to their start as this, rad, end there.
+const CLOSES: f64 = 1e-6;
 
 /// What holds the fastest motion back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,7 +90,13 @@ impl Plan {
     pub(super) fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
         let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
-        Self::foreseen(motion, forecast)
+        let ends = [0.0, motion.duration()].map(|t| motion.at(t).q);
+        let mut plan = Self::foreseen(motion, forecast);
+        let is_closed = scenario.task.closed && scenario.idle("task.posture").is_none();
+        if is_closed && ends[1].0.minus(&ends[0].0).max_abs() > CLOSES {
+            plan.cycles = ends.to_vec();
+        }
+        plan
     }
 
     /// A motion and what was found of it, with nothing else to say.

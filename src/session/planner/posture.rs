@@ -1,5 +1,6 @@
 //! Paths of four drives and more that hold b, with their freedoms used as the task wants.
 
+use super::along::inner;
 use super::pose::{faced, hand_of, posed};
 use crate::mechanics::planar::Vector;
 use crate::planning::common::common;
@@ -7,7 +8,6 @@ use crate::planning::curves::path::least_rate_curve;
 use crate::planning::curves::{Curve, PathPoint, PathTable};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::posture::{Asked, Posture};
-use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeLaw;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
@@ -15,22 +15,30 @@ use crate::settings::number::Short;
 
 /// Places along each curve that a b has to reach to be proposed.
 const ASKED: usize = 16;
-/// How far inside its range a b is tried.
-const INWARDS: [f64; 6] = [1e-3, 0.1, 0.4, 0.7, 1.0, 1.5];
 /// An angle passes its limit by no more than this, rad: rounding.
 const AT_LIMIT: f64 = 1e-9;
-/// Decimals of a b that is proposed.
-const DECIMALS: usize = 4;
+/// By how much limits are widened at either end, rad, one after another.
+const WIDER: [f64; 3] = [0.1, 0.4, 1.0];
+
+/// How much is done to find a path and to say what would do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Effort {
+    /// A quick search, and no proposals: the task itself is only tried as a proposal.
+    Trial,
+    /// Everything.
+    Whole,
+}
 
 /// A path along each curve; `law` as [`Asked::law`].
 ///
 /// # Errors
-/// How far a way goes, and what would do.
+/// How far a way goes, and with all effort what would do.
 pub(super) fn tables(
     scenario: &Scenario,
     space: &PoseSpace,
     curves: &[Curve],
     law: Option<TimeLaw>,
+    effort: Effort,
 ) -> Result<Vec<PathTable>, Refusal> {
     let task = &scenario.task;
     let link = hand_of(scenario);
@@ -41,20 +49,24 @@ pub(super) fn tables(
     let hand = (link.0, angle.map(|angle| angle - link.1));
     let asked = Asked { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
     // Least rates mostly go on within the limits from the pose nearest to the middle; a search is for where they do not.
-    let local = locally(scenario, space, curves);
-    if let Ok(tables) = &local
-        && task.posture == Posture::LeastRates
-        && !task.closed
-        && keep_limits(space, tables)
-    {
-        return local;
+    let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));
+    let is_local = task.posture == Posture::LeastRates && !task.closed;
+    if let Some(tables) = is_local.then(local).flatten() {
+        return Ok(tables);
     }
-    let why = match asked.path(task.posture) {
+    let search = match effort {
+        Effort::Trial => asked.quick_path(task.posture),
+        Effort::Whole => asked.path(task.posture),
+    };
+    let why = match search {
         Ok(found) => return Ok(found.tables),
-        Err(_) if task.posture != Posture::Orientation => return local,
         Err(why) => why,
     };
-    let would_do = proposal(&asked, task).unwrap_or_else(|| "another path, or wider limits".into());
+    if let Some(tables) = (task.posture != Posture::Orientation && !is_local).then(local).flatten() {
+        return Ok(tables);
+    }
+    let tried = (effort == Effort::Whole).then(|| proposal(&asked, task)).flatten();
+    let would_do = tried.unwrap_or_else(|| "another path, or wider limits".into());
     Err(Refusal::NoWay(format!("at b = {} rad {why}: want {would_do}", Short(task.b))))
 }
 
@@ -81,24 +93,41 @@ fn keep_limits(space: &PoseSpace, tables: &[PathTable]) -> bool {
     tables.iter().flat_map(|table| table.nodes()).all(keeps)
 }
 
-/// A posture or a b with which the whole path goes.
+fn goes(asked: &Asked<'_>, posture: Posture) -> bool {
+    asked.quick_path(posture).is_ok()
+}
+
+/// A posture, a b or a limit with which the whole path goes.
 fn proposal(asked: &Asked<'_>, task: &Task) -> Option<String> {
-    let goes = |asked: &Asked<'_>, posture: Posture| asked.path(posture).is_ok();
     if task.posture == Posture::Orientation {
-        if asked.hand.1.is_some() && goes(&Asked { hand: (asked.hand.0, None), ..*asked }, Posture::Orientation) {
+        let free = Asked { hand: (asked.hand.0, None), ..*asked };
+        if asked.hand.1.is_some() && goes(&free, Posture::Orientation) {
             return Some("no orientation, so that it keeps the one that serves".into());
         }
         if goes(asked, Posture::LeastRates) {
             return Some("posture = least-rates".into());
         }
     }
-    let points: Vec<Vector> =
-        asked.curves.iter().flat_map(|curve| (0..=ASKED).map(|i| curve.at(i as f64 / ASKED as f64).p)).collect();
-    let serving = common(asked.space, &points)?;
-    let near = serving.nearest(asked.b)?;
-    let tries = INWARDS.into_iter().filter_map(|share| serving.decimal(serving.inwards(near, share), DECIMALS));
-    let mut tries: Vec<Decimal> = tries.filter(|b| b.value() != asked.b).collect();
-    tries.dedup_by(|x, y| x.value() == y.value());
-    let does = tries.into_iter().find(|b| goes(&Asked { b: b.value(), ..*asked }, task.posture))?;
-    Some(format!("b = {does} rad"))
+    let at = |curve: &Curve| (0..=ASKED).map(|i| curve.at(i as f64 / ASKED as f64).p).collect::<Vec<_>>();
+    let points: Vec<Vector> = asked.curves.iter().flat_map(at).collect();
+    let another = common(asked.space, &points).and_then(|serving| {
+        let near = serving.nearest(asked.b)?;
+        let serves = |b: f64| b != asked.b && goes(&Asked { b, ..*asked }, task.posture);
+        inner(&serving, near).find(|b| serves(b.value()))
+    });
+    another.map(|b| format!("b = {b} rad")).or_else(|| wider(asked, task.posture))
+}
+
+/// The limits of one angle, widened as little as serves at the same b.
+fn wider(asked: &Asked<'_>, posture: Posture) -> Option<String> {
+    WIDER.into_iter().find_map(|by| {
+        asked.machine.angles().iter().enumerate().find_map(|(i, angle)| {
+            let key = format!("limits.a{}", i + 1);
+            let value = format!("{:.2},{:.2}", angle.limits.start() - by, angle.limits.end() + by);
+            let machine = asked.machine.set(&key, &value).ok()?;
+            let space = PoseSpace::of(&machine).ok()?;
+            let wide = Asked { machine: &machine, space: &space, ..*asked };
+            goes(&wide, posture).then(|| format!("{key} = {value} rad at this b"))
+        })
+    })
 }

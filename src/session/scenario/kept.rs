@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bounds::MAX_TIME;
 use crate::session::TimedEdit;
+use crate::settings::number::Short;
 use crate::settings::text::steering;
 
 /// An instant that somebody wants to find again.
@@ -92,7 +93,7 @@ pub(super) fn branches(
     let read = |(i, branch): (usize, StatedBranch)| {
         let StatedBranch { duration, edits } = branch;
         if !(0.0..=MAX_TIME).contains(&duration) {
-            return Err((i, format!("duration is {duration}: want a number from 0 to {MAX_TIME} s")));
+            return Err((i, format!("duration is {}: want a number from 0 to {MAX_TIME} s", Short(duration))));
         }
         let of_edit = |(entry, why): (usize, String)| (i, format!("edit {}: {why}", entry + 1));
         let edits: Result<Vec<TimedEdit>, (usize, String)> =
