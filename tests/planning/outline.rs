@@ -142,15 +142,70 @@ fn every_edge_has_the_workspace_on_its_left() {
     assert!(right as f64 >= 0.99 * all as f64, "{right} of {all}");
 }
 
+fn of_all_kinds(noise: &mut Noise, count: usize) -> Vec<PoseSpace> {
+    let any = |i: usize| match i % 6 {
+        2 | 5 => limited(noise),
+        k => a_space(noise, [3, 4, 5, 4, if i.is_multiple_of(5) { 6 } else { 5 }, 0][k]).1,
+    };
+    (0..count).map(any).collect()
+}
+
+/// The longest way of an outline along one circle about B, rad, and the circle, m. No edge runs along one: where a look
+/// missed poses, or saw some that are not there, the outline jumps from circle to circle.
+fn along_a_circle(space: &PoseSpace, b: f64) -> [f64; 2] {
+    let same = 1e-9 * space.farthest();
+    let mut longest = [0.0; 2];
+    for line in space.outline(b).loops {
+        let at = |i: usize| Vector::new(line[i % line.len()][0], line[i % line.len()][1]);
+        let mut way = 0.0;
+        for i in 0..2 * line.len() {
+            let [p, q] = [at(i), at(i + 1)];
+            way = if (p.norm() - q.norm()).abs() < same { way + (q * p.conj()).arg().abs() } else { 0.0 };
+            if way > longest[0] {
+                longest = [way, p.norm()];
+            }
+        }
+    }
+    longest
+}
+
+const A_CUSP: f64 = 0.03;
+
+/// Two machines whose outlines once jumped: critical poses were missed beside their last place, and what is known of a
+/// circle went on to others of which it was not true.
+#[test]
+fn no_edge_runs_along_a_circle() {
+    let mut noise = Noise::of(11);
+    let all = of_all_kinds(&mut noise, 92);
+    for (i, space) in [&all[0], &all[27], &all[91]].into_iter().enumerate() {
+        let [way, r] = along_a_circle(space, 0.3);
+        assert!(way < A_CUSP, "machine {i}: {way} rad at {r} m");
+    }
+}
+
+#[test]
+#[ignore = "a campaign of minutes: 300 machines with four drives, 200 with five, 60 with six"]
+fn no_edge_of_hundreds_runs_along_a_circle() {
+    for (n, count) in [(4, 300), (5, 200), (6, 60)] {
+        let mut noise = Noise::of(20 + n as u64);
+        let mut run = 0;
+        for i in 0..count {
+            let space = a_space(&mut noise, n).1;
+            let [way, r] = along_a_circle(&space, noise.between(-4.0, 4.0));
+            if way > A_CUSP {
+                println!("{n} drives, machine {i}: {way} rad at {r} m of {} m", space.farthest());
+                run += 1;
+            }
+        }
+        assert!(100 * run <= count, "{n} drives: {run} of {count}");
+    }
+}
+
 #[test]
 #[ignore = "a campaign of minutes: 360 machines, from three drives to six"]
 fn every_edge_of_hundreds_has_the_workspace_on_its_left() {
     let mut noise = Noise::of(11);
-    let any = |i: usize| match i % 6 {
-        2 | 5 => limited(&mut noise),
-        k => a_space(&mut noise, [3, 4, 5, 4, if i.is_multiple_of(5) { 6 } else { 5 }, 0][k]).1,
-    };
-    let spaces: Vec<PoseSpace> = (0..360).map(any).collect();
+    let spaces = of_all_kinds(&mut noise, 360);
     adds_up(&mut noise, &spaces);
     let [right, all] = edges_are_edges(&mut noise, &spaces);
     println!("{right} of {all} points");

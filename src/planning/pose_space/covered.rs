@@ -43,11 +43,11 @@ impl Covered {
         for _ in 0..2 {
             for i in 0..n {
                 let next = (i + 1) % n;
-                self.gaps[next] |= self.gaps[i] && !self.ends[next].down;
+                self.gaps[next] |= self.gaps[i] && self.ends[next].passes_up();
             }
             for i in (0..n).rev() {
                 let next = (i + 1) % n;
-                self.gaps[i] |= self.gaps[next] && !self.ends[next].up;
+                self.gaps[i] |= self.gaps[next] && self.ends[next].passes_down();
             }
         }
     }

@@ -22,19 +22,44 @@ pub(super) struct Critical {
     pub spot: Spot,
     /// Its relative angles, rad.
     pub a: PerDrive,
+    /// Whether where b goes from it is known; where values of b merge it is not always.
+    pub sure: bool,
     /// How many compounds it has.
     count: usize,
 }
 
 impl Critical {
+    /// Whether b goes up from it, for certain.
+    pub fn rises(&self) -> bool {
+        self.sure && self.up
+    }
+
+    /// Whether b goes down from it, for certain.
+    pub fn falls(&self) -> bool {
+        self.sure && self.down
+    }
+
+    /// Whether nothing that comes to it from below ends there.
+    pub fn passes_up(&self) -> bool {
+        self.sure && !self.down
+    }
+
+    /// Whether nothing that comes to it from above ends there.
+    pub fn passes_down(&self) -> bool {
+        self.sure && !self.up
+    }
+
     /// Takes in another one at the same b. Where a curve comes to a limit two are one pose: the one with more freedoms
     /// knows where b goes from there; of two compounds b ends where one of them says so. Else b goes where it goes from
     /// either.
     pub fn merge(&mut self, other: &Self) {
-        let one = self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < SAME_POSE);
+        let near = |apart: f64| self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < apart);
+        let one = near(SAME_POSE);
+        // Between poses that are near but not the same b may rise and fall by less than tells values apart.
+        self.sure &= other.sure && (!one || near(SAME_ANGLES));
         if one && self.count != other.count {
             if other.count > self.count {
-                *self = *other;
+                *self = Self { sure: self.sure, ..*other };
             }
             return;
         }
@@ -96,6 +121,9 @@ const NO_GAIN: f64 = 1e-12;
 
 /// Poses with the same b are one if no angle differs by more than this, rad: b is stationary there.
 const SAME_POSE: f64 = 0.1;
+
+/// The same pose, to what the slack of limits makes of it, rad.
+const SAME_ANGLES: f64 = 1e-6;
 
 /// Poses of a curve may miss the limits by this much, rad: what a root that is found to 1e-11 makes of them.
 const BEYOND: f64 = 1e-6;
@@ -312,7 +340,7 @@ impl PoseSpace {
             for (i, turns) in spot.curve.turns[..a.len()].iter_mut().enumerate() {
                 *turns -= (name >> (4 * i) & 15) as i8;
             }
-            found(Critical { b, up, down, name, spot, a: *a, count: c.count });
+            found(Critical { b, up, down, name, spot, a: *a, sure: true, count: c.count });
         });
         !undecided || (up && down)
     }
@@ -415,82 +443,42 @@ fn by_basis(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]
 
 /// Where |p|² of stationary poses is a square, each place t once, and after how many of those where it turns back.
 fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usize)) {
-    let alive = |cell: usize| signs.cells >> cell & 1 == 1;
-    let hidden = |(i, beyond): (usize, f64)| {
-        if !alive(i - 1) && !alive(i) {
-            return false;
-        }
-        let [before, here] = [signs.values[i - 1], signs.values[i]];
-        // It turns back before it comes to the square, by a little.
-        let gap = if before >= here { here - square } else { square - here };
-        gap > 0.0 && gap < beyond
-    };
-    let within = (signs.least..=signs.greatest).contains(&square);
-    if !within && !signs.turns.iter().any(|turn| hidden(*turn)) {
+    if !(signs.least..=signs.greatest).contains(&square) {
         return;
     }
     let miss = |t: f64| {
         let (value, slope) = c.square(signs.bits, t);
         (value - square, slope)
     };
+    let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let value = |i: usize| signs.values[i] - square;
-    // From one place where it turns back to the next it rises or falls.
-    let (mut from, mut turns) = (0, 0);
-    loop {
-        let turn = signs.turns.get(turns).copied();
-        let to = turn.map_or(SPACES, |turn| turn.0);
-        if value(from) == 0.0 {
-            found(place(from), turns);
-        } else if value(from) * value(to) < 0.0 {
-            let (mut low, mut high) = (from, to);
+    // From one turn to the next it rises or falls. Ends: the cell, t and the value.
+    let mut from = (0, place(0), value(0));
+    for turns in 0..=signs.turns.len() {
+        let turn = signs.turns.get(turns);
+        let to =
+            turn.map_or((SPACES - 1, place(SPACES), value(SPACES)), |turn| (turn.cell, turn.t, turn.value - square));
+        if from.2 == 0.0 {
+            found(from.1, turns);
+        } else if from.2 * to.2 < 0.0 {
+            // The last place that is on the side of the first end, and the next.
+            let (mut low, mut high) = (from.0, to.0 + 1);
             while high - low > 1 {
                 let middle = (low + high) / 2;
-                *(if value(middle) * value(from) > 0.0 { &mut low } else { &mut high }) = middle;
+                *(if value(middle) * from.2 > 0.0 { &mut low } else { &mut high }) = middle;
             }
-            let ends = [value(low), value(high)];
             if alive(low) {
-                found(
-                    if ends[1] == 0.0 { place(high) } else { bracketed(&miss, [place(low), place(high)], ends) },
-                    turns,
-                );
+                let first = if low == from.0 { (from.1, from.2) } else { (place(low), value(low)) };
+                let last = if high == to.0 + 1 { (to.1, to.2) } else { (place(high), value(high)) };
+                let t = if last.1 == 0.0 { last.0 } else { bracketed(&miss, [first.0, last.0], [first.1, last.1]) };
+                found(t, turns);
             }
         }
-        let Some(turn) = turn else { break };
-        // Two zeros may hide where the function turns back.
-        if hidden(turn) {
-            let (low, least) = lowest(|t| miss(t).0, [place(to - 1), place(to + 1)], value(to).signum());
-            if least * value(to) < 0.0 {
-                found(bracketed(&miss, [place(to - 1), low], [value(to - 1), least]), turns);
-                found(bracketed(&miss, [low, place(to + 1)], [least, value(to + 1)]), turns + 1);
-            }
-        }
-        (from, turns) = (to, turns + 1);
+        from = to;
     }
-    if value(SPACES) == 0.0 {
-        found(place(SPACES), turns);
+    if from.2 == 0.0 {
+        found(from.1, signs.turns.len());
     }
-}
-
-/// The place nearest to 0 from one side, by golden sections.
-fn lowest(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2], side: f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut fx, mut fy) = (side * f(x), side * f(y));
-    for _ in 0..40 {
-        if fx < fy {
-            (high, y, fy) = (y, x, fx);
-            x = high - GOLDEN * (high - low);
-            fx = side * f(x);
-        } else {
-            (low, x, fx) = (x, y, fy);
-            y = low + GOLDEN * (high - low);
-            fy = side * f(y);
-        }
-        if fx.min(fy) < 0.0 {
-            break;
-        }
-    }
-    if fx < fy { (x, side * fx) } else { (y, side * fy) }
 }
 
 /// A zero between places of opposite sign, of a function with its slope: Newton's iteration, and halves where it leaves

@@ -6,19 +6,29 @@
 //! above. Only pieces on which b goes round without an end come from none: for these, a look over the last joints, with
 //! the three arms that are left in closed form.
 
+use std::f64::consts::{PI, TAU};
+
 use super::continuation::{Climb, GLANCE};
 use super::critical::Critical;
-use super::space::PoseSpace;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
+use super::space::{AT_BASE, PoseSpace};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 /// Looks over the range of the joints that are left free, for one, two, three and more of them.
 const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
-/// Of how many critical poses on either side of a gap, the nearest ones, ways lead into it.
-const NEAREST: usize = 3;
+/// Of how many critical poses on either side of a gap, the nearest ones, ways lead into it: at first, and with all care.
+const NEAREST: [usize; 2] = [3, 24];
 /// How far into it, as a share of it, and of b's period at most.
 const INTO: f64 = 0.3;
 const AT_MOST: f64 = 0.02;
+/// Places all over the ranges from which joints turn to come to a distance, how often all do at most, and how little, as a
+/// share of the reach, is nothing.
+const STARTS: usize = 32;
+const MAX_SWEEPS: usize = 200;
+const STANDS: f64 = 1e-12;
+/// Poses at a distance whose b are known, at first and with all care, and how far inside a gap one is, as a share of it.
+const SAMPLES: [usize; 2] = [32, 512];
+const INSIDE: f64 = 1e-3;
 /// Critical values that are one, to rounding, rad.
 const SAME: f64 = 1e-9;
 
@@ -43,6 +53,10 @@ pub(super) struct Looks {
     /// Spans of b, rad, and where those of each look end.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
+    /// The b of some poses at the distance, rad, wherever they are.
+    samples: Vec<f64>,
+    /// Whether to look with all care.
+    pub careful: bool,
 }
 
 impl Looks {
@@ -50,6 +64,7 @@ impl Looks {
     pub fn clear(&mut self) {
         self.spans.clear();
         self.ends.clear();
+        self.samples.clear();
     }
 }
 
@@ -59,13 +74,16 @@ impl PoseSpace {
     pub(super) fn has_pose(&self, distance: f64, gap: &Gap, criticals: &[Critical], looks: &mut Looks) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_climbed_into(p, gap, criticals) || self.is_seen(p, Some(&gap.places()), looks);
+            return self.is_climbed_into(p, gap, (criticals, NEAREST[usize::from(looks.careful)]))
+                || self.is_seen(p, &gap.places(), looks)
+                || self.is_sampled(distance, gap, looks)
+                || (looks.careful && self.is_solved(p, 0.5 * (gap.from + gap.to)));
         }
         gap.places().iter().any(|b| self.is_there(p, *b))
     }
 
     /// Whether a way from a critical pose near a gap leads into it.
-    fn is_climbed_into(&self, p: Vector, gap: &Gap, criticals: &[Critical]) -> bool {
+    fn is_climbed_into(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
         let (period, n) = (self.period(), criticals.len());
         let into = (INTO * (gap.to - gap.from)).min(AT_MOST * period);
         let past = |by: f64| (by + SAME).rem_euclid(period) - SAME;
@@ -82,15 +100,15 @@ impl PoseSpace {
             .map(|c| (c, past(c.b - gap.to)))
             .take_while(|(_, by)| at_most(by, gap.free[1]))
             .filter(|(c, _)| c.down);
-        (0..NEAREST).any(|_| {
+        (0..nearest).any(|_| {
             let rise = below.next().map(|(from, by)| Climb { from, rise: by + into });
             let fall = above.next().map(|(from, by)| Climb { from, rise: -(by + into) });
             rise.iter().chain(&fall).any(|climb| self.left(p, climb, GLANCE).is_some())
         })
     }
 
-    /// Whether a pose at one of these b, or at any, is seen with the last joints held at places of a grid.
-    fn is_seen(&self, p: Vector, b: Option<&[f64]>, looks: &mut Looks) -> bool {
+    /// Whether a pose at one of these b is seen with the last joints held at places of a grid.
+    fn is_seen(&self, p: Vector, b: &[f64], looks: &mut Looks) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -112,10 +130,24 @@ impl PoseSpace {
                 looks.ends.push(looks.spans.len());
             }
             let from = if code > 0 { looks.ends[code - 1] } else { 0 };
-            looks.spans[from..looks.ends[code]]
-                .iter()
-                .any(|span| b.is_none_or(|b| b.iter().any(|b| self.holds(*span, *b))))
+            looks.spans[from..looks.ends[code]].iter().any(|span| b.iter().any(|b| self.holds(*span, *b)))
         })
+    }
+
+    /// Whether one of some poses at the distance has a b in the gap.
+    fn is_sampled(&self, distance: f64, gap: &Gap, looks: &mut Looks) -> bool {
+        if looks.samples.is_empty() {
+            let b = |a: PerDrive| {
+                let q = self.unturned(&a);
+                let turn = self.place(&DriveAngles(q)).arg();
+                self.lambda.dot(&q) - turn * self.sum
+            };
+            let found =
+                (0..SAMPLES[usize::from(looks.careful)]).filter_map(|i| self.comes_to(distance, self.spread(i))).map(b);
+            looks.samples.extend(found.chain([f64::NAN]));
+        }
+        let inside = INSIDE * (gap.to - gap.from);
+        looks.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
     }
 
     /// Whether a span holds a b, whole turns aside.
@@ -132,8 +164,76 @@ impl PoseSpace {
 
     /// Whether any pose is at a distance from B, m, where b goes round without an end: at one b as at any.
     pub(super) fn any_pose(&self, distance: f64) -> bool {
-        let p = Vector::new(distance, 0.0);
-        if self.drives() > 3 { self.is_seen(p, None, &mut Looks::default()) } else { self.is_there(p, 0.0) }
+        match self.drives() {
+            ..4 => self.is_there(Vector::new(distance, 0.0), 0.0),
+            _ if distance <= AT_BASE * self.farthest() => self.is_solved(Vector::default(), 0.0),
+            _ if (0..STARTS).any(|i| self.comes_to(distance, self.spread(i)).is_some()) => true,
+            // On the way from a pose that is farther off to one on B.
+            _ => {
+                let distance_of = |i: usize| self.place(&DriveAngles(self.unturned(&self.spread(i)))).norm();
+                (0..STARTS).any(|i| distance_of(i) >= distance) && self.is_solved(Vector::default(), 0.0)
+            }
+        }
+    }
+
+    /// Whether a pose at a point and b is come to from somewhere.
+    fn is_solved(&self, p: Vector, b: f64) -> bool {
+        let mut any = false;
+        self.each_spread(p, b, &mut |_| {
+            any = true;
+            false
+        });
+        any
+    }
+
+    /// A pose at a distance from B, m, if joints that turn one after another, each as far as brings the end effector nearest
+    /// to it, come to one.
+    fn comes_to(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
+        let far = self.farthest();
+        let at = |a: &PerDrive| self.place(&DriveAngles(self.unturned(a)));
+        let mut missing = f64::INFINITY;
+        for _ in 0..MAX_SWEEPS {
+            let before = missing;
+            for i in 0..a.len() {
+                let own = a[i];
+                let here = at(&a);
+                a[i] = own + PI;
+                let there = at(&a);
+                // It turns one part about the other.
+                let (still, turning) = (0.5 * (here + there), 0.5 * (here - there));
+                let [low, high] = self.joints[i].limits;
+                let apart = (turning * still.conj()).arg();
+                let sense = self.joints[i].sense;
+                let [from, to] = [low, high].map(|end| apart + sense * (end - own));
+                let (from, to) = (from.min(to), from.max(to));
+                // Angles between the two parts: where they are in line, or at the ends.
+                let inside = |line: f64| Some(line + ((from - line) / TAU).ceil() * TAU).filter(|x| *x <= to);
+                let length = |angle: f64| (still + turning * unit(angle - apart)).norm();
+                let ends = if length(from) < length(to) { [from, to] } else { [to, from] };
+                let [least, most] = [inside(PI).unwrap_or(ends[0]), inside(0.0).unwrap_or(ends[1])];
+                let lengths = [length(least), length(most)];
+                if lengths[0] <= distance && distance <= lengths[1] {
+                    let sizes = [still.norm(), turning.norm()];
+                    let square = distance * distance - sizes[0] * sizes[0] - sizes[1] * sizes[1];
+                    let bend = (square / (2.0 * sizes[0] * sizes[1])).clamp(-1.0, 1.0).acos();
+                    // The nearest one in the range; rounding may leave none.
+                    let both = [bend, -bend].map(|line| line + ((from - line) / TAU).ceil() * TAU);
+                    let there = both
+                        .into_iter()
+                        .filter(|x| *x <= to)
+                        .min_by(|x, y| (x - apart).abs().total_cmp(&(y - apart).abs()))?;
+                    a[i] = (own + sense * (there - apart)).clamp(low, high);
+                    return Some(a);
+                }
+                let best = if distance < lengths[0] { least } else { most };
+                a[i] = (own + sense * (best - apart)).clamp(low, high);
+                missing = (length(best) - distance).abs();
+            }
+            if before - missing <= STANDS * far {
+                break;
+            }
+        }
+        None
     }
 
     /// Up to three drives.

@@ -15,6 +15,15 @@ pub(super) fn place(i: usize) -> f64 {
     FRAC_PI_2 * i as f64 / SPACES as f64
 }
 
+/// Where the slope at a place is taken: beside both ends, where it is nothing, or nothing by nothing.
+fn slope_place(i: usize) -> f64 {
+    const BESIDE: f64 = 1e-6;
+    place(i).clamp(BESIDE, FRAC_PI_2 - BESIDE)
+}
+
+/// Turns are found to this, in t.
+const TURN: f64 = 1e-13;
+
 /// Joints that miss their limits by this much are looked at, rad.
 const SPARE: f64 = 1e-6;
 
@@ -60,12 +69,38 @@ pub(super) struct Signs {
     pub bits: u32,
     /// Bit i: whether the joints may be within their limits between place i and the next.
     pub cells: u32,
-    /// |p|² at each place, and the least and greatest of these, m².
+    /// |p|² at each place, and the least and greatest within the cells, m².
     pub values: [f64; SPACES + 1],
     pub least: f64,
     pub greatest: f64,
-    /// Places at which it turns back, and how far beyond its value there it may go, m².
-    pub turns: Vec<(usize, f64)>,
+    /// Where it turns back, in order: from one to the next it rises or falls.
+    pub turns: Vec<Turn>,
+}
+
+/// Where |p|² turns back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// Between this place and the next.
+    pub cell: usize,
+    pub t: f64,
+    /// m².
+    pub value: f64,
+}
+
+/// All that signs make |p|² and its slope of at a place: as [`Pattern::stretched`], and beside it.
+#[derive(Clone, Copy)]
+struct Place {
+    at: (f64, [f64; MAX_DRIVES], Vector),
+    rates: Rates,
+}
+
+/// |L_i| cos α_i and ν ΣΛ, m, and how they change with t, m.
+#[derive(Clone, Copy)]
+struct Rates {
+    cos: [f64; MAX_DRIVES],
+    sum: f64,
+    changes: [f64; MAX_DRIVES],
+    across: f64,
 }
 
 /// The patterns of a machine, made when they are first asked for; copies of it share them.
@@ -158,8 +193,9 @@ impl Pattern {
         if !(c.most.is_finite() && c.most > 0.0) {
             return None;
         }
-        let places = std::array::from_fn(|i| c.stretched(0, place(i)));
-        let alpha = places.map(|(nu, cos, _)| std::array::from_fn(|i| (nu * c.lambda[i]).atan2(cos[i])));
+        let places = std::array::from_fn(|i| Place { at: c.stretched(0, place(i)), rates: c.rates(slope_place(i)) });
+        let alpha =
+            places.map(|Place { at: (nu, cos, _), .. }| std::array::from_fn(|i| (nu * c.lambda[i]).atan2(cos[i])));
         let signs = |bits: u32| {
             let cells = c.within(joints, bits, &alpha);
             (cells != 0).then(|| c.scanned(bits, cells, &places))
@@ -193,27 +229,80 @@ impl Pattern {
         (0..SPACES).filter(|i| may(*i, 1.0) || may(*i, -1.0)).fold(0, |cells, i| cells | 1 << i)
     }
 
-    fn scanned(&self, bits: u32, cells: u32, places: &[(f64, [f64; MAX_DRIVES], Vector); SPACES + 1]) -> Signs {
-        let values = std::array::from_fn(|i| {
-            let (_, cos, sum) = &places[i];
-            let along: f64 =
-                (0..self.count).map(|i| if i > 0 && bits >> (i - 1) & 1 == 1 { -cos[i] } else { cos[i] }).sum();
-            Vector::new(along, sum.im).norm_sqr()
+    fn scanned(&self, bits: u32, cells: u32, places: &[Place; SPACES + 1]) -> Signs {
+        let sign = |i: usize| if i > 0 && bits >> (i - 1) & 1 == 1 { -1.0 } else { 1.0 };
+        let signed = |of: &[f64; MAX_DRIVES]| (0..self.count).map(|i| sign(i) * of[i]).sum::<f64>();
+        let values: [f64; SPACES + 1] = std::array::from_fn(|i| {
+            let (_, cos, sum) = &places[i].at;
+            Vector::new(signed(cos), sum.im).norm_sqr()
         });
+        let slopes: [f64; SPACES + 1] = std::array::from_fn(|i| {
+            let Rates { cos, sum, changes, across } = &places[i].rates;
+            2.0 * (signed(cos) * signed(changes) + sum * across)
+        });
+        let alive = |i: usize| cells >> i & 1 == 1;
         let mut turns = Vec::new();
-        for i in 1..SPACES {
-            let [a, b, c]: [f64; 3] = [values[i - 1], values[i], values[i + 1]];
-            let bend = a - 2.0 * b + c;
-            // Two solutions may hide where it turns back: by a parabola through three places, and a little more.
-            if (b <= a && b <= c && bend > 0.0) || (b >= a && b >= c && bend < 0.0) {
-                turns.push((i, 0.125 * (a - c).powi(2) / bend.abs() / 0.95));
+        for cell in 0..SPACES {
+            let ends = [cell, cell + 1];
+            let [from, to] = ends.map(slope_place);
+            let [rise, fall] = ends.map(|i| slopes[i]);
+            // Two turns between two places: where a cubic through both has them.
+            let flat = 1.5 * (values[cell + 1] - values[cell]) / (to - from) - 0.25 * (rise + fall);
+            let mut parts = [[(from, rise), (to, fall)]; 2];
+            if rise * fall > 0.0 && flat * rise < 0.0 {
+                let middle = 0.5 * (from + to);
+                let slope = self.square(bits, middle).1;
+                parts = [[(from, rise), (middle, slope)], [(middle, slope), (to, fall)]];
+            }
+            for [from, to] in &parts[..if parts[0] == parts[1] { 1 } else { 2 }] {
+                if from.1 * to.1 < 0.0 {
+                    let t = if alive(cell) { self.turn(bits, [*from, *to]) } else { 0.5 * (from.0 + to.0) };
+                    turns.push(Turn { cell, t, value: self.square(bits, t).0 });
+                }
             }
         }
-        let within = |i: &usize| cells >> i & 1 == 1 || (*i > 0 && cells >> (i - 1) & 1 == 1);
-        let within = || (0..=SPACES).filter(within).map(|i| values[i]);
+        let within = |i: &usize| alive(*i) && *i < SPACES || (*i > 0 && alive(*i - 1));
+        let ends = (0..=SPACES).filter(within).map(|i| values[i]);
+        let within = || ends.clone().chain(turns.iter().filter(|turn| alive(turn.cell)).map(|turn| turn.value));
         let least = within().fold(f64::INFINITY, f64::min);
         let greatest = within().fold(f64::NEG_INFINITY, f64::max);
         Signs { bits, cells, values, least, greatest, turns }
+    }
+
+    /// Where |p|² turns back between two t with slopes of opposite sign: by false position, each time with half of what an
+    /// end keeps.
+    fn turn(&self, bits: u32, [mut from, mut to]: [(f64, f64); 2]) -> f64 {
+        let mut kept = 0.0;
+        for _ in 0..60 {
+            let t = (from.0 * to.1 - to.0 * from.1) / (to.1 - from.1);
+            let slope = self.square(bits, t).1;
+            let is_first = slope * from.1 > 0.0;
+            let (near, other) = if is_first { (&mut from, &mut to) } else { (&mut to, &mut from) };
+            let step = (t - near.0).abs();
+            *near = (t, slope);
+            let side = if is_first { 1.0 } else { -1.0 };
+            if kept == side {
+                other.1 *= 0.5;
+            }
+            kept = side;
+            if slope == 0.0 || step < TURN || (to.0 - from.0) < TURN {
+                return t;
+            }
+        }
+        0.5 * (from.0 + to.0)
+    }
+
+    /// How |p|² changes with t, for all cosines above 0.
+    fn rates(&self, t: f64) -> Rates {
+        let (nu, cos, sum) = self.stretched(0, t);
+        let turn = unit(t);
+        let mut changes = [0.0; MAX_DRIVES];
+        for (i, change) in changes[..self.count].iter_mut().enumerate() {
+            let speed = self.most * turn.re * self.lambda[i];
+            *change = if i == self.across { -self.length[i] * turn.im } else { -nu * self.lambda[i] * speed / cos[i] };
+        }
+        let across = (0..self.count).map(|i| self.most * turn.re * self.lambda[i]).sum();
+        Rates { cos, sum: sum.im, changes, across }
     }
 
     /// ν, |L_i| cos α_i of all compounds, and (Σ |L_i| cos α_i, ν ΣΛ) at t.

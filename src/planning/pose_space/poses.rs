@@ -67,7 +67,8 @@ impl PoseSpace {
     /// Poses of four drives and more, while more are wanted: by climbing from critical poses, and by going there from all
     /// over the ranges.
     fn each_found(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
-        if !self.reach(p).is_ok_and(|set| set.contains(b)) {
+        let serves = |careful| self.reach_with(p, careful).is_ok_and(|set| set.contains(b));
+        if !serves(false) && !serves(true) {
             return;
         }
         let (p, b) = (Vector::new(p.norm(), 0.0), b - p.arg() * self.sum);
@@ -88,7 +89,7 @@ impl PoseSpace {
     }
 
     /// The same, from all over the ranges.
-    fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
+    pub(super) fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let windows = self.windows();
         for a in (0..SPREAD).map(|i| self.spread(i)) {
             if self.solved(p, b, &a, &windows).is_some_and(|a| !take(&a)) {

@@ -3,7 +3,7 @@
 use super::covered::Covered;
 use super::critical::Critical;
 use super::looks::{Gap, Looks};
-use super::space::PoseSpace;
+use super::space::{AT_BASE, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::reactionless::{BSet, NoReach};
 
@@ -11,8 +11,6 @@ use crate::planning::reactionless::{BSet, NoReach};
 const SAME: f64 = 1e-10;
 /// How far beside a distance, as a share of the reach: past what rounding and the slack of limits decide.
 const BESIDE: f64 = 4.1e-9;
-/// A point as near to B as this, as a share of the reach, is B: the workspace turned about it.
-const AT_BASE: f64 = 1e-12;
 
 impl PoseSpace {
     /// All b at which the end effector can be on `p`, m, within the limits; with two drives each is an interval without
@@ -21,6 +19,11 @@ impl PoseSpace {
     /// # Errors
     /// If there is none.
     pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
+        self.reach_with(p, true)
+    }
+
+    /// The same, with poses looked for with all care, or less: then b may be missing.
+    pub(super) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         let (distance, farthest, nearest) = (p.norm(), self.farthest(), self.nearest());
         if distance > farthest * (1.0 + 1e-12) {
             return Err(NoReach::TooFar { distance, farthest });
@@ -28,7 +31,7 @@ impl PoseSpace {
         if distance < nearest - 1e-12 * farthest {
             return Err(NoReach::TooNear { distance, nearest });
         }
-        let set = self.reach_of(distance);
+        let set = self.reach_of(distance, careful);
         if set.is_empty() {
             return Err(NoReach::Limits);
         }
@@ -47,7 +50,7 @@ impl PoseSpace {
     }
 
     /// The b of points at a distance from B, on the x axis.
-    fn reach_of(&self, distance: f64) -> BSet {
+    fn reach_of(&self, distance: f64, careful: bool) -> BSet {
         let period = self.period();
         if self.drives() == 1 {
             // One arm goes round on its circle.
@@ -60,6 +63,7 @@ impl PoseSpace {
             return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
         }
         let mut work = Work::default();
+        work.looks.careful = careful;
         if self.criticals(distance, |c| work.ends.push(c)) {
             return self.joined(distance, &[], &mut work).set(period);
         }
@@ -118,7 +122,7 @@ impl PoseSpace {
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance));
             return Covered { ends: Vec::new(), gaps: vec![whole], period };
         }
-        let gaps = (0..n).map(|i| merged[i].up || merged[(i + 1) % n].down).collect();
+        let gaps = (0..n).map(|i| merged[i].rises() || merged[(i + 1) % n].falls()).collect();
         let mut covered = Covered { ends: merged, gaps, period };
         covered.spread();
         let mut empty = vec![false; n];
@@ -151,7 +155,7 @@ impl PoseSpace {
 #[derive(Default)]
 pub(super) struct Work {
     ends: Vec<Critical>,
-    looks: Looks,
+    pub looks: Looks,
 }
 
 /// What all say that know it.

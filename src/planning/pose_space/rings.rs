@@ -18,6 +18,9 @@ const FOUND: f64 = 2e-8;
 /// The most circles that are looked at, and the most points between them.
 const MAX_RINGS: usize = 6000;
 const MAX_POINTS: usize = 400_000;
+/// Edges of a region do not run along a circle about B; between circles that are as near as [`FOUND`] its ends move by less
+/// than this where it begins, ceases, parts or meets, rad.
+const JUMP: f64 = 0.02;
 /// Halvings of an edge between two circles.
 const MAX_DEPTH: usize = 24;
 /// Ends as near as this, as a share of the reach, have an edge between them that bends one way.
@@ -58,6 +61,22 @@ impl Ring {
         self.r * unit(self.ends[end].angle)
     }
 
+    /// The longest arc that only one of two circles has, rad.
+    fn apart(&self, other: &Self) -> f64 {
+        let has = |ring: &Self, angle: f64| {
+            let before = ring.ends.iter().rev().find(|end| end.angle <= angle).or(ring.ends.last());
+            before.map_or(ring.whole, |end| end.opens)
+        };
+        let mut angles: Vec<f64> = self.ends.iter().chain(&other.ends).map(|end| end.angle).collect();
+        angles.extend([0.0, TAU]);
+        angles.sort_unstable_by(f64::total_cmp);
+        let arcs = angles.windows(2).filter(|w| {
+            let middle = 0.5 * (w[0] + w[1]);
+            has(self, middle) != has(other, middle)
+        });
+        arcs.map(|w| w[1] - w[0]).fold(0.0, f64::max)
+    }
+
     /// Which end of another circle continues the first of this one, if all do, in the same order.
     fn turned_to(&self, other: &Self) -> Option<usize> {
         let n = self.ends.len();
@@ -89,12 +108,31 @@ pub(super) struct Rings {
     pub beside: f64,
     /// Chords are as near to circles as this, m.
     pub chord: f64,
+    /// How much more than [`JUMP`] of all circles is covered on one side of them only, rad.
+    pub jumps: f64,
 }
 
 impl PoseSpace {
     /// Circles through the workspace of b, with chords as near to its boundary as this, m. Told how much is done, from 0
     /// to 1, the caller says whether the rest is still wanted; `None` if it is not.
     pub(super) fn rings(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Rings> {
+        let carried = self.rings_of(b, chord, [self.drives() > 3, false], goes_on)?;
+        if carried.jumps == 0.0 || self.drives() == 3 {
+            return Some(carried);
+        }
+        // What went on from circle to circle was wrong somewhere.
+        let afresh = self.rings_of(b, chord, [false, true], goes_on)?;
+        Some(if afresh.jumps < carried.jumps { afresh } else { carried })
+    }
+
+    /// The same; what is known of a circle may be carried on to the next, and poses may be looked for with all care.
+    fn rings_of(
+        &self,
+        b: f64,
+        chord: f64,
+        [carries, careful]: [bool; 2],
+        goes_on: &mut dyn FnMut(f64) -> bool,
+    ) -> Option<Rings> {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
         let at = |i: usize| near + span * if i == 0 { FOUND } else { i as f64 / FIRST as f64 };
@@ -103,27 +141,29 @@ impl PoseSpace {
             space: self,
             b,
             work: Work::default(),
+            carries,
             budget: [MAX_RINGS, MAX_POINTS],
-            done: Rings { rings: Vec::new(), steps: Vec::new(), beside: 0.0, chord },
+            done: Rings { rings: Vec::new(), steps: Vec::new(), beside: 0.0, chord, jumps: 0.0 },
         };
+        sweep.work.looks.careful = careful;
         let mut all: Vec<(f64, Covered)> = Vec::with_capacity(FIRST + 1);
         for i in 0..=FIRST {
             if !goes_on(0.5 * i as f64 / FIRST as f64) {
                 return None;
             }
             let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
-            // Three drives and fewer are asked at once.
-            let knows = self.drives() > 3 && i % AGAIN > 0;
+            let knows = carries && i % AGAIN > 0;
             let last = all.last().map(|(_, covered)| covered).filter(|_| knows);
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
         }
         // What one of them knows of a part that several pass through all of them know.
-        for i in 1..all.len() {
+        let circles = if carries { 1..all.len() } else { 0..0 };
+        for i in circles.clone() {
             let (before, from) = all.split_at_mut(i);
             from[0].1.covers_too(&before[i - 1].1);
         }
-        for i in (1..all.len()).rev() {
+        for i in circles.rev() {
             let (before, from) = all.split_at_mut(i);
             before[i - 1].1.covers_too(&from[0].1);
         }
@@ -146,6 +186,8 @@ struct Sweep<'a> {
     space: &'a PoseSpace,
     b: f64,
     work: Work,
+    /// Whether what is known of circles is carried on to those between them.
+    carries: bool,
     /// How many circles and points there may still be.
     budget: [usize; 2],
     done: Rings,
@@ -161,6 +203,7 @@ struct Edge {
 impl Sweep<'_> {
     fn ring(&mut self, r: f64, beside: &[&Covered]) -> (Ring, Covered) {
         self.budget[0] = self.budget[0].saturating_sub(1);
+        let beside = if self.carries { beside } else { &[] };
         let covered = self.space.covered(r, beside, &mut self.work);
         self.ringed(covered)
     }
@@ -193,6 +236,9 @@ impl Sweep<'_> {
             self.done.rings.push(from.0.clone());
             self.done.steps.push(step);
         } else if to.0.r - from.0.r <= FOUND * far || self.budget[0] == 0 {
+            if to.0.r - from.0.r <= FOUND * far {
+                self.done.jumps += (from.0.apart(&to.0) - JUMP).max(0.0);
+            }
             self.done.rings.push(from.0.clone());
             self.done.steps.push(Step::Changes);
         } else {

@@ -11,6 +11,9 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::WIDEST;
 use crate::settings::number::{Short, significant};
 
+/// A point as near to B as this, as a share of the reach, is B: the workspace turned about it.
+pub(super) const AT_BASE: f64 = 1e-12;
+
 /// The poses of a machine by its relative angles and b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseSpace {

@@ -144,7 +144,10 @@ impl Asked<'_> {
     /// # Errors
     /// How far a way goes.
     pub fn path(&self, posture: Posture) -> Result<Found, NoWay> {
-        self.looked(posture, &DETAILS)
+        self.looked(&DETAILS, posture, |ways, turned| match posture {
+            Posture::Orientation => Some(self.finest(ways, posture)?.1),
+            _ => self.least_of_all(ways, turned(), posture),
+        })
     }
 
     /// The same after a quick look. Where that finds a path, [`path`](Self::path) finds one, too.
@@ -152,10 +155,15 @@ impl Asked<'_> {
     /// # Errors
     /// As [`path`](Self::path).
     pub fn quick_path(&self, posture: Posture) -> Result<Found, NoWay> {
-        self.looked(posture, &DETAILS[..1])
+        self.looked(&DETAILS[..1], posture, |ways, _| Some(self.finest(ways, posture)?.1))
     }
 
-    fn looked(&self, posture: Posture, details: &[(usize, f64, usize)]) -> Result<Found, NoWay> {
+    fn looked(
+        &self,
+        details: &[(usize, f64, usize)],
+        posture: Posture,
+        best: impl Fn(&[Way], &dyn Fn() -> Vec<Way>) -> Option<Way>,
+    ) -> Result<Found, NoWay> {
         let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH.0), ROUGH.1);
         let starts = self.space.sheets(rough.stations.places[0], self.b);
         let mut refused = NoWay::Ends { share: 0.0 };
@@ -167,8 +175,8 @@ impl Asked<'_> {
                         Posture::Orientation => rough.oriented(&layers, self.hand.1),
                         _ => rough.ways(&layers),
                     };
-                    if let Some(found) = self.finest(&ways, posture) {
-                        return Ok(found);
+                    if let Some(way) = best(&ways, &|| rough.oriented(&layers, None)) {
+                        return Ok(Found { tables: way.tables });
                     }
                     match posture {
                         Posture::Orientation if ways.is_empty() => NoWay::Turns,
@@ -181,12 +189,30 @@ impl Asked<'_> {
         Err(refused)
     }
 
-    /// The best of rough ways, made fine; with more stations where they turn sharply.
-    fn finest(&self, ways: &[Way], posture: Posture) -> Option<Found> {
+    /// The one with the least of what a posture wants among the best ways by every goal, those that keep the orientation,
+    /// and what every goal makes of them: whichever posture is wanted, the same ways are compared.
+    fn least_of_all(&self, ways: &[Way], mut turned: Vec<Way>, posture: Posture) -> Option<Way> {
+        let closes = ways.iter().any(|way| way.closed);
+        turned.retain(|way| way.closed || !closes);
+        let mut all: Vec<Way> = Vec::new();
+        for own in [Posture::LeastRates, Posture::LeastTorque, Posture::MidRange, Posture::Orientation] {
+            let Some((fine, way)) = self.finest(if own == Posture::Orientation { &turned } else { ways }, own) else {
+                continue;
+            };
+            let others = (0..GOALS.len()).filter(|goal| GOALS[*goal] != own);
+            all.extend(others.filter_map(|goal| fine.refined(&fine.held(), goal, &way.q, way.closed).ok()));
+            all.push(way);
+        }
+        let goal = goal_of(posture);
+        all.into_iter().min_by(|x, y| x.values[goal].total_cmp(&y.values[goal]))
+    }
+
+    /// The best of rough ways, made fine, and on which stations; with more of them where they turn sharply.
+    fn finest(&self, ways: &[Way], posture: Posture) -> Option<(Search<'_>, Way)> {
         let mut fine = Search::on(self, Stations::of(self.curves, self.law, FINE.0), FINE.1);
         for _ in 0..=MAX_PARTINGS {
-            match fine.finest_of_all(ways, posture) {
-                Ok(way) => return Some(Found { tables: way.tables }),
+            match fine.finest(ways, goal_of(posture), posture == Posture::Orientation) {
+                Ok(way) => return Some((fine, way)),
                 Err(Missed::Between(marked)) if fine.stations.places.len() < MAX_STATIONS => {
                     fine = Search::on(self, fine.stations.parted(self.curves, self.law, &marked), FINE.1);
                 }
@@ -195,6 +221,10 @@ impl Asked<'_> {
         }
         None
     }
+}
+
+fn goal_of(posture: Posture) -> usize {
+    GOALS.iter().position(|goal| *goal == posture).unwrap_or(0)
 }
 
 impl<'a> Search<'a> {
@@ -322,28 +352,6 @@ impl<'a> Search<'a> {
             }
         }
         best.ok_or(missed)
-    }
-
-    /// The same, and what becomes of the best of every other goal: rough values mislead.
-    fn finest_of_all(&self, ways: &[Way], posture: Posture) -> Result<Way, Missed> {
-        let goal = GOALS.iter().position(|goal| *goal == posture).unwrap_or(0);
-        let own = self.finest(ways, goal, posture == Posture::Orientation);
-        if goal == 0 {
-            return own;
-        }
-        let others = (0..GOALS.len()).filter(|other| *other != goal);
-        let firsts = others.filter_map(|other| self.finest(ways, other, false).ok());
-        let more = firsts.flat_map(|first| {
-            let then = self.refined(&self.held(), goal, &first.q, first.closed).ok();
-            [Some(first), then].into_iter().flatten()
-        });
-        let all: Vec<Way> = more.collect();
-        let best = all.into_iter().min_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
-        match (own, best) {
-            (Ok(own), Some(best)) if own.values[goal] <= best.values[goal] => Ok(own),
-            (_, Some(best)) => Ok(best),
-            (own, None) => own,
-        }
     }
 
     /// The poses of a rough way at these stations.

@@ -1,7 +1,6 @@
 //! Along curves and joint lines, on a plane or by least rates.
 
-use super::plan::{Pace, Plan, dynamics_of, keeps_rules};
-use super::posture::Effort;
+use super::plan::{Effort, Pace, Plan, dynamics_of, keeps_rules};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};

@@ -2,10 +2,9 @@
 
 use super::along::{Parts, along_parts, curves, proved, refusal, timed};
 use super::off_plane::smooth;
-use super::plan::{Plan, dynamics_of, keeps_rules};
+use super::plan::{Effort, Plan, dynamics_of, keeps_rules};
 use super::pose::{faced, posed, reached, start};
-use super::posture::{self, Effort};
-use super::{given, off_space};
+use super::{given, off_space, posture};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Forecast;
 use crate::planning::common::unreached;

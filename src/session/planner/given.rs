@@ -1,9 +1,9 @@
 //! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
 
 use super::along::start;
-use super::plan::{Plan, dynamics_of, keeps_rules};
+use super::plan::{Effort, Plan, dynamics_of, keeps_rules};
 use super::pose::{posed, start as start_of};
-use super::posture::{self, Effort};
+use super::posture;
 use crate::planning::Motion;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path, PathTable};

@@ -17,6 +17,15 @@ use crate::planning::{Forecast, Motion};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 
+/// How much is done to find a path and to say what would do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Effort {
+    /// A quick search, and no proposals: the task itself is only tried as a proposal.
+    Trial,
+    /// Everything.
+    Whole,
+}
+
 /// A planned task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {

@@ -1,6 +1,7 @@
 //! Paths of four drives and more that hold b, with their freedoms used as the task wants.
 
 use super::along::inner;
+use super::plan::Effort;
 use super::pose::{faced, hand_of, posed};
 use crate::mechanics::planar::Vector;
 use crate::planning::common::common;
@@ -19,15 +20,6 @@ const ASKED: usize = 16;
 const AT_LIMIT: f64 = 1e-9;
 /// By how much limits are widened at either end, rad, one after another.
 const WIDER: [f64; 3] = [0.1, 0.4, 1.0];
-
-/// How much is done to find a path and to say what would do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Effort {
-    /// A quick search, and no proposals: the task itself is only tried as a proposal.
-    Trial,
-    /// Everything.
-    Whole,
-}
 
 /// A path along each curve; `law` as [`Asked::law`].
 ///
