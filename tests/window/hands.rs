@@ -170,8 +170,15 @@ fn the_main_job_is_done_by_hand() {
     });
     assert!(desk.journal().is_none_or(|kept| kept.edits == saved.edits));
     desk.display.tap(HOME);
+
+    // What was liked last is kept, however soon the window closes.
+    for theme in ["Light", "Dark"] {
+        desk.display.tap(u32::from('l'));
+        desk.reads(theme);
+    }
     desk.display.close();
     assert_eq!(desk.ended(), Some(0), "{}", desk.log());
+    assert!(desk.preferences().contains("theme = \"light\""), "{}", desk.preferences());
     assert!(late < Duration::from_secs(3), "{late:?}");
     assert!(!desk.log().contains("panicked"), "{}", desk.log());
 }

@@ -155,6 +155,11 @@ impl Desk {
         entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|end| end == "toml")).collect()
     }
 
+    /// What it remembers of how it is liked.
+    pub fn preferences(&self) -> String {
+        fs::read_to_string(self.home.path("stillbase/preferences.toml")).unwrap_or_default()
+    }
+
     /// What it keeps of a session, if that is in one file.
     pub fn journal(&self) -> Option<Scenario> {
         let [file] = self.journals().try_into().ok()?;

@@ -10,7 +10,7 @@ use crate::files::preferences;
 
 /// Writes what changes, beside the window: the first change at once, later ones within a second.
 pub struct Keeper {
-    liked: (Preferences, Instant),
+    liked: Liked,
     journal: Option<Journal>,
     /// What the journal holds, and what is being written.
     held: Kept,
@@ -18,6 +18,24 @@ pub struct Keeper {
     next: Instant,
     /// What was left behind and goes when the journal holds it again.
     going: Option<PathBuf>,
+}
+
+/// How the window is liked, how its file has it, and since when.
+struct Liked {
+    now: Preferences,
+    written: Preferences,
+    when: Instant,
+}
+
+impl Liked {
+    /// Brings the file up to date.
+    fn write(&mut self) {
+        if self.written != self.now {
+            preferences::save(&self.now);
+            self.written.clone_from(&self.now);
+            self.when = Instant::now();
+        }
+    }
 }
 
 /// What of a session on display is kept: the count of its changes, and what is in none of them.
@@ -40,7 +58,8 @@ impl Keeper {
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
         let held = (app_state.changes().0, app_state.left_off());
-        Self { liked: (liked, now), journal: None, held, writing: None, next: now, going: None }
+        let liked = Liked { now: liked.clone(), written: liked, when: now };
+        Self { liked, journal: None, held, writing: None, next: now, going: None }
     }
 
     /// After a repaint.
@@ -51,17 +70,15 @@ impl Keeper {
 
     fn like(&mut self, ctx: &egui::Context, app_state: &AppState) {
         let size = ctx.content_rect().size();
-        let now = app_state.preferences([size.x, size.y]);
-        let (liked, when) = &mut self.liked;
-        if *liked == now {
+        let liked = &mut self.liked;
+        liked.now = app_state.preferences([size.x, size.y]);
+        if liked.now == liked.written {
             return;
         }
         // While an edge is dragged it is not written at every step.
-        if when.elapsed() >= PREFERENCES_INTERVAL {
-            preferences::save(&now);
-            self.liked = (now, Instant::now());
-        } else {
-            ctx.request_repaint_after(PREFERENCES_INTERVAL - when.elapsed());
+        match PREFERENCES_INTERVAL.checked_sub(liked.when.elapsed()) {
+            Some(wait) if !wait.is_zero() => ctx.request_repaint_after(wait),
+            _ => liked.write(),
         }
     }
 
@@ -121,6 +138,7 @@ impl Keeper {
 
     /// The window ends out of order: what was done is written at once, to be offered at the next start; where.
     pub fn keep_now(&mut self, app_state: &AppState) -> Option<PathBuf> {
+        self.liked.write();
         self.settle();
         if app_state.changes().0 != self.held.0 && self.journal.is_none() {
             self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
@@ -133,6 +151,7 @@ impl Keeper {
 
     /// The window closes in order: nothing is to be offered at the next start.
     pub fn end(&mut self) {
+        self.liked.write();
         // What is being written would come back after it was removed.
         self.settle();
         if let Some(journal) = self.journal.take() {

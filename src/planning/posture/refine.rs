@@ -7,7 +7,7 @@
 
 use super::envelope::Envelope;
 use super::goal::{Goal, times};
-use super::rows::{Frame, Held, arms};
+use super::rows::{Held, Rows, arms};
 use super::stations::Stations;
 use crate::mechanics::planar::{PerDrive, dot};
 
@@ -59,6 +59,18 @@ pub(super) struct Refining<'a> {
     pub closed: bool,
     /// Steps below this length, rad, are the last.
     pub done: f64,
+}
+
+/// What a pose keeps, and the directions that this leaves free.
+struct Frame {
+    rows: Rows,
+    free: Vec<PerDrive>,
+}
+
+impl Frame {
+    fn of(rows: Rows) -> Self {
+        Self { free: rows.free(), rows }
+    }
 }
 
 /// A limit that pushes: which pose, how stiffly, and in which direction.
@@ -169,7 +181,7 @@ impl Refining<'_> {
         matrix: &mut Envelope,
     ) -> Option<(Vec<PerDrive>, f64)> {
         let d = self.held.freedoms();
-        let frames: Vec<Frame> = q.iter().map(|q| self.held.frame(q)).collect::<Option<_>>()?;
+        let frames: Vec<Frame> = q.iter().map(|q| self.held.rows(q).map(Frame::of)).collect::<Option<_>>()?;
         let mut gradient = goal.gradient(q);
         let now = goal.value(q, &gradient) + self.pushed(q, forces);
         let mut stiff: Vec<Pushing> = Vec::new();
@@ -255,7 +267,7 @@ impl Refining<'_> {
             }
         }
         for (i, frame) in frames.iter().enumerate() {
-            let (nu, arm) = (frame.multipliers(&gradient[i]), arms(self.held.space, &q[i]));
+            let (nu, arm) = (frame.rows.multipliers(&gradient[i]), arms(self.held.space, &q[i]));
             let bend = PerDrive::from_fn(n, |k| {
                 let own = dot(nu, arm[k]);
                 if bent { own } else { own.max(0.0) }

@@ -22,14 +22,12 @@ pub(super) struct Held<'a> {
     pub hand: Option<(usize, f64)>,
 }
 
-/// The rows ∂(p, b, hand)/∂q at a pose, each as long as the arms, as L U with orthonormal U; and the directions that they
-/// leave free.
-#[derive(Clone, Debug)]
-pub(super) struct Frame {
-    across: Vec<PerDrive>,
+/// The rows ∂(p, b, hand)/∂q at a pose, each as long as the arms, as L U with orthonormal U.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rows {
+    count: usize,
+    across: [PerDrive; ROWS],
     lower: [[f64; ROWS]; ROWS],
-    /// Orthonormal, of number n − 3, or n − 4.
-    pub free: Vec<PerDrive>,
 }
 
 impl Held<'_> {
@@ -51,25 +49,25 @@ impl Held<'_> {
     }
 
     /// The rows at a pose; `None` where they depend on each other.
-    pub fn frame(&self, q: &PerDrive) -> Option<Frame> {
+    pub fn rows(&self, q: &PerDrive) -> Option<Rows> {
         let n = self.space.drives();
-        let arm = PerDriveOf(self.space.tip(), q);
-        let mut rows = vec![
-            PerDrive::from_fn(n, |k| -arm.at(k).im),
-            PerDrive::from_fn(n, |k| arm.at(k).re),
-            self.space.lambda().scaled(self.scale()),
-        ];
+        let arms = arms(self.space, q);
+        let none = PerDrive::zeros(n);
+        let mut all = [none; ROWS];
+        all[0] = PerDrive::from_fn(n, |k| -arms[k].im);
+        all[1] = PerDrive::from_fn(n, |k| arms[k].re);
+        all[2] = self.space.lambda().scaled(self.scale());
         if let Some((drive, _)) = self.hand {
-            rows.push(PerDrive::from_fn(n, |k| if k == drive { self.space.farthest() } else { 0.0 }));
+            all[3][drive] = self.space.farthest();
         }
-        let mut lower = [[0.0; ROWS]; ROWS];
-        let mut across: Vec<PerDrive> = Vec::with_capacity(n);
-        for (i, row) in rows.iter().enumerate() {
+        let count = ROWS - usize::from(self.hand.is_none());
+        let mut rows = Rows { count, across: [none; ROWS], lower: [[0.0; ROWS]; ROWS] };
+        for (i, row) in all[..count].iter().enumerate() {
             let mut left = *row;
             for _ in 0..2 {
-                for (j, u) in across.iter().enumerate() {
+                for (u, lower) in rows.across[..i].iter().zip(&mut rows.lower[i]) {
                     let share = left.dot(u);
-                    lower[i][j] += share;
+                    *lower += share;
                     left = left.plus(-share, u);
                 }
             }
@@ -77,11 +75,10 @@ impl Held<'_> {
             if length.is_nan() || length <= NO_RANK * row.dot(row).sqrt() {
                 return None;
             }
-            lower[i][i] = length;
-            across.push(left.scaled(1.0 / length));
+            rows.lower[i][i] = length;
+            rows.across[i] = left.scaled(1.0 / length);
         }
-        let free = left_free(&across, n);
-        Some(Frame { across, lower, free })
+        Some(rows)
     }
 
     /// The pose of a point beside a pose, by the least steps.
@@ -99,7 +96,7 @@ impl Held<'_> {
                 return None;
             }
             last = size;
-            q = q.plus(1.0, &self.frame(&q)?.least(&missing));
+            q = q.plus(1.0, &self.rows(&q)?.least(&missing));
         }
         None
     }
@@ -111,28 +108,28 @@ impl Held<'_> {
         (first, second): (&PerDrive, &PerDrive),
         way: [Vector; 2],
     ) -> Option<(PerDrive, PerDrive)> {
-        let frame = self.frame(q)?;
-        let (n, arm) = (self.space.drives(), PerDriveOf(self.space.tip(), q));
+        let rows = self.rows(q)?;
+        let (n, arms) = (self.space.drives(), arms(self.space, q));
         let i = Vector::new(0.0, 1.0);
         let left = |rates: &PerDrive, wanted: Vector| {
-            let off = wanted - (0..n).map(|k| i * arm.at(k) * rates[k]).sum::<Vector>();
+            let off = wanted - (0..n).map(|k| i * arms[k] * rates[k]).sum::<Vector>();
             let hand = self.hand.map_or(0.0, |(drive, _)| -self.space.farthest() * rates[drive]);
             [off.re, off.im, -self.scale() * self.space.lambda().dot(rates), hand]
         };
-        let first = first.plus(1.0, &frame.least(&left(first, way[0])));
+        let first = first.plus(1.0, &rows.least(&left(first, way[0])));
         // p″ = J q″ − Σ c e q′².
-        let pull: Vector = (0..n).map(|k| arm.at(k) * first[k] * first[k]).sum();
-        let second = second.plus(1.0, &frame.least(&left(second, way[1] + pull)));
+        let pull: Vector = (0..n).map(|k| arms[k] * first[k] * first[k]).sum();
+        let second = second.plus(1.0, &rows.least(&left(second, way[1] + pull)));
         Some((first, second))
     }
 }
 
-impl Frame {
+impl Rows {
     /// The least change of q that makes the rows change so.
     pub fn least(&self, wanted: &[f64; ROWS]) -> PerDrive {
-        let mut delta = PerDrive::zeros(self.across.first().map_or(0, |u| u.len()));
+        let mut delta = PerDrive::zeros(self.across[0].len());
         let mut y = [0.0; ROWS];
-        for (i, u) in self.across.iter().enumerate() {
+        for (i, u) in self.across[..self.count].iter().enumerate() {
             let known: f64 = (0..i).map(|j| self.lower[i][j] * y[j]).sum();
             y[i] = (wanted[i] - known) / self.lower[i][i];
             delta = delta.plus(y[i], u);
@@ -143,44 +140,45 @@ impl Frame {
     /// ν of the point with Cᵀ ν nearest to a gradient.
     pub fn multipliers(&self, gradient: &PerDrive) -> Vector {
         let mut nu = [0.0; ROWS];
-        for i in (0..self.across.len()).rev() {
-            let known: f64 = (i + 1..self.across.len()).map(|j| self.lower[j][i] * nu[j]).sum();
+        for i in (0..self.count).rev() {
+            let known: f64 = (i + 1..self.count).map(|j| self.lower[j][i] * nu[j]).sum();
             nu[i] = (self.across[i].dot(gradient) - known) / self.lower[i][i];
         }
         Vector::new(nu[0], nu[1])
+    }
+
+    /// Orthonormal directions that they leave free, of number n − 3, or n − 4.
+    pub fn free(&self) -> Vec<PerDrive> {
+        left_free(&self.across[..self.count], self.across[0].len())
     }
 }
 
 /// Orthonormal directions that complete others.
 pub(super) fn left_free(across: &[PerDrive], n: usize) -> Vec<PerDrive> {
-    let mut all = across.to_vec();
+    let mut all: Vec<PerDrive> = Vec::with_capacity(n);
+    all.extend_from_slice(across);
+    // What is left of each axis, squared.
+    let mut left = PerDrive::from_fn(n, |k| 1.0 - across.iter().map(|u| u[k] * u[k]).sum::<f64>());
     while all.len() < n {
         // The axis of which most is left.
-        let left = |k: usize| 1.0 - all.iter().map(|u| u[k] * u[k]).sum::<f64>();
-        let Some(axis) = (0..n).max_by(|k, l| left(*k).total_cmp(&left(*l))) else { break };
+        let Some(axis) = (0..n).max_by(|k, l| left[*k].total_cmp(&left[*l])) else { break };
         let mut next = PerDrive::zeros(n);
         next[axis] = 1.0;
         for _ in 0..2 {
             all.iter().for_each(|u| next = next.plus(-next.dot(u), u));
         }
-        all.push(next.scaled(1.0 / next.dot(&next).sqrt()));
+        let next = next.scaled(1.0 / next.dot(&next).sqrt());
+        (0..n).for_each(|k| left[k] -= next[k] * next[k]);
+        all.push(next);
     }
     all.split_off(across.len())
 }
 
-/// c_k e^{iq_k}, m.
-struct PerDriveOf<'a>(&'a PerDrive, &'a PerDrive);
-
-impl PerDriveOf<'_> {
-    fn at(&self, k: usize) -> Vector {
-        self.0[k] * unit(self.1[k])
-    }
-}
-
-/// The arms at a pose, m.
+/// c_k e^{iq_k}: the arms at a pose, m.
 pub(super) fn arms(space: &PoseSpace, q: &PerDrive) -> [Vector; MAX_DRIVES] {
-    let arm = PerDriveOf(space.tip(), q);
-    std::array::from_fn(|k| if k < space.drives() { arm.at(k) } else { Vector::default() })
+    let mut all = [Vector::default(); MAX_DRIVES];
+    all.iter_mut().zip(space.tip().iter().zip(q.iter())).for_each(|(arm, (c, q))| *arm = c * unit(*q));
+    all
 }
 
 /// Relative angles as drive angles on b.
