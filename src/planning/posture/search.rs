@@ -145,8 +145,8 @@ impl Asked<'_> {
     /// How far a way goes.
     pub fn path(&self, posture: Posture) -> Result<Found, NoWay> {
         self.looked(&DETAILS, posture, |ways, turned| match posture {
-            Posture::Orientation => Some(self.finest(ways, posture)?.1),
-            _ => self.least_of_all(ways, turned(), posture),
+            Posture::Orientation => Some(self.finest(turned, posture)?.1),
+            _ => self.least_of_all(ways, turned, posture),
         })
     }
 
@@ -155,14 +155,16 @@ impl Asked<'_> {
     /// # Errors
     /// As [`path`](Self::path).
     pub fn quick_path(&self, posture: Posture) -> Result<Found, NoWay> {
-        self.looked(&DETAILS[..1], posture, |ways, _| Some(self.finest(ways, posture)?.1))
+        self.looked(&DETAILS[..1], posture, |ways, turned| {
+            Some(self.finest(if posture == Posture::Orientation { turned } else { ways }, posture)?.1)
+        })
     }
 
     fn looked(
         &self,
         details: &[(usize, f64, usize)],
         posture: Posture,
-        best: impl Fn(&[Way], &dyn Fn() -> Vec<Way>) -> Option<Way>,
+        best: impl Fn(&[Way], &[Way]) -> Option<Way>,
     ) -> Result<Found, NoWay> {
         let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH.0), ROUGH.1);
         let starts = self.space.sheets(rough.stations.places[0], self.b);
@@ -171,17 +173,13 @@ impl Asked<'_> {
             let why = match rough.layers(&starts, *detail) {
                 Err(at) => NoWay::Ends { share: rough.stations.done(at) },
                 Ok(layers) => {
-                    let ways = match posture {
-                        Posture::Orientation => rough.oriented(&layers, self.hand.1),
-                        _ => rough.ways(&layers),
-                    };
-                    if let Some(way) = best(&ways, &|| rough.oriented(&layers, None)) {
+                    let is_held = posture == Posture::Orientation;
+                    let turned = rough.oriented(&layers, self.hand.1.filter(|_| is_held));
+                    let ways = if is_held { Vec::new() } else { rough.ways(&layers, turned.first()) };
+                    if let Some(way) = best(&ways, &turned) {
                         return Ok(Found { tables: way.tables });
                     }
-                    match posture {
-                        Posture::Orientation if ways.is_empty() => NoWay::Turns,
-                        _ => NoWay::Abrupt,
-                    }
+                    if is_held && turned.is_empty() { NoWay::Turns } else { NoWay::Abrupt }
                 }
             };
             refused = if why.rank() > refused.rank() { why } else { refused };
@@ -191,9 +189,9 @@ impl Asked<'_> {
 
     /// The one with the least of what a posture wants among the best ways by every goal, those that keep the orientation,
     /// and what every goal makes of them: whichever posture is wanted, the same ways are compared.
-    fn least_of_all(&self, ways: &[Way], mut turned: Vec<Way>, posture: Posture) -> Option<Way> {
+    fn least_of_all(&self, ways: &[Way], turned: &[Way], posture: Posture) -> Option<Way> {
         let closes = ways.iter().any(|way| way.closed);
-        turned.retain(|way| way.closed || !closes);
+        let turned: Vec<Way> = turned.iter().filter(|way| way.closed || !closes).cloned().collect();
         let mut all: Vec<Way> = Vec::new();
         for own in [Posture::LeastRates, Posture::LeastTorque, Posture::MidRange, Posture::Orientation] {
             let Some((fine, way)) = self.finest(if own == Posture::Orientation { &turned } else { ways }, own) else {
@@ -271,8 +269,9 @@ impl<'a> Search<'a> {
         Layers::of((self.asked.space, self.asked.b), &self.stations, starts, Detail { layers, apart, most })
     }
 
-    /// Ways over the layers, refined; those of closed curves that close, if there are any.
-    fn ways(&self, layers: &Layers<'_>) -> Vec<Way> {
+    /// Ways over the layers, refined, and from one that keeps the orientation; those of closed curves that close, if there
+    /// are any.
+    fn ways(&self, layers: &Layers<'_>, turned: Option<&Way>) -> Vec<Way> {
         let closings: &[bool] = if self.asked.closed { &[true, false] } else { &[false] };
         for closed in closings {
             let mut ways: Vec<Way> = Vec::new();
@@ -283,8 +282,7 @@ impl<'a> Search<'a> {
             if ways.is_empty() {
                 continue;
             }
-            let oriented = self.oriented(layers, None).into_iter().next();
-            ways.extend(oriented.filter(|way| !closed || way.closed));
+            ways.extend(turned.filter(|way| !closed || way.closed).cloned());
             self.crossed(&mut ways, *closed);
             return ways;
         }
