@@ -257,10 +257,8 @@ impl Sweep<'_> {
             let j = (i + first) % n;
             let before = edge.beside;
             self.trace([end.spot, to.ends[j].spot], [from.at(i), to.at(j)], &mut edge)?;
-            if end.opens {
-                // Outwards it has the workspace on its left.
-                edge.beside = before + (edge.beside - before);
-            } else {
+            // Outwards it has the workspace on its left where it opens.
+            if !end.opens {
                 edge.beside = before - (edge.beside - before);
             }
             upto.push(edge.points.len());

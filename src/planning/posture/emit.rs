@@ -9,6 +9,8 @@ use crate::planning::curves::{PathPoint, PathTable};
 
 /// Places within a space at which limits are looked at.
 const LOOKS: usize = 4;
+/// Steps from the look beside a peak to the peak.
+const PEAK_STEPS: usize = 4;
 
 /// Tables of all legs of a path.
 pub(super) fn tables(held: &Held<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
@@ -38,14 +40,36 @@ pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTabl
     legs.map(|(leg, table)| leg.between.iter().map(|between| off(table, between)).collect()).collect()
 }
 
+/// The pose of a path where an angle is greatest or least, between places: Newton's iteration on its slope.
+fn peak(table: &PathTable, bound: &Bound, [from, place, to]: [f64; 3]) -> PerDrive {
+    let mut s = place;
+    for _ in 0..PEAK_STEPS {
+        let point = table.at(s);
+        let change = bound.row.dot(&point.first) / bound.row.dot(&point.second);
+        if change.is_finite() {
+            s = (s - change).clamp(from, to);
+        }
+    }
+    table.at(s).q.0
+}
+
 /// By how much each limit is passed at most, rad.
 pub(super) fn past(bounds: &[Bound], stations: &Stations, tables: &[PathTable]) -> Vec<f64> {
     let mut most = vec![f64::NEG_INFINITY; bounds.len()];
     for (leg, table) in stations.legs.iter().zip(tables) {
-        for w in leg.s.windows(2) {
-            for k in 0..=LOOKS {
-                let q = table.at(w[0] + k as f64 / LOOKS as f64 * (w[1] - w[0])).q;
-                most.iter_mut().zip(bounds).for_each(|(most, bound)| *most = most.max(bound.past(&q.0)));
+        let within = |w: &[f64], k: usize| w[0] + k as f64 / LOOKS as f64 * (w[1] - w[0]);
+        let places = leg.s.windows(2).flat_map(|w| (0..LOOKS).map(move |k| within(w, k)));
+        let looks: Vec<(f64, PerDrive)> = places.chain(leg.s.last().copied()).map(|s| (s, table.at(s).q.0)).collect();
+        for (most, bound) in most.iter_mut().zip(bounds) {
+            let past: Vec<f64> = looks.iter().map(|(_, q)| bound.past(q)).collect();
+            *most = past.iter().copied().fold(*most, f64::max);
+            for (i, w) in past.windows(3).enumerate() {
+                // A peak is less than half its sides above the look beside it.
+                let may = w[1] + 0.5 * (w[1] - w[0].min(w[2]));
+                if w[1] >= w[0] && w[1] >= w[2] && may > *most {
+                    let q = peak(table, bound, [looks[i].0, looks[i + 1].0, looks[i + 2].0]);
+                    *most = most.max(bound.past(&q));
+                }
             }
         }
     }
