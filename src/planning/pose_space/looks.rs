@@ -21,14 +21,14 @@ const NEAREST: [usize; 2] = [3, 24];
 /// How far into it, as a share of it, and of b's period at most.
 const INTO: f64 = 0.3;
 const AT_MOST: f64 = 0.02;
-/// Places all over the ranges from which joints turn to come to a distance, how often all do at most, and how little, as a
-/// share of the reach, is nothing.
-const STARTS: usize = 32;
+/// How often all joints turn at most to come to a distance, and how little, as a share of the reach, is nothing.
 const MAX_SWEEPS: usize = 200;
 const STANDS: f64 = 1e-12;
-/// Poses at a distance whose b are known, at first and with all care, and how far inside a gap one is, as a share of it.
+/// Places all over the ranges from which poses at a distance are come to, at first and with all care, and how far inside a gap one is, as a share of it.
 const SAMPLES: [usize; 2] = [32, 512];
 const INSIDE: f64 = 1e-3;
+/// From how near B poses lead onto it, as a share of the reach.
+const NEAR_BASE: f64 = 1e-2;
 /// Critical values that are one, to rounding, rad.
 const SAME: f64 = 1e-9;
 
@@ -163,17 +163,27 @@ impl PoseSpace {
     }
 
     /// Whether any pose is at a distance from B, m, where b goes round without an end: at one b as at any.
-    pub(super) fn any_pose(&self, distance: f64) -> bool {
+    pub(super) fn any_pose(&self, distance: f64, looks: &Looks) -> bool {
+        let starts = SAMPLES[usize::from(looks.careful)];
         match self.drives() {
             ..4 => self.is_there(Vector::new(distance, 0.0), 0.0),
-            _ if distance <= AT_BASE * self.farthest() => self.is_solved(Vector::default(), 0.0),
-            _ if (0..STARTS).any(|i| self.comes_to(distance, self.spread(i)).is_some()) => true,
+            _ if distance <= AT_BASE * self.farthest() => self.is_at_base(starts),
+            _ if (0..starts).any(|i| self.comes_to(distance, self.spread(i)).is_some()) => true,
             // On the way from a pose that is farther off to one on B.
             _ => {
                 let distance_of = |i: usize| self.place(&DriveAngles(self.unturned(&self.spread(i)))).norm();
-                (0..STARTS).any(|i| distance_of(i) >= distance) && self.is_solved(Vector::default(), 0.0)
+                (0..starts).any(|i| distance_of(i) >= distance) && self.is_at_base(starts)
             }
         }
+    }
+
+    /// Whether a pose on B is come to from one of so many places: at one b as at any.
+    fn is_at_base(&self, starts: usize) -> bool {
+        let windows = self.windows();
+        let leads = |a: &PerDrive| self.solved(Vector::default(), 0.0, a, &windows).is_some();
+        (0..starts)
+            .map(|i| self.spread(i))
+            .any(|a| leads(&a) || self.comes_to(NEAR_BASE * self.farthest(), a).is_some_and(|near| leads(&near)))
     }
 
     /// Whether a pose at a point and b is come to from somewhere.

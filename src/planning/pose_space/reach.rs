@@ -58,12 +58,12 @@ impl PoseSpace {
             let b = if self.tip[0] < 0.0 { 0.5 * period } else { 0.0 };
             return BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period };
         }
-        if distance <= AT_BASE * self.farthest() {
-            let any = self.any_pose(distance);
-            return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
-        }
         let mut work = Work::default();
         work.looks.careful = careful;
+        if distance <= AT_BASE * self.farthest() {
+            let any = self.any_pose(distance, &work.looks);
+            return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
+        }
         if self.criticals(distance, |c| work.ends.push(c)) {
             return self.joined(distance, &[], &mut work).set(period);
         }
@@ -119,7 +119,7 @@ impl PoseSpace {
         if n == 0 {
             // b may go round and round without an end: near B the machine turns as a whole.
             let known = agreed(beside.iter().map(|seen| seen.whole())).filter(|_| beside.len() > 1);
-            let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance));
+            let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
             return Covered { ends: Vec::new(), gaps: vec![whole], period };
         }
         let gaps = (0..n).map(|i| merged[i].rises() || merged[(i + 1) % n].falls()).collect();

@@ -55,7 +55,7 @@ impl Bookmark {
         let count = self.name.chars().count();
         match self {
             _ if !(0.0..=MAX_TIME).contains(&self.time) => {
-                Err(format!("time is {}: want a number from 0 to {MAX_TIME} s", self.time))
+                Err(format!("time is {}: want a number from 0 to {MAX_TIME} s", Short(self.time)))
             }
             _ if self.name.trim().is_empty() || count > MAX_NAME => {
                 Err(format!("name has {count} characters: want 1 to {MAX_NAME}, not all of them spaces"))
