@@ -183,6 +183,46 @@ fn no_edge_runs_along_a_circle() {
     }
 }
 
+/// The b of two distances that hardly differ are as many intervals that hardly differ.
+fn alike(space: &PoseSpace, r: f64) {
+    let of = |r: f64| space.reach(Vector::new(r, 0.0)).map_or(Vec::new(), |set| set.intervals);
+    let (here, beside) = (of(r), of(r + 1e-7 * space.farthest()));
+    let ends = here.iter().flatten().zip(beside.iter().flatten());
+    let apart = ends.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    assert!(here.len() == beside.len() && apart < 0.02, "at {r} m: {here:?}, beside it {beside:?}");
+}
+
+/// On the first machine a critical pose was missed where its curve turns back beyond the limits, on the second one any pose
+/// near B.
+#[test]
+fn distances_beside_each_other_have_nearly_the_same_b() {
+    let the = |seed: u64, i: usize| {
+        let mut noise = Noise::of(seed);
+        (0..i).for_each(|_| {
+            a_space(&mut noise, 5);
+            noise.between(-4.0, 4.0);
+        });
+        a_space(&mut noise, 5).1
+    };
+    let (turns, small) = (the(9, 171), the(8, 162));
+    for below in [1e-5, 1e-6, 1e-7] {
+        alike(&turns, (0.616_565_763_950_347_9 - below) * turns.farthest());
+    }
+    for share in [0.0, 1e-4, 5e-3, 0.0117] {
+        let whole = [[0.0, small.period()]];
+        let set = small.reach(Vector::new(share * small.farthest(), 0.0)).expect("poses");
+        assert_eq!(set.intervals, whole, "at {share} of the reach");
+    }
+    let mut noise = Noise::of(17);
+    for n in [4, 5, 4, 5, 6] {
+        let space = a_space(&mut noise, n).1;
+        for _ in 0..4 {
+            let a = a_pose(&mut noise, &space);
+            alike(&space, space.place(&space.lift(&a, 0.0)).norm());
+        }
+    }
+}
+
 #[test]
 #[ignore = "a campaign of minutes: 300 machines with four drives, 200 with five, 60 with six"]
 fn no_edge_of_hundreds_runs_along_a_circle() {

@@ -452,32 +452,38 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     };
     let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let value = |i: usize| signs.values[i] - square;
-    // From one turn to the next it rises or falls. Ends: the cell, t and the value.
-    let mut from = (0, place(0), value(0));
+    // From one turn to the next it rises or falls. Where a turn lies among poses beyond the limits it is not known exactly:
+    // one stretch ends at the place before it and the next begins at the place after. Ends: the cell, t and the value.
+    let end = |i: usize| (place(i), value(i));
+    let (mut first, mut from) = (0, end(0));
     for turns in 0..=signs.turns.len() {
-        let turn = signs.turns.get(turns);
-        let to =
-            turn.map_or((SPACES - 1, place(SPACES), value(SPACES)), |turn| (turn.cell, turn.t, turn.value - square));
-        if from.2 == 0.0 {
-            found(from.1, turns);
-        } else if from.2 * to.2 < 0.0 {
+        let (last, to, next) = match signs.turns.get(turns) {
+            None => (SPACES, end(SPACES), (SPACES, end(SPACES))),
+            Some(turn) if alive(turn.cell) => {
+                let to = (turn.t, turn.value - square);
+                (turn.cell + 1, to, (turn.cell, to))
+            }
+            Some(turn) => (turn.cell, end(turn.cell), (turn.cell + 1, end(turn.cell + 1))),
+        };
+        if from.1 == 0.0 {
+            found(from.0, turns);
+        } else if from.0 < to.0 && (from.1 * to.1 < 0.0 || (to.1 == 0.0 && next.1.0 > to.0)) {
             // The last place that is on the side of the first end, and the next.
-            let (mut low, mut high) = (from.0, to.0 + 1);
+            let (mut low, mut high) = (first, last);
             while high - low > 1 {
                 let middle = (low + high) / 2;
-                *(if value(middle) * from.2 > 0.0 { &mut low } else { &mut high }) = middle;
+                *(if value(middle) * from.1 > 0.0 { &mut low } else { &mut high }) = middle;
             }
             if alive(low) {
-                let first = if low == from.0 { (from.1, from.2) } else { (place(low), value(low)) };
-                let last = if high == to.0 + 1 { (to.1, to.2) } else { (place(high), value(high)) };
-                let t = if last.1 == 0.0 { last.0 } else { bracketed(&miss, [first.0, last.0], [first.1, last.1]) };
-                found(t, turns);
+                let a = if low == first { from } else { end(low) };
+                let b = if high == last { to } else { end(high) };
+                found(if b.1 == 0.0 { b.0 } else { bracketed(&miss, [a.0, b.0], [a.1, b.1]) }, turns);
             }
         }
-        from = to;
+        (first, from) = next;
     }
-    if from.2 == 0.0 {
-        found(from.1, signs.turns.len());
+    if from.1 == 0.0 {
+        found(from.0, signs.turns.len());
     }
 }
 

@@ -73,7 +73,7 @@ pub(super) struct Signs {
     pub values: [f64; SPACES + 1],
     pub least: f64,
     pub greatest: f64,
-    /// Where it turns back, in order: from one to the next it rises or falls.
+    /// Where it turns back, in order: from one to the next it rises or falls. Within the cells exactly.
     pub turns: Vec<Turn>,
 }
 
