@@ -10,6 +10,7 @@ mod input;
 mod joints;
 mod learn;
 mod machines;
+mod net;
 mod plan;
 mod reach;
 mod simulate;
