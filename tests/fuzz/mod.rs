@@ -179,7 +179,9 @@ pub fn is_short(said: &str) -> Result<(), String> {
     let digits = said.split(|c: char| !c.is_ascii_digit()).map(str::len).max().unwrap_or(0);
     // What somebody wrote may be quoted.
     let own: String = said.split(['"', '`']).step_by(2).collect();
-    match said.chars().count() > 1500 || digits > 30 || own.contains("NaN") || said.trim().is_empty() {
+    // A key holds names that somebody wrote, `link.NaN.mass`.
+    let nan = own.split_whitespace().any(|word| word.trim_matches(|c: char| !c.is_alphanumeric()) == "NaN");
+    match said.chars().count() > 1500 || digits > 30 || nan || said.trim().is_empty() {
         true => Err(format!(
             "a message of {} characters: {}",
             said.chars().count(),

@@ -233,7 +233,10 @@ fn what_cannot_be_kept_is_refused() {
     let text = open(coarse()).to_scenario().to_toml();
     for (more, part) in [
         ("[[bookmark]]\ntime = -1.0\nname = \"a\"\n", "bookmark 1: time is -1"),
-        ("[[bookmark]]\ntime = 0.0\nname = \"a\"\n[[bookmark]]\ntime = nan\nname = \"a\"\n", "bookmark 2: time is NaN"),
+        (
+            "[[bookmark]]\ntime = 0.0\nname = \"a\"\n[[bookmark]]\ntime = nan\nname = \"a\"\n",
+            "bookmark 2: time is not a number",
+        ),
         ("[[bookmark]]\ntime = 1.0\nname = \" \"\n", "bookmark 1: name has 1 characters"),
         ("[[bookmark]]\ntime = 1.0\nname = \"a\"\nnotes = 1\n", "notes"),
         ("[[branch]]\nduration = -1.0\n", "branch 1: duration is -1"),
