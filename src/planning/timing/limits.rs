@@ -195,7 +195,7 @@ impl<'a> Constraints<'a> {
         Self { model, around: *around, limits, constant, rows, quick }
     }
 
-    /// What each row limits, in the order of [`at`](Self::at).
+    /// What each row limits, in the order of `at`.
     pub fn rows(&self) -> &[DriveLimit] {
         &self.rows
     }
