@@ -14,6 +14,7 @@
 //! distance of B(r') + θ Σλ from S on the circle of b, divided by Σλ, and the move is r² + r'² − 2 r r' cos Δθ, squared.
 
 use crate::mechanics::planar::{Vector, unit};
+use crate::planning::golden::golden;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{BSet, Decimal, NoReach, PlaneMap};
 use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
@@ -36,6 +37,14 @@ pub trait Reaching {
     /// # Errors
     /// If there is none.
     fn b_of(&self, p: Vector) -> Result<BSet, NoReach>;
+
+    /// The same, looked for briefly: some may be missing.
+    ///
+    /// # Errors
+    /// If none was found.
+    fn most_b_of(&self, p: Vector) -> Result<BSet, NoReach> {
+        self.b_of(p)
+    }
 
     /// Whether some pose at b, rad, has the end effector on a point, m.
     fn is_reached(&self, p: Vector, b: f64) -> bool;
@@ -77,6 +86,10 @@ impl Reaching for PoseSpace {
         self.reach(p)
     }
 
+    fn most_b_of(&self, p: Vector) -> Result<BSet, NoReach> {
+        self.reach_with(p, false)
+    }
+
     fn is_reached(&self, p: Vector, b: f64) -> bool {
         self.reaches(p, b)
     }
@@ -97,9 +110,13 @@ impl Reaching for PoseSpace {
 
 /// The b that reach a point, single ones with their slack.
 fn set_of(map: &dyn Reaching, p: Vector) -> Result<BSet, NoReach> {
-    let (mut set, slack) = (map.b_of(p)?, map.slack());
+    Ok(slackened(map, map.b_of(p)?))
+}
+
+fn slackened(map: &dyn Reaching, mut set: BSet) -> BSet {
+    let slack = map.slack();
     set.intervals.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - slack, *high + slack));
-    Ok(set)
+    set
 }
 
 /// The b that serve all points, m; `None` if none does.
@@ -181,13 +198,13 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
     }
     let (r, theta, sum) = (p.norm(), p.arg(), map.lambda_sum());
     let [near, far] = map.distances();
-    // How far the move to a distance goes, m, and by what angle.
-    let to = |distance: f64| -> (f64, f64) {
+    // How far the move to a distance goes, m, and by what angle, for the b that reach (distance, 0).
+    let by = |distance: f64, set: Result<BSet, NoReach>| -> (f64, f64) {
         let turned = |set: BSet| BSet {
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),
             ..set
         };
-        let set = set_of(map, Vector::new(distance, 0.0)).ok().map(turned);
+        let set = set.ok().map(|set| turned(slackened(map, set)));
         match set.and_then(|set| shift(&set, others)) {
             Some(shift) => {
                 let half = (0.5 * shift / sum).sin();
@@ -196,6 +213,7 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
             None => (f64::INFINITY, 0.0),
         }
     };
+    let to = |distance: f64| by(distance, map.b_of(Vector::new(distance, 0.0)));
     let step = (far - near) / TRIES as f64;
     let mut tries: Vec<f64> = (0..=TRIES).map(|i| near + step * i as f64).chain([r.clamp(near, far)]).collect();
     tries.sort_by(|x, y| (x - r).abs().total_cmp(&(y - r).abs()));
@@ -206,7 +224,7 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
         if (distance - r).abs() > best + step {
             break;
         }
-        let (gap, _) = to(distance);
+        let (gap, _) = by(distance, map.most_b_of(Vector::new(distance, 0.0)));
         tried.push((gap, distance));
         best = best.min(gap);
     }
@@ -219,17 +237,8 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
         }
     }
     let refined = kept.into_iter().map(|(gap, distance)| {
-        let (mut from, mut until) = ((distance - step).max(near), (distance + step).min(far));
-        let mut best = (gap, distance);
-        for _ in 0..SECTIONS {
-            let (s, t) = (from + 0.381_966 * (until - from), from + 0.618_034 * (until - from));
-            let [x, y] = [to(s).0, to(t).0];
-            for found in [(x, s), (y, t)] {
-                best = if found.0 < best.0 { found } else { best };
-            }
-            if x < y { until = t } else { from = s }
-        }
-        best
+        let (better, least) = golden([(distance - step).max(near), (distance + step).min(far)], SECTIONS, |x| to(x).0);
+        if least < gap { (least, better) } else { (gap, distance) }
     });
     let (_, distance) = refined.min_by(|x, y| x.0.total_cmp(&y.0))?;
     // Rounding may part what just touches, as where the curve of two drives ends: then a little beside it.

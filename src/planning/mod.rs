@@ -15,6 +15,7 @@ pub mod common;
 pub mod curves;
 pub mod following;
 pub mod forecast;
+mod golden;
 pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;

@@ -24,6 +24,7 @@ use crate::planning::curves::given::Samples;
 use crate::planning::curves::table::PathTable;
 use crate::planning::following::trace;
 use crate::planning::following::trace::{Blocked, Rule};
+use crate::planning::golden::golden;
 use crate::planning::reactionless::{BSet, PlaneMap};
 
 /// How far two motions of one timing are apart.
@@ -118,18 +119,9 @@ pub(super) fn least(
             }
         }
     }
-    let (mut b, mut least, [mut from, mut to]) = best?;
-    for _ in 0..sections {
-        let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
-        let [x, y] = [far(s), far(t)];
-        for (at, distance) in [(s, x), (t, y)] {
-            if distance < least {
-                (b, least) = (at, distance);
-            }
-        }
-        if x < y { to = t } else { from = s }
-    }
-    Some((b, least))
+    let (b, distance, around) = best?;
+    let refined = golden(around, sections, far);
+    Some(if refined.1 < distance { refined } else { (b, distance) })
 }
 
 /// b that are tried in each interval, and golden sections after that.

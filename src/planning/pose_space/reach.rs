@@ -23,7 +23,7 @@ impl PoseSpace {
     }
 
     /// The same, with poses looked for with all care, or less: then b may be missing.
-    pub(super) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
+    pub(in crate::planning) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         let (distance, farthest, nearest) = (p.norm(), self.farthest(), self.nearest());
         if distance > farthest * (1.0 + 1e-12) {
             return Err(NoReach::TooFar { distance, farthest });

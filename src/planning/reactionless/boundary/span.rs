@@ -6,6 +6,7 @@
 
 use super::determinant::{Determinant, INSET, upright};
 use crate::mechanics::planar::{Vector, cross, dot};
+use crate::planning::golden::golden;
 use crate::planning::reactionless::{AngleLimit, PlaneMap};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
@@ -181,13 +182,8 @@ impl Surface {
                 here.abs() < before.abs() && here.abs() <= after.abs() && here * before > 0.0 && here * after > 0.0;
             if dip {
                 let sign = here.signum();
-                let (mut low, mut high) = (stops[i - 1].0, stops[i + 1].0);
-                for _ in 0..40 {
-                    let (a, b) = (low + 0.381_966 * (high - low), low + 0.618_034 * (high - low));
-                    if sign * speed(a) < sign * speed(b) { high = b } else { low = a }
-                }
-                let bottom = 0.5 * (low + high);
-                let value = speed(bottom);
+                let (bottom, least) = golden([stops[i - 1].0, stops[i + 1].0], 40, |t| sign * speed(t));
+                let value = sign * least;
                 if value * here < 0.0 {
                     stops.push((bottom, value));
                 }
