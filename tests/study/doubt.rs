@@ -273,10 +273,17 @@ fn campaign_of_faults() {
     }
 }
 
-/// Any machine of up to four drives, with rotors of either sense and gravity, built off along and across its links.
+/// Any machine of up to four drives, with rotors of either sense and gravity.
 fn any_recording(noise: &mut Noise, rows: u32) -> (Machine, Recording) {
     let machine = std::iter::repeat_with(|| a_machine(noise)).find(|machine| machine.drives() <= 4).expect("endless");
-    let (n, off) = (machine.drives(), [0.0, 0.003, 0.01, 0.05][(noise.between(0.0, 4.0) as usize).min(3)]);
+    let off = [0.0, 0.003, 0.01, 0.05][(noise.between(0.0, 4.0) as usize).min(3)];
+    let recording = a_recording(&machine, off, noise, rows);
+    (machine, recording)
+}
+
+/// Motions of a machine whose links are built off by up to `off` m along them, half of it across, and that share of mass.
+fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> Recording {
+    let n = machine.drives();
     let mut spec = machine.spec().clone();
     for link in &mut spec.links {
         link.com += off * noise.between(-1.0, 1.0);
@@ -315,7 +322,7 @@ fn any_recording(noise: &mut Noise, rows: u32) -> (Machine, Recording) {
         }
         motions.push(motion);
     }
-    (machine, Recording { motions })
+    Recording { motions }
 }
 
 /// Of any machine honest measurements are believed, and none whose moment is reversed where D is known.
@@ -328,11 +335,33 @@ fn honest_measurements_of_any_machine_are_believed() {
     }
 }
 
+/// Faults of the force alone, which no momentum tells.
+const OF_FORCE: &[(&str, Spoil)] = &[
+    ("fx and fy have the wrong sign", |m| each_force(m, |f| -f)),
+    ("turned by 90°", |m| each_force(m, |f| Vector::i() * f)),
+    ("fx and fy are in kN, not in N", |m| each_force(m, |f| 1e-3 * f)),
+];
+
+/// A machine that is not balanced shows by its first moments which way its force sensor reads.
+#[test]
+fn faults_of_the_force_of_a_machine_that_is_not_balanced_are_refused() {
+    let mut noise = Noise::of(37);
+    for name in ["nine-link-bare", "scara", "space-arm"] {
+        let machine = builtin(name).expect("built in");
+        let recording = a_recording(machine, 0.005, &mut noise, 200);
+        assert_eq!(asked(machine, &recording), None, "{name}");
+        for (fault, spoil) in OF_FORCE {
+            let doubt = asked(machine, &spoilt(&recording, *spoil)).unwrap_or_else(|| panic!("{name}: {fault}"));
+            assert!(doubt.to_string().contains(fault), "{name}: {fault} in {doubt}");
+        }
+    }
+}
+
 #[test]
 #[ignore = "a campaign of thousands of recordings, a minute optimised"]
 fn campaign_of_any_machine() {
     let count: u64 = std::env::var("COUNT").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
-    let (mut wrong, mut reversed, mut reading) = (0, 0, 0);
+    let (mut wrong, mut reversed, mut reading, mut of_force) = (0, 0, 0, [0; OF_FORCE.len()]);
     for seed in 0..count {
         let (machine, recording) = any_recording(&mut Noise::of(50_000 + seed), 400);
         if let Some(doubt) = asked(&machine, &recording) {
@@ -345,6 +374,11 @@ fn campaign_of_any_machine() {
             each_force(m, |f| -f);
         });
         reading += u64::from(asked(&machine, &all).is_some());
+        for ((_, spoil), refused) in OF_FORCE.iter().zip(&mut of_force) {
+            *refused += u64::from(asked(&machine, &spoilt(&recording, *spoil)).is_some());
+        }
     }
-    println!("{wrong} honest of {count} refused; nz reversed {reversed}, all reversed {reading}");
+    println!(
+        "{wrong} honest of {count} refused; nz reversed {reversed}, all reversed {reading}, of force {of_force:?}"
+    );
 }

@@ -17,8 +17,10 @@
 //! ln Λ = Σ N ln(σ₀/σ) + p/2 ln((d_D0² + c²)/(d_D² + c²)) ± ln 10⁶ where one keeps the joint limits and the other leaves
 //! them. The first term is the F-test of the residuals. The second compares the momenta with the file on the scale of
 //! its other errors, which is unknown: a machine that is far off in everything is no evidence of a fault. The signs of
-//! first moments are no part of it, because a balanced machine can be off either way. The measurement as given is
-//! refused where Λ is above 10⁴, or where no machine can have what was found ([`impossible`]).
+//! first moments are no part of it, because a balanced machine can be off either way. A machine that is not balanced
+//! cannot: where d² becomes less by more than [`FAR`] times, p/2 ln(d₀²/(`FAR` d²)) is the second term if that is more.
+//! The measurement as given is refused where Λ is above 10⁴, or where no machine can have what was found
+//! ([`impossible`]).
 //!
 //! Some faults leave the same residuals: a machine that is balanced does not tell whether fx or fy is reversed. Then
 //! faults are ordered by all of d², and the message names each that is not clearly less likely than the first.
@@ -41,7 +43,8 @@ use super::fit::{Fit, estimate};
 use super::recording::{Motion, Recording};
 use super::rows::Rows;
 use super::unknowns::Unknown;
-use crate::mechanics::machine::Machine;
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::settings::number::shown;
 
@@ -49,6 +52,11 @@ use crate::settings::number::shown;
 const BELIEVED: f64 = 9.21;
 /// ln Λ of joint limits that are kept instead of left: odds of 10⁶.
 const LIMITS: f64 = 13.8;
+/// By how many times all numbers have to come closer to the file, in squares, before that is evidence of a fault: errors
+/// of which the tolerances know nothing make them come closer by less.
+const FAR: f64 = 30.0;
+/// First moments and couplings below this share of mass times reach, or reach squared, are those of a balanced machine.
+const BALANCED: f64 = 1e-3;
 /// Limits are left by more than this, rad.
 const LEFT: f64 = 0.1;
 /// Limits are kept within this, rad.
@@ -73,7 +81,7 @@ pub struct Doubt {
     pub causes: Vec<Cause>,
     /// Numbers that no machine has.
     pub impossible: Vec<Said>,
-    /// The momentum that is furthest from the file.
+    /// The number that is furthest from the file.
     pub furthest: Option<Said>,
     /// What is not explained of force, N, and of moment, N m, as given.
     pub noise: [f64; 2],
@@ -92,7 +100,7 @@ pub struct Cause {
     pub odds: f64,
     /// What is not explained of force, N, and of moment, N m, without it.
     pub noise: [f64; 2],
-    /// The furthest momentum without it, kg m².
+    /// The furthest number without it.
     pub furthest: Option<f64>,
     /// By how much angles leave their limits without it, rad.
     pub leaves: f64,
@@ -172,7 +180,7 @@ pub fn doubt(machine: &Machine, recording: &Recording, angles_only: bool) -> Res
     };
     let place = |unknown: &Unknown| (0..given.fit.unknowns.count()).find(|i| given.fit.unknowns.at(*i) == *unknown);
     let first = likely.first().map(|(.., tried)| tried);
-    let furthest = furthest(&given, first);
+    let furthest = furthest(machine, &given, first);
     let causes = likely.iter().map(|(odds, _, fault, tried)| Cause {
         what: fault.what.clone(),
         want: fault.want.clone(),
@@ -219,18 +227,28 @@ fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Option<[f64; 2
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
     // Closer to the file than the tolerances is not better.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();
-    Some([common + momenta, common + all]).filter(|odds| odds.iter().all(|x| x.is_finite()))
+    let far = 0.5 * p * (before.all / (FAR * after.all.max(p))).ln();
+    Some([common + momenta.max(far), common + all]).filter(|odds| odds.iter().all(|x| x.is_finite()))
 }
 
-/// The momentum that is furthest from the file as given, by what another fit makes of it, else by the file.
-fn furthest(given: &Tried, other: Option<&Tried>) -> Option<usize> {
-    let fit = &given.fit;
+/// The momentum that is furthest from the file as given, by what another fit makes of it, else by the file; or a first
+/// moment or coupling of a machine that is not balanced, where that is further.
+fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<usize> {
+    let (fit, whole) = (&given.fit, Inertia::of(machine).mass());
     let off = |i: &usize| {
         let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
-    let momenta = fit.unknowns.of_balance()..fit.unknowns.count();
-    momenta.filter(|i| fit.told[*i]).max_by(|a, b| off(a).total_cmp(&off(b)))
+    let momenta = fit.unknowns.of_balance();
+    let is_known = |i: &usize| {
+        let size = match fit.unknowns.at(*i) {
+            Unknown::Of(Condition::Force(_), _) => whole * machine.reach(),
+            _ => whole * machine.reach().powi(2),
+        };
+        *i >= momenta || fit.nominal[*i].abs() > BALANCED * size
+    };
+    let told = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && is_known(i));
+    told.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// By how much relative angles leave their limits, whole turns aside, rad.
