@@ -15,7 +15,7 @@ pub const TESTS: &[Test] = tests![models_of_others_come_in_as_mujoco_has_them];
 
 const SCRIPT: &str = include_str!("planar.py");
 /// Models of one run; `STILLBASE_OUTSIDE_MODELS` asks for another number.
-const MODELS: u64 = 120;
+const MODELS: u64 = 900;
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()

@@ -10,7 +10,7 @@ use stillbase::mechanics::counterweights::{
 };
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
-use stillbase::settings::number::{Short, fixed, significant};
+use stillbase::settings::number::{fixed, nine_digits, significant};
 use stillbase::study::front_point::FrontPoint;
 use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, search};
 use stillbase::study::measures::{Measures, greatest_accelerations};
@@ -194,9 +194,9 @@ impl WeighArguments {
         let asked = self.asked(machine, motion)?;
         let taken_off: Vec<_> = machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect();
         if !taken_off.is_empty() {
-            let each = taken_off
-                .iter()
-                .map(|weight| format!("{} kg at {} m of link {}", Short(weight.mass), Short(weight.at), weight.link));
+            let each = taken_off.iter().map(|weight| {
+                format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
+            });
             say(format!(
                 "taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
                 each.collect::<Vec<_>>().join("; ")

@@ -115,7 +115,7 @@ impl<'a> Bodies<'a> {
         let carriers = std::iter::successors(parent, |i| self.parts[*i].parent);
         let moves = axis_and_place.is_some() || carriers.into_iter().any(|i| self.parts[i].hinge.is_some());
         let Solid { mass, com, inertia } =
-            if moves { self.weight(open, &frame)? } else { Solid::none(frame.translation.vector) };
+            if moves { self.weight(open, &frame, &own_place)? } else { Solid::none(frame.translation.vector) };
         let name = body.attribute("name").map_or_else(|| format!("body {}", own + 1), Into::into);
         let at = body.range().start;
         let hinge = axis_and_place;
@@ -124,9 +124,15 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// Mass, centre of mass and inertia of a body on the axes of the base.
-    fn weight(&mut self, open: &Open<'a>, frame: &Isometry3<f64>) -> Result<Solid, ImportError> {
-        let (body, none) = (open.body, Solid::none(frame.translation.vector));
+    /// Mass, centre of mass and inertia of a body on the axes of the base. A body that nothing weighs has its centre
+    /// of mass where MuJoCo puts it: its own place, taken once more from its own frame.
+    fn weight(
+        &mut self,
+        open: &Open<'a>,
+        frame: &Isometry3<f64>,
+        own_place: &Isometry3<f64>,
+    ) -> Result<Solid, ImportError> {
+        let (body, none) = (open.body, Solid::none((frame * own_place).translation.vector));
         let inertial = child(body, "inertial");
         let mut shapes = none;
         let is_weighed = match self.compiler.weighing {
