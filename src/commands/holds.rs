@@ -41,8 +41,13 @@ fn find(machine: &Machine, key: &str) -> Result<Parameter, Failure> {
     let mut all = Parameter::all(machine).into_iter();
     let found = all.find(|parameter| [key, link.as_str()].contains(&parameter.key(machine).as_str()));
     found.ok_or_else(|| {
-        let why =
-            "want mass, com or com_normal of a link, as 3.com, or mass or at of a counterweight, as counterweight.1.at";
+        let why = match machine.spec().counterweights.is_empty() {
+            true => "want mass, com or com_normal of a link, as 3.com; this machine has no [[counterweight]]",
+            false => {
+                "want mass, com or com_normal of a link, as 3.com, or mass or at of a counterweight, as \
+                 counterweight.1.at"
+            }
+        };
         Failure::wrong_input(format!("nothing of this machine that balance depends on is called {key:?}: {why}"))
     })
 }

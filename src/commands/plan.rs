@@ -476,7 +476,10 @@ impl Plan {
         }
         self.check_use(&scenario)?;
         none_idle(&scenario, &self.settings)?;
-        tell_idle(&scenario);
+        // What a built-in task says for its own kind is no word of the person's, who asks for another.
+        if self.kind.is_none() || Scenario::builtin(&scenario.name).is_none() {
+            tell_idle(&scenario);
+        }
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
             // As far from every end as it gets; what does not serve all points begins in the middle of what serves the
             // first.

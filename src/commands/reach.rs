@@ -88,12 +88,27 @@ impl Reach {
     }
 }
 
+/// Both ends of an interval with so many decimals, rounded into it, so that each still serves; as they are of one b, and of
+/// a whole circle.
+fn inward([from, to]: [f64; 2], decimals: usize, period: f64) -> [String; 2] {
+    let last = 10f64.powi(-(decimals as i32));
+    let printed = |x: f64| fixed(x, decimals);
+    let is_one_or_all = to - from < 2.0 * last || to - from > period - last;
+    let beyond = |x: f64, inwards: f64| {
+        let rounded = printed(x).parse().unwrap_or(x);
+        let leaves = !is_one_or_all && inwards * (rounded - x) < 0.0;
+        printed(if leaves { x + inwards * last } else { x })
+    };
+    [beyond(from, 1.0), beyond(to, -1.0)]
+}
+
 fn table(answer: &Answer) -> String {
     let mut table = Table::new(["point m", "b_min rad", "b_max rad"]);
     let mut rows = |name: String, intervals: &[[f64; 2]]| {
         let first = [name].into_iter().chain(std::iter::repeat(String::new()));
         for (name, [from, to]) in first.zip(intervals) {
-            table.row([name, fixed(*from, 9), fixed(*to, 9)]);
+            let [from, to] = inward([*from, *to], 9, answer.period);
+            table.row([name, from, to]);
         }
     };
     for p in &answer.points {

@@ -121,6 +121,9 @@ fn slackened(map: &dyn Reaching, mut set: BSet) -> BSet {
 
 /// The b that serve all points, m; `None` if none does.
 pub fn common(map: &dyn Reaching, points: &[Vector]) -> Option<BSet> {
+    if let [point] = points {
+        return map.b_of(*point).ok();
+    }
     let sets: Option<Vec<BSet>> = points.iter().map(|p| set_of(map, *p).ok()).collect();
     Some(BSet::overlap(&sets?)).filter(|common| !common.is_empty())
 }

@@ -18,6 +18,34 @@ fn reach_finds_the_known_intervals() {
     near(&both["overlap"], &json!([[2.2157496581863496, 2.6610727211193312]]), 1e-9, "overlap");
 }
 
+/// Rounded to nearest, half of them would lie outside of their interval.
+#[test]
+fn ends_that_reach_prints_serve_when_they_are_typed_back() {
+    let mut ends = 0;
+    for (machine, points) in [
+        ("nine-link", ["-0.82,-0.42", "0.5,0.5", "0.31,0.92", "-0.6,0.7", "0.13,-0.77"]),
+        ("serial-3r", ["-0.06,-0.88", "0.5,0.5", "0.31,0.72", "-0.6,0.4", "0.13,-0.77"]),
+        ("two-drive", ["0.5,0.5", "0.31,0.72", "-0.6,0.4", "0.13,-0.67", "0.4,0.3"]),
+    ] {
+        for point in points {
+            let out = stillbase(&["reach", machine, point]);
+            if !out.status.success() {
+                continue;
+            }
+            let rows = text(&out.stdout).lines().skip(1).take_while(|line| !line.starts_with("all"));
+            for end in rows.flat_map(|row| row.split_whitespace().rev().take(2).collect::<Vec<_>>()) {
+                let posed = stillbase(&["pose", machine, point, "--b", end]);
+                assert!(posed.status.success(), "{machine} {point} --b {end}: {}", text(&posed.stderr));
+                ends += 1;
+            }
+        }
+    }
+    assert!(ends > 20, "{ends} ends were tried");
+    // Of one point, what serves all is what serves it.
+    let one = object(&["reach", "two-drive", "0.5,0.5"]);
+    assert_eq!(one["overlap"], one["points"][0]["intervals"]);
+}
+
 #[test]
 fn points_that_share_no_b_have_no_answer_but_a_mend() {
     let out = stillbase(&["reach", "nine-link", "0.5,0.5", "-0.5,-0.5", "--json"]);

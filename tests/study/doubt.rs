@@ -335,6 +335,31 @@ fn honest_measurements_of_any_machine_are_believed() {
     }
 }
 
+/// A link that is far off leaves a first moment that the file does not have; that is no fault of the force sensor.
+#[test]
+fn honest_measurements_of_links_that_are_far_off_are_believed() {
+    let mut noise = Noise::of(41);
+    let mut refused = Vec::new();
+    for name in ["nine-link", "two-drive", "serial-3r", "four-drive", "nine-link-geared", "scara", "space-arm"] {
+        // The motions keep no limits.
+        let mut free = builtin(name).expect("built in").spec().clone();
+        free.angles.clear();
+        let machine = &Machine::new(free).expect("a machine");
+        for (i, link) in machine.spec().links.iter().enumerate().skip(1).take(2) {
+            for [along, across] in [[0.0, 0.06], [0.0, 0.15], [-0.1, -0.1]] {
+                let mut spec = machine.spec().clone();
+                spec.links[i].com += along;
+                spec.links[i].com_normal += across;
+                let recording = a_recording(&Machine::new(spec).expect("a machine"), 0.0, &mut noise, 100);
+                if let Some(doubt) = asked(machine, &recording) {
+                    refused.push(format!("{name}, link {} off by {along}, {across} m: {doubt}", link.name));
+                }
+            }
+        }
+    }
+    assert!(refused.is_empty(), "{} refused:\n{}", refused.len(), refused.join("\n"));
+}
+
 /// Faults of the force alone, which no momentum tells.
 const OF_FORCE: &[(&str, Spoil)] = &[
     ("fx and fy have the wrong sign", |m| each_force(m, |f| -f)),

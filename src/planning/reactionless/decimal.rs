@@ -90,10 +90,11 @@ pub fn between(low: f64, high: f64) -> String {
     }
 }
 
-/// A length, m, as it is said: with the decimals that are asked for, in powers of ten where these show nothing of it.
+/// A length, m, as it is said: with the decimals that are asked for, in powers of ten where these show
+/// less than two digits of it.
 pub fn metres(x: f64, decimals: usize) -> String {
     match x.abs() {
-        small if small != 0.0 && small < 10f64.powi(2 - decimals as i32) => format!("{x:.3e}"),
+        small if small != 0.0 && small < 10f64.powi(1 - decimals as i32) => format!("{x:.3e}"),
         large if large >= 1e9 => format!("{x:.3e}"),
         _ => format!("{x:.decimals$}"),
     }

@@ -18,7 +18,7 @@ use crate::planning::reactionless::BSet;
 use crate::planning::timing::{Limits, TimeLaw};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
-use crate::settings::number::Short;
+use crate::settings::number::nine_digits;
 
 /// Plans the task of such a machine.
 ///
@@ -95,9 +95,9 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
         _ => "with other than three drives it does not change on the way".into(),
     };
     let why = why.to_string();
-    Err(Refusal::Task(format!(
+    Err(Refusal::NoWay(format!(
         "b = {} rad cannot be held along this path ({}), and {only}; {would_do}",
-        Short(task.b),
+        nine_digits(task.b),
         why.split(": want").next().unwrap_or(&why)
     )))
 }

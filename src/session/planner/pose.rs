@@ -10,7 +10,7 @@ use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::NoReach;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
-use crate::settings::number::{Short, fixed};
+use crate::settings::number::{Short, fixed, nine_digits};
 
 /// A pose of A: at the b of the task where that leaves a choice.
 pub(super) fn start(scenario: &Scenario) -> Result<DriveAngles, Refusal> {
@@ -69,7 +69,7 @@ pub(super) fn faced(
     Err(Refusal::NoWay(format!(
         "at {} no pose of b = {} rad has the last link point to {} rad: want {would_do}",
         task.name_of(i),
-        Short(task.b),
+        nine_digits(task.b),
         Short(angle)
     )))
 }

@@ -12,7 +12,7 @@ use crate::planning::posture::{Asked, Posture};
 use crate::planning::timing::TimeLaw;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
-use crate::settings::number::Short;
+use crate::settings::number::nine_digits;
 
 /// Places along each curve that a b has to reach to be proposed.
 const ASKED: usize = 16;
@@ -59,7 +59,7 @@ pub(super) fn tables(
     }
     let tried = (effort == Effort::Whole).then(|| proposal(&asked, task)).flatten();
     let would_do = tried.unwrap_or_else(|| "another path, or wider limits".into());
-    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {would_do}", Short(task.b))))
+    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {would_do}", nine_digits(task.b))))
 }
 
 /// Least rates along each curve, from the pose nearest to the middle of all ranges.

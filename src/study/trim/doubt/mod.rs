@@ -18,7 +18,8 @@
 //! them. The first term is the F-test of the residuals. The second compares the momenta with the file on the scale of
 //! its other errors, which is unknown: a machine that is far off in everything is no evidence of a fault. The signs of
 //! first moments are no part of it, because a balanced machine can be off either way. A machine that is not balanced
-//! cannot: where d² becomes less by more than [`FAR`] times, p/2 ln(d₀²/(`FAR` d²)) is the second term if that is more.
+//! cannot: with d² of the momenta and of those first moments and couplings that its file has, p/2 ln(d₀²/(`FAR` d²)) is
+//! the second term if that is more.
 //! The measurement as given is refused where Λ is above 10⁴, or where no machine can have what was found
 //! ([`impossible`]).
 //!
@@ -36,15 +37,14 @@ use std::fmt;
 
 use fault::Fault;
 use possible::impossible;
-use tolerances::Tolerances;
+use tolerances::{Tolerances, known};
 
 use super::error::TrimError;
 use super::fit::{Fit, estimate};
 use super::recording::{Motion, Recording};
 use super::rows::Rows;
 use super::unknowns::Unknown;
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 use crate::settings::number::shown;
 
@@ -55,8 +55,8 @@ const LIMITS: f64 = 13.8;
 /// By how many times all numbers have to come closer to the file, in squares, before that is evidence of a fault: errors
 /// of which the tolerances know nothing make them come closer by less.
 const FAR: f64 = 30.0;
-/// First moments and couplings below this share of mass times reach, or reach squared, are those of a balanced machine.
-const BALANCED: f64 = 1e-3;
+/// Numbers that differ from each other by a smaller share are not told as different.
+const SAME: f64 = 1e-3;
 /// Limits are left by more than this, rad.
 const LEFT: f64 = 0.1;
 /// Limits are kept within this, rad.
@@ -85,6 +85,8 @@ pub struct Doubt {
     pub furthest: Option<Said>,
     /// What is not explained of force, N, and of moment, N m, as given.
     pub noise: [f64; 2],
+    /// The same as shares of what was measured.
+    pub shares: [f64; 2],
     /// By how much angles leave their limits as given, rad.
     pub leaves: f64,
 }
@@ -100,6 +102,8 @@ pub struct Cause {
     pub odds: f64,
     /// What is not explained of force, N, and of moment, N m, without it.
     pub noise: [f64; 2],
+    /// The same as shares of what would then be measured.
+    pub shares: [f64; 2],
     /// The furthest number without it.
     pub furthest: Option<f64>,
     /// By how much angles leave their limits without it, rad.
@@ -186,6 +190,7 @@ pub fn doubt(machine: &Machine, recording: &Recording, angles_only: bool) -> Res
         want: fault.want.clone(),
         odds: odds / std::f64::consts::LN_10,
         noise: tried.fit.noise,
+        shares: shares(&tried.fit),
         furthest: furthest.map(|place| tried.fit.measured[place]),
         leaves: tried.leaves,
     });
@@ -197,6 +202,7 @@ pub fn doubt(machine: &Machine, recording: &Recording, angles_only: bool) -> Res
         impossible: broken.iter().filter_map(place).map(said).collect(),
         furthest: furthest.map(said),
         noise: given.fit.noise,
+        shares: shares(&given.fit),
         leaves: given.leaves,
     }))
 }
@@ -206,12 +212,16 @@ fn tried(machine: &Machine, rows: &Rows, leaves: f64) -> Result<Tried, TrimError
     Ok(Tried { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), leaves })
 }
 
+/// What a fit leaves of force and of moment, as shares of what was measured.
+fn shares(fit: &Fit) -> [f64; 2] {
+    [0, 1].map(|of| fit.noise[of] / fit.size[of].max(f64::MIN_POSITIVE))
+}
+
 /// ln Λ that decides, and ln Λ that ranks.
 fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Option<[f64; 2]> {
     let (was, now) = (&given.fit, &other.fit);
     let residuals = |of: usize| {
-        let left = |fit: &Fit| fit.noise[of] / fit.size[of].max(f64::MIN_POSITIVE);
-        let [before, after] = [left(was), left(now)].map(|left| left.max(EXACT));
+        let [before, after] = [was, now].map(|fit| shares(fit)[of].max(EXACT));
         CORRELATED * was.effective[of].min(now.effective[of]) * other.share * (before / after).ln()
     };
     let (before, after) = (tolerances.distance(was)?, tolerances.distance(now)?);
@@ -227,27 +237,24 @@ fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Option<[f64; 2
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
     // Closer to the file than the tolerances is not better.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();
-    let far = 0.5 * p * (before.all / (FAR * after.all.max(p))).ln();
+    let far = before.known.zip(after.known).map_or(f64::NEG_INFINITY, |([was, p], [now, more])| {
+        let p = p.max(more);
+        0.5 * p * (was / (FAR * now.max(p))).ln()
+    });
     Some([common + momenta.max(far), common + all]).filter(|odds| odds.iter().all(|x| x.is_finite()))
 }
 
 /// The momentum that is furthest from the file as given, by what another fit makes of it, else by the file; or a first
 /// moment or coupling of a machine that is not balanced, where that is further.
 fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<usize> {
-    let (fit, whole) = (&given.fit, Inertia::of(machine).mass());
+    let (fit, known) = (&given.fit, known(machine));
     let off = |i: &usize| {
         let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
-    let momenta = fit.unknowns.of_balance();
-    let is_known = |i: &usize| {
-        let size = match fit.unknowns.at(*i) {
-            Unknown::Of(Condition::Force(_), _) => whole * machine.reach(),
-            _ => whole * machine.reach().powi(2),
-        };
-        *i >= momenta || fit.nominal[*i].abs() > BALANCED * size
-    };
-    let told = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && is_known(i));
+    let told = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && known[*i]);
+    // What is as in the file is no evidence.
+    let told = told.filter(|i| off(i) > SAME);
     told.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
@@ -329,7 +336,8 @@ impl fmt::Display for Doubt {
         }
         if let Some(then) = then {
             for (i, unit) in ["N", "N m"].into_iter().enumerate() {
-                if self.noise[i] > 1.1 * then.noise[i] {
+                // In another unit the same is no evidence.
+                if self.shares[i] > 1.1 * then.shares[i] {
                     write!(f, "\n  As given, {} {unit} are not explained;", number(self.noise[i]))?;
                     write!(f, " without the fault {}.", number(then.noise[i]))?;
                 }

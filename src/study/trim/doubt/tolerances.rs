@@ -15,9 +15,10 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
-use crate::study::trim::{Fit, Unknowns};
+use crate::study::trim::{Fit, Unknown, Unknowns};
 
 /// Of the mass of a link with its counterweights, as a share.
 const MASS: f64 = 0.03;
@@ -33,6 +34,8 @@ const OTHER: f64 = 0.01;
 
 /// Where only momenta are compared, first moments and couplings may be off by so many times their tolerances.
 const ANY: f64 = 30.0;
+/// First moments and couplings below this share of mass times reach, or reach squared, are those of a balanced machine.
+const BALANCED: f64 = 1e-3;
 /// Steps of the eigenvalue solver.
 const MAX_STEPS: usize = 10_000;
 
@@ -40,6 +43,8 @@ const MAX_STEPS: usize = 10_000;
 pub(super) struct Tolerances {
     covariance: DMatrix<f64>,
     balance: usize,
+    /// Whether the file has so much of each number that it is told from that of a balanced machine.
+    known: Vec<bool>,
 }
 
 /// d², of some numbers whatever the others are, and p.
@@ -53,6 +58,24 @@ pub(super) struct Distance {
     pub all: f64,
     /// p of all.
     pub numbers: f64,
+    /// Of D, and of the g and C that the file has, with p; none of a machine that has none, because it is balanced.
+    pub known: Option<[f64; 2]>,
+}
+
+/// Which numbers a file tells from those of a balanced machine: each D, and both parts of first moments and couplings
+/// above a thousandth of mass times reach, or reach squared.
+pub(super) fn known(machine: &Machine) -> Vec<bool> {
+    let (unknowns, inertia) = (Unknowns::of(machine.drives()), Inertia::of(machine));
+    let nominal = unknowns.nominal(&inertia);
+    let is_known = |i: usize| {
+        let size = match unknowns.at(i) {
+            Unknown::Momentum(_) => return true,
+            Unknown::Of(Condition::Force(_), _) => inertia.mass() * machine.reach(),
+            Unknown::Of(Condition::Coupling(..), _) => inertia.mass() * machine.reach().powi(2),
+        };
+        nominal[i & !1].hypot(nominal[i | 1]) > BALANCED * size
+    };
+    (0..unknowns.count()).map(is_known).collect()
 }
 
 impl Tolerances {
@@ -99,7 +122,7 @@ impl Tolerances {
         columns.iter().for_each(|column| covariance.ger(1.0, column, column, 1.0));
         let least = 1e-12 * covariance.diagonal().amax();
         (0..unknowns.count()).for_each(|i| covariance[(i, i)] += OTHER * covariance[(i, i)] + least);
-        Self { covariance, balance: unknowns.of_balance() }
+        Self { covariance, balance: unknowns.of_balance(), known: known(machine) }
     }
 
     /// How far a measured machine is from its file; `None` where that cannot be computed.
@@ -122,6 +145,8 @@ impl Tolerances {
         let [momenta, _] = part(&|i| i >= self.balance)?;
         let [balance, _] = part(&|i| i < self.balance)?;
         let [all, numbers] = part(&|_| true)?;
-        Some(Distance { momenta, balance, all, numbers })
+        let is_balanced = !self.known[..self.balance].contains(&true);
+        let known = if is_balanced { None } else { Some(part(&|i| self.known[i])?) };
+        Some(Distance { momenta, balance, all, numbers, known })
     }
 }
