@@ -82,6 +82,7 @@
 //! |---|---|
 //! | [`guide`] | how the program is used, page by page; no code |
 //! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
+//! | [`query`] | what is derived: made when its input changes, kept until then, worked on beside the window |
 //! | `convex` | convex programs, and how far from the best an answer may be |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
 //! | [`exchange`] | machines for other programs and for who builds them: models, drawings, lists of parts; and from them |
@@ -110,6 +111,8 @@
 //!   follow; write a line of `guide/command_line.md`.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
 //!   the tests draw it at random.
+//! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
+//!   beside what it is about. Whoever shows it asks [`query::Queries`] for it; nothing else keeps what is derived.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
@@ -126,6 +129,7 @@ pub mod guide;
 pub mod mechanics;
 pub mod picture;
 pub mod planning;
+pub mod query;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod session;

@@ -16,6 +16,7 @@ mod picture;
 mod planning;
 #[cfg(feature = "cli")]
 mod program;
+mod query;
 #[cfg(feature = "record")]
 mod recording;
 mod session;

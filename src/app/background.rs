@@ -5,15 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::change::{Change, NotOpened, Opened};
-use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
 use super::{Activity, Command};
-use crate::picture::scene::stage::Outlined;
-use crate::planning::pose_space::PoseSpace;
+use crate::query::{AtOnce, Job, Poll, Queries, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
-use crate::simulation::frame::Totals;
-use crate::study::comparison::{Compared, Outcome};
-use crate::study::tolerance::Study;
+use crate::study::comparison::{Compared, Ways};
+use crate::study::tolerance::Studying;
 
 /// A job and what it is of, while it is under way.
 pub(super) type Slot<K, T> = Option<(K, Job<T>)>;
@@ -57,6 +54,8 @@ const UNSPOKEN: u32 = 6;
 /// What is under way, and who does it.
 pub(super) struct Background {
     workers: Arc<dyn Workers + Send + Sync>,
+    /// What is derived of the session.
+    pub queries: Queries,
     /// Woken when a job has ended.
     ctx: Option<egui::Context>,
     /// A change of the session, made of a copy; and for how many repaints.
@@ -65,37 +64,26 @@ pub(super) struct Background {
     pub later: VecDeque<Command>,
     /// A session that takes the place of the present one.
     pub opening: Slot<Opening, Result<Opened, NotOpened>>,
-    /// A study, or why there is none; nothing if it was stopped.
-    pub study: Slot<Scenario, Option<Result<Study, String>>>,
-    /// Runs side by side.
-    pub ways: Slot<Scenario, Option<Vec<Outcome>>>,
     /// Runs to keep beside them, each with what to say when it is there.
     pub kept: VecDeque<Keeping>,
     /// What to say when the recording is there.
     pub recording: Slot<(), Result<String, String>>,
     /// What to say when a file is saved; of a session, after how many changes, and where.
     pub saving: Slot<Option<(u64, PathBuf)>, Result<String, String>>,
-    /// How far the base will move.
-    pub foreseen: Slot<(), Totals>,
-    /// How far the machine reaches while b is held; nothing if that is a point.
-    pub outline: Slot<Arc<PoseSpace>, Option<Outlined>>,
 }
 
 impl Default for Background {
     fn default() -> Self {
         Self {
             workers: Arc::new(AtOnce),
+            queries: Queries::default(),
             ctx: None,
             change: None,
             later: VecDeque::new(),
             opening: None,
-            study: None,
-            ways: None,
             kept: VecDeque::new(),
             recording: None,
             saving: None,
-            foreseen: None,
-            outline: None,
         }
     }
 }
@@ -104,11 +92,16 @@ impl Background {
     /// Has everything done by somebody from now on.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
         self.workers = Arc::new(workers);
+        self.queries.hire(self.workers.clone());
     }
 
     /// Repaints this whenever a job has ended.
     pub fn wakes(&mut self, ctx: &egui::Context) {
-        self.ctx.get_or_insert_with(|| ctx.clone());
+        if self.ctx.is_none() {
+            self.ctx = Some(ctx.clone());
+            let ctx = ctx.clone();
+            self.queries.wakes(move || ctx.request_repaint());
+        }
     }
 
     /// Starts work beside the window.
@@ -167,15 +160,15 @@ impl Background {
         let opening = self.opening.as_ref().map(|(_, job)| (Activity::Opening, job.progress()));
         let recording = self.recording.as_ref().map(|(_, job)| (Activity::Recording, job.progress()));
         let saving = self.saving.as_ref().map(|(_, job)| (Activity::Saving, job.progress()));
-        let study = self.study.as_ref().map(|(_, job)| (Activity::Study, job.progress()));
-        let ways = self.ways.as_ref().map(|(_, job)| (Activity::Ways, job.progress()));
+        let study = self.queries.progress::<Studying>().map(|share| (Activity::Study, share));
+        let ways = self.queries.progress::<Ways>().map(|share| (Activity::Ways, share));
         let kept = self.kept.front().map(|(_, job)| (Activity::Kept, job.progress()));
         [change, opening, saving, recording, study, ways, kept].into_iter().flatten()
     }
 
     /// Whether anything at all is under way.
     pub fn is_busy(&self) -> bool {
-        self.is_changing() || self.foreseen.is_some() || self.outline.is_some() || self.under_way().is_some()
+        self.is_changing() || self.queries.is_busy() || self.under_way().is_some()
     }
 }
 

@@ -129,7 +129,7 @@ impl Card {
         let (machine, frame) = (&session.scenario().machine, session.frame());
         let drive = machine.resolved_links().get(i)?.drive;
         let title = format!("drive {}, q{} = {}°", drive + 1, subscript(drive + 1), degrees(frame.q[drive]));
-        let held = session.run().pose_map().is_ok_and(PoseMap::holds);
+        let held = session.run().pose_map().is_ok_and(|map| map.holds());
         let others = if held { "the tip stays, and" } else { "the others follow:" };
         let mut rows = vec![format!("{others} b stays {} rad", signed(frame.b_reference, 3))];
         for (k, angle) in machine.angles().iter().enumerate() {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use super::actions::{ACTIONS, shown};
-use super::facts::Facts;
+use super::facts::{Facts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
@@ -38,7 +38,7 @@ const ROW: f32 = 27.0;
 /// What can be done now, in the order of the table.
 fn entries<'a>(
     session: &'a Session,
-    (facts, recent): (&'a Facts, &'a [PathBuf]),
+    (settings, recent): (&'a [Setting], &'a [PathBuf]),
     view_state: &ViewState,
 ) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
@@ -69,7 +69,7 @@ fn entries<'a>(
         let title = format!("Recent: {}", file.file_name().unwrap_or(file.as_os_str()).to_string_lossy());
         entry(title, "top bar, scenario", "open file last", Box::new(|| Command::OpenFile(file.clone())))
     });
-    let settings = facts.settings().iter().map(|setting| {
+    let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
         let look_up = || Command::LookUp(setting.path.clone());
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.words, Box::new(look_up)) }
@@ -97,13 +97,14 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
-    known: (&Facts, &[PathBuf]),
+    (facts, recent): (&Facts<'_>, &[PathBuf]),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
     let Some(mut finder) = view_state.finder.clone() else { return };
-    let list = found(entries(session, known, view_state), &finder.sought);
+    let settings = facts.settings();
+    let list = found(entries(session, (&settings, recent), view_state), &finder.sought);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));

@@ -1,15 +1,8 @@
-//! Work beside the window: what takes longer than a frame runs as a [`Job`], tells how far it is, and stops when nobody
-//! waits for it any more.
+//! [`Threads`]: who does the work of jobs where there are threads.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::channel;
 
-/// Who does the work.
-pub trait Workers {
-    /// Has it done, at once or beside.
-    fn start(&self, work: Box<dyn FnOnce() + Send>);
-}
+use crate::query::Workers;
 
 /// Each job on a thread of its own; where none can be had, at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,97 +39,4 @@ fn step_back() {
     // back the whole program. A refusal changes nothing that matters.
     #[cfg(all(target_os = "linux", feature = "window"))]
     let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), 19);
-}
-
-/// No threads: every job is done when it starts, as in a browser and in tests.
-#[derive(Clone, Copy, Debug)]
-pub struct AtOnce;
-
-impl Workers for AtOnce {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
-        work();
-    }
-}
-
-/// What a job and whoever waits for it share.
-#[derive(Debug, Default)]
-struct Shared {
-    stopped: AtomicBool,
-    /// Thousandths that are done.
-    done: AtomicU32,
-}
-
-/// Told by a job as it goes.
-#[derive(Clone, Debug)]
-pub struct Ticket(Arc<Shared>);
-
-impl Ticket {
-    /// How much is done, from 0 to 1; whether the rest is still wanted.
-    pub fn goes_on(&self, done: f64) -> bool {
-        self.0.done.store((1e3 * done.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
-        !self.0.stopped.load(Ordering::Relaxed)
-    }
-}
-
-/// Work that is under way. Dropped, it stops at its next word.
-#[derive(Debug)]
-pub struct Job<T> {
-    result: Receiver<T>,
-    shared: Arc<Shared>,
-}
-
-impl<T: Send + 'static> Job<T> {
-    /// Starts it; `wake` is called when it has ended.
-    pub fn start(
-        workers: &dyn Workers,
-        wake: impl FnOnce() + Send + 'static,
-        work: impl FnOnce(&Ticket) -> T + Send + 'static,
-    ) -> Self {
-        let (send, result) = channel();
-        let shared = Arc::new(Shared::default());
-        let ticket = Ticket(shared.clone());
-        workers.start(Box::new(move || {
-            let done = work(&ticket);
-            // Nobody may wait any more.
-            let _ = send.send(done);
-            wake();
-        }));
-        Self { result, shared }
-    }
-
-    /// How much is done, from 0 to 1.
-    pub fn progress(&self) -> f64 {
-        f64::from(self.shared.done.load(Ordering::Relaxed)) / 1e3
-    }
-
-    /// Waits for its result; a job that broke off has none.
-    pub fn wait(self) -> Option<T> {
-        self.result.recv().ok()
-    }
-
-    /// Whether its result is there; a job that broke off has none.
-    pub fn poll(&self) -> Poll<T> {
-        match self.result.try_recv() {
-            Ok(result) => Poll::Done(result),
-            Err(TryRecvError::Empty) => Poll::Working,
-            Err(TryRecvError::Disconnected) => Poll::Broken,
-        }
-    }
-}
-
-impl<T> Drop for Job<T> {
-    fn drop(&mut self) {
-        self.shared.stopped.store(true, Ordering::Relaxed);
-    }
-}
-
-/// How a job stands.
-#[derive(Debug)]
-pub enum Poll<T> {
-    /// Under way.
-    Working,
-    /// Its result, given once.
-    Done(T),
-    /// It ended without one.
-    Broken,
 }

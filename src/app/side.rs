@@ -36,7 +36,7 @@ pub(super) const BAR: f32 = 14.0;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    facts: &Facts,
+    facts: &Facts<'_>,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) -> Option<f32> {
@@ -66,14 +66,20 @@ pub fn show(
     view_state.side.made(shown.response.rect.width(), usual)
 }
 
-fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
+fn pose_constant(
+    ui: &mut Ui,
+    session: &Session,
+    facts: &Facts<'_>,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let (scenario, p) = (session.scenario(), &view_state.palette());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
     let map = match session.run().pose_map() {
         Ok(map) => map,
         Err(why) => {
             note(ui, p, &why.to_string());
-            if *why == NoPoseSpace::Free {
+            if why == NoPoseSpace::Free {
                 note(ui, p, "any path will do: drag A or B and the arm follows, or draw a path (P)");
             }
             return;
@@ -265,7 +271,7 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     send(commands, &responses, || Edit::set("gravity", vec![gravity.re, 0.0 - down]));
 }
 
-fn balance(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
+fn balance(ui: &mut Ui, session: &Session, facts: &Facts<'_>, p: &Palette) {
     section(ui, p, "Balance");
     let balance = &facts.balance;
     let rows = [

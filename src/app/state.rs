@@ -25,12 +25,11 @@ use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::design::weights_of;
 use crate::session::scenario::{Scenario, Task};
-use crate::session::{Edit, Refusal, Session};
+use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
 use crate::simulation::plant::PlantDifferences;
 use crate::simulation::signals::{Signal, signals};
 use crate::study::comparison::Comparison;
-use crate::study::tolerance::Study;
 
 /// A session on display.
 pub struct AppState {
@@ -38,10 +37,6 @@ pub struct AppState {
     views: Arc<Views>,
     signals: Vec<Signal>,
     stage_of: StageKey,
-    /// What panels say of the run that has to be found first.
-    facts: Facts,
-    /// What the design view says of the machine.
-    studio: studio::Facts,
     /// The machine before the change under way in that view.
     designed_from: Option<Machine>,
     view_state: ViewState,
@@ -52,14 +47,8 @@ pub struct AppState {
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
-    /// Tolerances and what they were found for, while they are on display.
-    study: Option<(Scenario, Result<Study, String>)>,
-    /// The run whose ways were not to be run.
-    declined: Option<Scenario>,
     /// What is under way beside the window.
     background: Background,
-    /// Totals of the planned motion, simulated ahead: how far the base will move.
-    foreseen: Totals,
     /// Wall time not yet turned into steps, s.
     owed: f64,
     pace: Pace,
@@ -94,19 +83,14 @@ impl AppState {
         let mut app_state = Self {
             signals: signals(&session.scenario().machine),
             stage_of: StageKey::of(&session),
-            facts: Facts::default(),
-            studio: studio::Facts::default(),
             designed_from: None,
             views: Arc::new(views),
-            foreseen: Totals::default(),
             session,
             view_state,
             intro: None,
             hints: true,
             saving: Saving::default(),
             comparison: None,
-            study: None,
-            declined: None,
             background: Background::default(),
             owed: 0.0,
             pace: Pace::default(),
@@ -117,8 +101,6 @@ impl AppState {
             prepared: plots::Prepared::default(),
         };
         app_state.foresee();
-        app_state.adjust();
-        app_state.find();
         app_state
     }
 
@@ -319,7 +301,6 @@ impl AppState {
             self.pace.rest();
         }
         self.adjust();
-        self.find();
     }
 
     /// What the last [`pass`](Self::pass) has taken, s, from who reads a clock: steps that take long are done in smaller
@@ -377,29 +358,32 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.layout == Layout::Present;
+        let queries = self.queries().clone();
+        let facts = Facts::of(&queries, &self.session);
         if !presents {
-            let (facts, line) = ((&self.facts, &self.saving.recent[..]), (&mut self.marks, self.pace.behind()));
-            top::show(ui, &self.session, facts, line, &self.view_state, &mut commands);
+            let (known, line) = ((&facts, &self.saving.recent[..]), (&mut self.marks, self.pace.behind()));
+            top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
-            status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
+            status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
             rail::show(ui, &self.session, self.marks.forks(), &self.view_state, &mut commands);
         }
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
         if self.view_state.study {
-            let study = self.study.as_ref().map(|(_, study)| study);
-            study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
+            study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
+        let mut chosen = Vec::new();
         if designs {
             let ViewState { brief, learns, front_by, .. } = &self.view_state;
-            match learns {
-                true => self.studio.learn(&self.session, brief),
-                false => self.studio.weigh(&self.session, brief, *front_by),
-            }
-            studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
+            let found = match learns {
+                true => studio::Facts::learned(&queries, &self.session, brief),
+                false => studio::Facts::weighed(&queries, &self.session, brief, *front_by),
+            };
+            studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
+            chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
         }
         if contrast.is_none() && self.view_state.side.shown && !designs {
             if let Some(thing) = self.view_state.revealed.take() {
@@ -408,23 +392,22 @@ impl AppState {
             if let Some(path) = self.view_state.looked_up.take() {
                 side::look_up(ui.ctx(), &path);
             }
-            self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
+            self.view_state.side.width = side::show(ui, &self.session, &facts, &self.view_state, &mut commands);
         }
         self.view_state.lit = place::lit(ui.ctx());
         self.view_state.lit_links = place::lit_links(ui.ctx());
         if self.view_state.plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
             let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
-            let what = plots::Shown { session, signals, comparison: beside, view_state };
+            let what = plots::Shown { session, queries: &queries, signals, comparison: beside, view_state };
             self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
         }
-        let chosen = self.view_state.ghost.map_or_else(Vec::new, |i| self.studio.weights(i));
         let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
         let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
-        let known = (&self.facts, &self.saving.recent[..]);
+        let known = (&facts, &self.saving.recent[..]);
         finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
@@ -527,8 +510,7 @@ impl AppState {
             }
             DesignCommand::FrontBy(by) => self.view_state.front_by = by,
             DesignCommand::Take(i) => {
-                self.studio.weigh(&self.session, &self.view_state.brief, self.view_state.front_by);
-                if let Some(machine) = self.studio.of_front(i).cloned() {
+                if let Some(machine) = studio::of_front(self.queries(), &self.session, &self.view_state.brief, i) {
                     self.take_weights(&machine);
                 }
             }
@@ -721,7 +703,8 @@ impl AppState {
     fn adjust(&mut self) {
         let reach = self.views.stage().linkage().reach();
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
-        let motion = [newest.shift.max(self.foreseen.shift), newest.base_angle.max(self.foreseen.base_angle)];
+        let ahead = self.queries().last::<Ahead>().map_or_else(Totals::default, |totals| *totals);
+        let motion = [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)];
         self.view_state.enough_exaggeration = match self.session.scenario().base.moves() {
             true => exaggeration(motion, reach),
             false => 1.0,
@@ -751,16 +734,9 @@ impl AppState {
         views.refresh(self.session.run());
         views.show_drives(self.view_state.drives);
         self.adjust();
-        self.find();
         self.refresh_study();
         self.refresh_comparison();
         self.collect();
-    }
-
-    /// Finds what panels say of the run, where that has changed.
-    fn find(&mut self) {
-        self.facts.of(&self.session);
-        self.facts.stand(&self.session, &self.views);
     }
 }
 

@@ -170,7 +170,7 @@ fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: Lamp, tone: egui::Color
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    found: &Facts,
+    found: &Facts<'_>,
     view_state: &ViewState,
     under_way: Option<(Activity, f64)>,
     commands: &mut Vec<Command>,
@@ -193,7 +193,7 @@ pub fn show(
                 facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
             }
             let bad_news = matches!(view_state.message, Some((_, true)));
-            if let Some((poses, distance)) = found.standing().filter(|_| !bad_news && ui.available_width() > 460.0) {
+            if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 // A narrow window keeps its room for what to do next.
                 facts.push(match ui.available_width() > 900.0 {

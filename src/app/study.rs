@@ -134,9 +134,9 @@ fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
 /// What varies, one row each, and the limit on |n_B|.
 fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>) {
     title(ui, p, "What varies", "deviation σ, half-width ±");
-    let spreads = study.tolerance.spreads_or_default();
+    let spreads = &study.spreads;
     ScrollArea::vertical().id_salt("spreads").auto_shrink([false, false]).show(ui, |ui| {
-        for (key, spread) in &spreads {
+        for (key, spread) in spreads {
             let amount = spread.amount();
             let (label, unit, times) = words(key, amount);
             let (Amount::Absolute(size) | Amount::Percent(size)) = amount;

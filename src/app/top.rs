@@ -21,7 +21,7 @@ use crate::session::scenario::Scenario;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    (facts, recent): (&Facts, &[PathBuf]),
+    (facts, recent): (&Facts<'_>, &[PathBuf]),
     line: (&mut Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,

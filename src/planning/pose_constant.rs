@@ -1,5 +1,7 @@
 //! A machine's pose constant and its reactionless planes: λ and b of (12), (13), and what can be reached on a plane.
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use crate::mechanics::machine::{Inertia, Machine, RelativeAngle};
@@ -9,6 +11,7 @@ use crate::planning::pose_space::{NoPoseSpace, PoseSpace, held, is_reactionless}
 use crate::planning::reactionless::{
     AngleDefinition, AngleLimit, Boundary, Decimal, NotAPlaneMap, PlaneMap, PlanePoint, Poses,
 };
+use crate::query::{Quick, Same};
 use crate::settings::number::counted;
 
 pub use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
@@ -20,6 +23,30 @@ pub struct Planes {
     boundary: Boundary,
     keep_off_change_points: bool,
     is_reactionless: bool,
+}
+
+/// The planes of a machine, if it has some.
+pub struct PlanesOf;
+
+impl Quick for PlanesOf {
+    type Input = Machine;
+    type Answer = Option<Arc<Planes>>;
+
+    fn answer(machine: &Machine) -> Self::Answer {
+        Planes::of(machine).ok().map(Arc::new)
+    }
+}
+
+/// The same planes, on which ways keep off change points.
+pub struct KeepingOff;
+
+impl Quick for KeepingOff {
+    type Input = Same<Planes>;
+    type Answer = Planes;
+
+    fn answer(Same(planes): &Same<Planes>) -> Planes {
+        Planes::clone(planes).keeping_off_change_points(true)
+    }
 }
 
 /// Whether a machine has a pose constant b = Σ λ_k q_k, asked here alone.

@@ -11,6 +11,7 @@ use super::posture::{Posture, Postures};
 use super::reactionless::{BSet, Decimal, PlanePoint};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::query::{Quick, Same};
 
 /// A point that a pose misses by less than this share of the reach is reached.
 const REACHED: f64 = 1e-9;
@@ -28,6 +29,43 @@ pub enum PoseMap {
     Planes(Arc<Planes>),
     /// Any other number.
     Space(Arc<PoseSpace>),
+}
+
+/// The pose map of a machine with its planes, if it has some, led as a posture has it; or why its b cannot be held.
+pub struct MapOf;
+
+impl Quick for MapOf {
+    type Input = (Machine, Option<Same<Planes>>, Posture);
+    type Answer = Result<PoseMap, NoPoseSpace>;
+
+    fn answer((machine, planes, posture): &Self::Input) -> Self::Answer {
+        PoseMap::of(machine, planes.as_ref().map(|planes| &planes.0), *posture)
+    }
+}
+
+/// The b that serve all of several points, m, and those of each; none where there are none.
+pub struct BOfPoints;
+
+/// What [`BOfPoints`] answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Serving {
+    /// Of each point.
+    pub each: Vec<Option<BSet>>,
+    /// Of all of them.
+    pub all: Option<BSet>,
+}
+
+impl Quick for BOfPoints {
+    /// A pose map, and the points.
+    type Input = (Same<Result<PoseMap, NoPoseSpace>>, Vec<Vector>);
+    type Answer = Serving;
+
+    fn answer((Same(map), points): &Self::Input) -> Serving {
+        match &**map {
+            Ok(map) => Serving { each: points.iter().map(|p| map.b_of(*p)).collect(), all: map.common(points) },
+            Err(_) => Serving { each: vec![None; points.len()], all: None },
+        }
+    }
 }
 
 impl PoseMap {

@@ -1,15 +1,13 @@
 //! A scenario as edits leave it, and edits in their order.
 
-use std::sync::Arc;
-
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
-use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{Vector, unit};
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_constant::{Planes, PlanesOf};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::PlanePoint;
+use crate::query::{Queries, Whole};
 use crate::settings::range::shortened;
 
 /// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
@@ -42,27 +40,18 @@ pub(super) fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
     Ok(scenario)
 }
 
-/// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
-pub(super) fn amended(
-    scenario: &Scenario,
-    edit: &Edit,
-    planes: &mut Option<(Machine, Arc<Planes>)>,
-) -> Result<Scenario, Refusal> {
+/// A scenario as an edit before its first step leaves it.
+pub(super) fn amended(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
-    let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
-    let known = match known {
-        None if scenario.machine.drives() == 3 => {
-            Planes::of(&scenario.machine).ok().map(|planes| (scenario.machine.clone(), Arc::new(planes)))
+    match &*queries.ask::<Whole<PlanesOf>>(&scenario.machine) {
+        Some(planes) => Ok(posed(scenario, planes, *b)),
+        None => {
+            let posed = scenario.task.posed(&scenario.machine, *b);
+            let task = posed.unwrap_or_else(|| turned(scenario, *b));
+            Ok(Scenario { task, ..scenario.clone() })
         }
-        known => known,
-    };
-    let Some(known) = known else {
-        let posed = scenario.task.posed(&scenario.machine, *b);
-        let task = posed.unwrap_or_else(|| turned(scenario, *b));
-        return Ok(Scenario { task, ..scenario.clone() });
-    };
-    Ok(posed(scenario, &planes.insert(known).1, *b))
+    }
 }
 
 /// The task of other than three drives at another b: where that does not reach all its points, they turn with what it
@@ -163,13 +152,13 @@ impl<E: Into<Refusal>> From<E> for Failed {
 pub(super) fn folded(
     scenario: &Scenario,
     script: &[TimedEdit],
-    planes: &mut Option<(Machine, Arc<Planes>)>,
+    queries: &Queries,
 ) -> Result<(Scenario, usize), Failed> {
     let count = opening(script);
     // Every copy below would copy its edits too.
     let mut start = scenario.without_edits();
     for (i, timed) in script[..count].iter().enumerate() {
-        start = amended(&start, &timed.edit, planes).map_err(|refusal| Failed::at(i, refusal))?;
+        start = amended(&start, &timed.edit, queries).map_err(|refusal| Failed::at(i, refusal))?;
     }
     // Only the scenario after all of these edits has to be valid, not those in between.
     let start = if count > 0 { sound(start, "the scenario")? } else { start };

@@ -11,7 +11,7 @@ use crate::session::scenario::{Bookmark, Scenario};
 use crate::simulation::frame::Frame;
 
 /// Hears how much is done, from 0 to 1, and says whether the rest is still wanted.
-pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
+pub use crate::query::Watch;
 
 /// Frames between two words to whoever watches.
 pub(super) const WORD: usize = 256;

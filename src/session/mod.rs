@@ -1,5 +1,6 @@
 //! What a person did: a scenario, edits and what became of them, step by step; undo, replay, the verdict.
 
+mod ahead;
 mod around;
 mod changes;
 pub mod design;
@@ -20,6 +21,7 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+pub use ahead::Ahead;
 pub use around::around;
 pub use designs::{Designed, designs};
 pub use document::Watch;

@@ -1,5 +1,6 @@
 //! Runs from their start to their end, with everything that was done to them.
 
+use crate::query::Queries;
 use crate::session::changes::{Failed, folded, in_order};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run, TimedEdit};
@@ -13,7 +14,8 @@ use crate::simulation::frame::Frame;
 /// If an edit cannot be made.
 pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     let script = in_order(&scenario.edits);
-    let (start, count) = folded(scenario, &script, &mut None).map_err(|failed| failed.named(&scenario.edits))?;
+    let (start, count) =
+        folded(scenario, &script, &Queries::default()).map_err(|failed| failed.named(&scenario.edits))?;
     Ok((start, script.len() - count))
 }
 

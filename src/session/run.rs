@@ -1,6 +1,6 @@
 //! A [`Run`]: a scenario in motion. The window and the commands advance the same one, so they cannot differ.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::changes::{Failed, folded};
 use super::edit::{Edit, TimedEdit};
@@ -12,10 +12,11 @@ use crate::planning::Motion;
 use crate::planning::common::Reaching;
 use crate::planning::following::follow::Bounds;
 use crate::planning::following::{Follower, Pull};
-use crate::planning::pose_constant::Planes;
-use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_constant::{KeepingOff, Planes, PlanesOf};
+use crate::planning::pose_map::{BOfPoints, MapOf, PoseMap};
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::reactionless::{BSet, Decimal};
+use crate::query::{Queries, Same, Shared, Whole};
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
 use crate::simulation::frame::Frame;
@@ -54,16 +55,14 @@ impl Waiting {
 /// A scenario in motion.
 #[derive(Clone, Debug)]
 pub struct Run {
-    scenario: Scenario,
+    scenario: Arc<Scenario>,
     planes: Option<Arc<Planes>>,
     plan: Arc<Plan>,
     /// Set where the task cannot be planned; the plan is then to rest.
     waiting: Option<Waiting>,
     simulation: Simulation,
-    /// The b that serve all points of the task, found when they are first asked for.
-    bands: OnceLock<Option<BSet>>,
-    /// What a hand leads it in, or why it cannot; found when it is first asked for.
-    pose_map: OnceLock<Result<PoseMap, NoPoseSpace>>,
+    /// What is derived of it; copies share it.
+    queries: Queries,
 }
 
 impl Run {
@@ -72,7 +71,7 @@ impl Run {
     /// # Errors
     /// If the task cannot be planned.
     pub fn new(scenario: &Scenario) -> Result<Self, Refusal> {
-        Self::with_planes(scenario, None)
+        Self::planned(scenario, &Queries::default())
     }
 
     /// At the start of the task as edits before the first step leave it, up to the first that leads the machine; how
@@ -85,14 +84,13 @@ impl Run {
         script: &[TimedEdit],
         known: Option<&Self>,
     ) -> Result<(Self, usize), Failed> {
-        let mut planes = known.and_then(|run| Some((run.scenario.machine.clone(), run.planes.clone()?)));
-        let (start, count) = folded(scenario, script, &mut planes)?;
-        let known = planes.filter(|(machine, _)| *machine == start.machine).map(|(_, planes)| planes);
-        Ok((Self::patient(&start, known)?, count))
+        let queries = known.map_or_else(Queries::default, |run| run.queries.clone());
+        let (start, count) = folded(scenario, script, &queries)?;
+        Ok((Self::patient(&start, &queries)?, count))
     }
 
-    fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
-        let run = Self::patient(scenario, known)?;
+    fn planned(scenario: &Scenario, queries: &Queries) -> Result<Self, Refusal> {
+        let run = Self::patient(scenario, queries)?;
         match run.waiting {
             Some(waiting) => Err(waiting.why),
             None => Ok(run),
@@ -100,17 +98,8 @@ impl Run {
     }
 
     /// At rest at the start of the task; where that cannot be planned, waiting.
-    fn patient(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
-        let planes = match known {
-            Some(planes) => Some(planes),
-            // A machine that lacks them goes another way; the tasks that want them say so.
-            None => Planes::of(&scenario.machine).ok().map(Arc::new),
-        };
-        let keep_off = scenario.task.keep_off_change_points;
-        let planes = planes.map(|planes| match planes.keep_off_change_points() == keep_off {
-            true => planes,
-            false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
-        });
+    fn patient(scenario: &Scenario, queries: &Queries) -> Result<Self, Refusal> {
+        let planes = planes_of(scenario, queries);
         let known = planes.as_deref();
         let (plan, waiting) = match plan(scenario, known) {
             Ok(plan) => (plan, None),
@@ -118,8 +107,8 @@ impl Run {
         };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
-        let (scenario, plan) = (scenario.clone(), Arc::new(plan));
-        Ok(Self { scenario, planes, plan, waiting, simulation, bands: OnceLock::new(), pose_map: OnceLock::new() })
+        let (scenario, plan) = (Arc::new(scenario.clone()), Arc::new(plan));
+        Ok(Self { scenario, planes, plan, waiting, simulation, queries: queries.clone() })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -132,6 +121,11 @@ impl Run {
         &self.scenario
     }
 
+    /// The same, to be kept.
+    pub fn shared_scenario(&self) -> Shared<Scenario> {
+        Shared(self.scenario.clone())
+    }
+
     /// The machine's reactionless planes.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
         self.planes.as_ref()
@@ -141,15 +135,19 @@ impl Run {
     ///
     /// # Errors
     /// Why it has none.
-    pub fn pose_map(&self) -> Result<&PoseMap, &NoPoseSpace> {
-        let find = || PoseMap::of(&self.scenario.machine, self.planes.as_ref(), self.scenario.task.posture);
-        self.pose_map.get_or_init(find).as_ref()
+    pub fn pose_map(&self) -> Result<PoseMap, NoPoseSpace> {
+        Result::clone(&self.shared_pose_map().0)
+    }
+
+    /// The same, to be kept.
+    pub fn shared_pose_map(&self) -> Same<Result<PoseMap, NoPoseSpace>> {
+        let planes = self.planes.clone().map(Same);
+        Same(self.queries.ask::<Whole<MapOf>>(&(self.scenario.machine.clone(), planes, self.scenario.task.posture)))
     }
 
     /// The b that serve all points of the task, if any do.
-    pub fn bands(&self) -> Option<&BSet> {
-        let find = || self.pose_map().ok()?.common(&self.scenario.task.points());
-        self.bands.get_or_init(find).as_ref()
+    pub fn bands(&self) -> Option<BSet> {
+        self.queries.ask::<Whole<BOfPoints>>(&(self.shared_pose_map(), self.scenario.task.points())).all.clone()
     }
 
     /// The simulation.
@@ -165,6 +163,11 @@ impl Run {
     /// How long the planned motion takes, s.
     pub fn planned_time(&self) -> f64 {
         self.plan.motion.duration()
+    }
+
+    /// The steps that this takes, a whole number.
+    pub fn planned_steps(&self) -> f64 {
+        (self.planned_time() / self.scenario.step).ceil()
     }
 
     /// Where a pose has the end effector, m.
@@ -185,6 +188,14 @@ impl Run {
         }
     }
 
+    /// The planned motion while it leads, to be kept.
+    pub fn shared_motion(&self) -> Option<Same<Motion>> {
+        match self.simulation.guide() {
+            Guide::Motion { motion, .. } => Some(Same(motion.clone())),
+            Guide::Follow(_) => None,
+        }
+    }
+
     /// Everything that is true now.
     pub fn frame(&self) -> Frame {
         self.simulation.frame()
@@ -201,14 +212,12 @@ impl Run {
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
         if edit.is_aside() {
-            self.scenario = checked(changed(&self.scenario, edit)?, edit)?;
+            self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?);
             return Ok(());
         }
         if self.is_untouched() && !edit.leads() {
-            let mut planes = self.planes.clone().map(|planes| (self.scenario.machine.clone(), planes));
-            let scenario = checked(amended(&self.scenario, edit, &mut planes)?, edit)?;
-            let known = planes.filter(|(machine, _)| *machine == scenario.machine).map(|(_, planes)| planes);
-            *self = Self::with_planes(&scenario, known)?;
+            let scenario = checked(amended(&self.scenario, edit, &self.queries)?, edit)?;
+            *self = Self::planned(&scenario, &self.queries)?;
             return Ok(());
         }
         edit.check()?;
@@ -246,7 +255,7 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             // No motion depends on it.
-            edit if edit.compares() => self.scenario = checked(changed(&self.scenario, edit)?, edit)?,
+            edit if edit.compares() => self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?),
             Edit::Push { .. } | Edit::Set { .. } => self.set(edit)?,
         }
         Ok(())
@@ -270,9 +279,7 @@ impl Run {
         simulation.change(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
         if scenario.machine != self.scenario.machine || bound {
-            let keep_off = scenario.task.keep_off_change_points;
-            let planes =
-                Planes::of(&scenario.machine).ok().map(|planes| Arc::new(planes.keeping_off_change_points(keep_off)));
+            let planes = planes_of(&scenario, &self.queries);
             if let Guide::Follow(old) = self.simulation.guide() {
                 let map = PoseMap::of(&scenario.machine, planes.as_ref(), scenario.task.posture)?;
                 let bounds = bounds(&scenario, &map);
@@ -285,11 +292,10 @@ impl Run {
                 }
                 simulation.lead(Guide::Follow(follower));
             }
-            (self.planes, self.pose_map) = (planes, OnceLock::new());
-            self.bands = OnceLock::new();
+            self.planes = planes;
         }
         self.simulation = simulation;
-        self.scenario = scenario;
+        self.scenario = Arc::new(scenario);
         Ok(())
     }
 
@@ -323,7 +329,7 @@ impl Run {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
             Guide::Motion { .. } => {
-                let map = self.pose_map().map_err(Clone::clone)?.clone();
+                let map = self.pose_map()?;
                 let bounds = bounds(&self.scenario, &map);
                 Ok(Follower::new(map, bounds, self.scenario.step, self.simulation.reference()))
             }
@@ -424,4 +430,14 @@ impl Run {
             None => Ok(last),
         }
     }
+}
+
+/// The planes of a scenario's machine, with its word on change points. A machine that lacks them goes another way; the tasks
+/// that want them say so.
+fn planes_of(scenario: &Scenario, queries: &Queries) -> Option<Arc<Planes>> {
+    let planes = Option::clone(&queries.ask::<Whole<PlanesOf>>(&scenario.machine))?;
+    Some(match scenario.task.keep_off_change_points {
+        true => queries.ask::<Whole<KeepingOff>>(&Same(planes)),
+        false => planes,
+    })
 }

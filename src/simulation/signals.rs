@@ -82,7 +82,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         });
     }
     type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
-    let whole: [Single; 47] = [
+    let whole: &[Single] = &[
         ("pose/b", "b", "pose constant", "rad", |f| f.b),
         ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
         ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
@@ -145,7 +145,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             f64::from(u8::from(f.base_feels_nothing()))
         }),
     ];
-    for (path, symbol, label, unit, value) in whole {
+    for &(path, symbol, label, unit, value) in whole {
         table.push(Signal {
             path: path.into(),
             symbol: symbol.into(),

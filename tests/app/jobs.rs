@@ -8,12 +8,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
-use stillbase::app::jobs::{AtOnce, Job, Poll, Threads, Workers};
+use stillbase::app::jobs::Threads;
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{AppState, Command, ComparisonCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::query::{AtOnce, Job, Poll, Workers};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 

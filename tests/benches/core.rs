@@ -362,7 +362,7 @@ const MACHINES: u64 = 1_000_000 / CHUNK as u64 * CHUNK as u64;
 fn ensemble() -> Ensemble {
     let run = Run::new(&Scenario::builtin("case-3").expect("built in")).expect("it starts");
     let machine = builtin("nine-link").expect("built in");
-    Ensemble::new(machine, &run.plan().motion, 200, &default_spreads(), 1).expect("it varies")
+    Ensemble::new(machine, &run.plan().motion, 200, &default_spreads(machine), 1).expect("it varies")
 }
 
 /// Peaks and root mean squares of a million varied machines on two threads.

@@ -12,6 +12,7 @@ const WINGS: &[&str] = &[
     // Pages for people; no code.
     "guide",
     "settings",
+    "query",
     "convex",
     "mechanics",
     "exchange",
@@ -29,8 +30,18 @@ const WINGS: &[&str] = &[
 ];
 
 /// Wings that neither draw, nor talk to a person, nor keep files.
-const CORE: &[&str] =
-    &["settings", "convex", "mechanics", "exchange", "planning", "simulation", "session", "study", "picture/scene"];
+const CORE: &[&str] = &[
+    "settings",
+    "query",
+    "convex",
+    "mechanics",
+    "exchange",
+    "planning",
+    "simulation",
+    "session",
+    "study",
+    "picture/scene",
+];
 
 /// Outside crates and the modules that may know them.
 const CRATES: &[(&str, &[&str])] = &[

@@ -99,6 +99,16 @@ fn shards_put_together_are_the_whole() {
     assert!(merge(&["1.csv"], "1.csv", 2).contains("exists"));
 }
 
+/// What is taken where no spread is given names only what a machine has.
+#[test]
+fn tolerances_of_every_machine_are_studied_without_a_spread() {
+    for machine in ["scara", "serial-3r", "space-arm", "nine-link"] {
+        let got = object(&["tolerance", machine, "--samples", "200"]);
+        assert!(got["parameters"].as_array().is_some_and(|all| !all.is_empty()), "{machine}: {got}");
+    }
+    fails(&["tolerance", "scara", "--spread", "length.*=0.001"], 2, &["length.*"]);
+}
+
 #[test]
 fn tolerance_counts_what_keeps_within_limits() {
     let args = ["tolerance", "case-3", "--samples", "2000", "--limit-moment", "0.01", "--limit-force", "0.02"];

@@ -1,9 +1,12 @@
 //! Runs side by side: the ways of one task, their table, and the two instants of a cursor.
 
+use std::sync::Arc;
 use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
-use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, alternatives, run_ways};
+
+use stillbase::query::{Shared, answered};
+use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, Ways, alternatives};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
@@ -171,8 +174,8 @@ fn two_instants_differ_by_their_signals() {
 fn a_comparison_follows_sorts_and_keeps() {
     use stillbase::study::comparison::Comparison;
     let mut comparison = Comparison::empty(&scenario("case-3"));
-    let ways = |scenario: &Scenario| run_ways(scenario, &mut |_| true).expect("not stopped");
-    comparison.follow_with(&scenario("case-3"), ways(&scenario("case-3")));
+    let ways = |scenario: Scenario| Arc::new(answered::<Ways>(Shared(Arc::new(scenario))));
+    comparison.follow(&ways(scenario("case-3")));
     assert_eq!(comparison.entries().len(), 5);
     comparison.show(1, true);
     comparison.keep(scenario("case-2")).expect("it runs");
@@ -201,7 +204,7 @@ fn a_comparison_follows_sorts_and_keeps() {
     // Another task: its ways are run, what was ticked stays so, what was kept stays.
     let mut other = scenario("case-3");
     other.task.time = 2.0;
-    comparison.follow_with(&other, ways(&other));
+    comparison.follow(&ways(other.clone()));
     assert_eq!(*comparison.task(), other);
     assert_eq!(comparison.entries().len(), 7);
     assert!(comparison.entries()[1].shown && comparison.entries()[5].kept);

@@ -69,7 +69,7 @@ fn compare(ensemble: &Ensemble, machines: usize) {
 fn fast_and_straightforward_agree_on_the_nine_link_machine() {
     for case in ["case-1", "case-3"] {
         let motion = motion(case);
-        let ensemble = Ensemble::new(&nine_link(), &motion, 200, &default_spreads(), 1).expect("it varies");
+        let ensemble = Ensemble::new(&nine_link(), &motion, 200, &default_spreads(&nine_link()), 1).expect("it varies");
         compare(&ensemble, CHUNK);
     }
     // Every number, far from small, with weight and a payload; uniform and normal.

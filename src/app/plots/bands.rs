@@ -7,21 +7,12 @@ use super::which_b::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState, set_b};
-use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
-use crate::planning::pose_map::PoseMap;
-use crate::planning::reactionless::BSet;
+use crate::planning::pose_map::{BOfPoints, PoseMap};
+use crate::query::{Queries, Whole};
 use crate::session::Session;
-
-/// The b of points of a machine; found when these change, not whenever they are drawn.
-pub struct Bands {
-    machine: Machine,
-    points: Vec<Vector>,
-    /// Of each point; none if no b reaches it.
-    sets: Vec<Option<BSet>>,
-}
 
 /// The most points that have a bar.
 const MOST: usize = 8;
@@ -32,13 +23,13 @@ const DOT: f64 = 1e-3;
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
-    (session, known): (&Session, &mut Option<Bands>),
+    (session, queries): (&Session, &Queries),
     view_state: &ViewState,
     height: f32,
     commands: &mut Vec<Command>,
 ) {
-    let Ok(map @ PoseMap::Space(space)) = session.run().pose_map() else { return };
-    if space.drives() < 2 {
+    let Ok(map) = session.run().pose_map() else { return };
+    if map.angles() == 0 || matches!(map, PoseMap::Planes(_)) {
         return;
     }
     let (task, now) = (&session.scenario().task, session.frame());
@@ -50,14 +41,9 @@ pub fn show(
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let machine = &session.scenario().machine;
-    let known = match known {
-        Some(found) if found.points == places && found.machine == *machine => found,
-        old => {
-            let sets = places.iter().map(|at| map.b_of(*at)).collect();
-            old.insert(Bands { machine: machine.clone(), points: places, sets })
-        }
-    };
+    let serving = queries.ask_beside::<Whole<BOfPoints>>(&(session.run().shared_pose_map(), places)).last;
+    // While they are being found, those of other points do not stand for these.
+    let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new("Which b?").font(bold(12.5)));
@@ -76,7 +62,7 @@ pub fn show(
         .show(ui, |plot| {
             plot.set_plot_bounds_x(b_now - half..=b_now + half);
             plot.set_plot_bounds_y(-count..=0.4);
-            for (i, ((name, _), set)) in points.iter().zip(&known.sets).enumerate() {
+            for (i, ((name, _), set)) in points.iter().zip(sets.into_iter().flatten()).enumerate() {
                 let y = -(i as f64) - 0.5;
                 let near = set.as_ref().map(|set| set.near(b_now).intervals).unwrap_or_default();
                 for [low, high] in &near {

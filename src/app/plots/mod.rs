@@ -44,7 +44,7 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
 
 /// Draws this panel; how wide it was made.
 pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
-    let Shown { session, signals, view_state, .. } = *what;
+    let Shown { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let usual = usual(ui, view_state.layout);
@@ -87,8 +87,8 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
                 ui.add_space(4.0);
             }
             hover::remember(ui, over);
-            bands::show(ui, &p, (session, &mut prepared.bands), view_state, height + BELOW, commands);
-            which_b::show(ui, &p, (session, &mut prepared.which_b), view_state, height * 1.6 + BELOW, commands);
+            bands::show(ui, &p, (session, queries), view_state, height + BELOW, commands);
+            which_b::show(ui, &p, (session, queries), view_state, height * 1.6 + BELOW, commands);
         });
     });
     view_state.plots.made(made.response.rect.width(), usual)

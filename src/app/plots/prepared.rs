@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use super::bands::Bands;
-use super::which_b::Known;
 use crate::picture::charts::choice::{Choice, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::range::Extent;
@@ -22,9 +20,6 @@ pub struct Prepared {
     drawn: Vec<Drawn>,
     /// A signal is to be sought.
     looks: bool,
-    /// Which b serves the points on display.
-    pub(super) which_b: Option<Known>,
-    pub(super) bands: Option<Bands>,
 }
 
 /// A run that is laid over.

@@ -1,6 +1,7 @@
 //! What the plots are of.
 
 use crate::app::ViewState;
+use crate::query::Queries;
 use crate::session::Session;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
@@ -9,6 +10,8 @@ use crate::study::comparison::Comparison;
 /// What is on display.
 pub struct Shown<'a> {
     pub session: &'a Session,
+    /// What is derived of it.
+    pub queries: &'a Queries,
     pub signals: &'a [Signal],
     pub comparison: Option<&'a Comparison>,
     pub view_state: &'a ViewState,

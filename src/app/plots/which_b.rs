@@ -1,7 +1,5 @@
 //! Which b serves a target, or the points of the task.
 
-use std::sync::Arc;
-
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
 
@@ -12,36 +10,23 @@ use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_up, signed};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::planning::pose_constant::Planes;
-use crate::planning::reactionless::{BSet, PlanePoint};
+use crate::planning::pose_map::BOfPoints;
+use crate::planning::reactionless::PlanePoint;
+use crate::query::{Queries, Quick, Same, Whole};
 use crate::session::Session;
 
 /// Size of the figures at axes.
 const FIGURES: f32 = 10.5;
 
-/// What is known of points on planes; found when these change, not whenever it is drawn.
-pub struct Known {
-    planes: Arc<Planes>,
-    points: Vec<Vector>,
-    /// Of each point the branches of its self-motion.
-    branches: Vec<Vec<Vec<PlanePoint>>>,
-    /// The b that serve all of them; none if one is on no plane.
-    common: Option<BSet>,
-}
+/// The branches of the self-motion of each of some points on planes.
+pub struct Branches;
 
-impl Known {
-    fn of(planes: &Arc<Planes>, points: Vec<Vector>) -> Self {
-        let map = planes.map();
-        let sets: Option<Vec<BSet>> = points.iter().map(|x| map.reach(*x).ok()).collect();
-        Self {
-            branches: points.iter().map(|x| map.self_motion(*x, 96)).collect(),
-            common: sets.map(|sets| BSet::overlap(&sets)),
-            planes: planes.clone(),
-            points,
-        }
-    }
+impl Quick for Branches {
+    type Input = (Same<Planes>, Vec<Vector>);
+    type Answer = Vec<Vec<Vec<PlanePoint>>>;
 
-    fn is_of(&self, planes: &Arc<Planes>, points: &[Vector]) -> bool {
-        Arc::ptr_eq(&self.planes, planes) && self.points == points
+    fn answer((Same(planes), points): &Self::Input) -> Self::Answer {
+        points.iter().map(|x| planes.map().self_motion(*x, 96)).collect()
     }
 }
 
@@ -49,7 +34,7 @@ impl Known {
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
-    (session, known): (&Session, &mut Option<Known>),
+    (session, queries): (&Session, &Queries),
     view_state: &ViewState,
     height: f32,
     commands: &mut Vec<Command>,
@@ -62,10 +47,8 @@ pub fn show(
         false => named.iter().map(String::as_str).zip(task.points()).collect(),
     };
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
-    let known = match known {
-        Some(found) if found.is_of(planes, &places) => found,
-        old => old.insert(Known::of(planes, places)),
-    };
+    let branches = queries.ask::<Whole<Branches>>(&(Same(planes.clone()), places.clone()));
+    let serving = queries.ask::<Whole<BOfPoints>>(&(session.run().shared_pose_map(), places));
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new("Which b?").font(bold(12.5)));
@@ -73,11 +56,11 @@ pub fn show(
         ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
     });
     let map = planes.map();
-    let common = known.common.as_ref().map(|common| common.near(now.b_reference));
+    let common = serving.all.as_ref().map(|common| common.near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()
-        .zip(&known.branches)
+        .zip(&*branches)
         .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (*name, branch)))
         .map(|(name, branch)| {
             // The whole turn nearest to the present b.

@@ -44,7 +44,7 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Command>) {
     fold(ui, p, (TITLE, "by key"), None, commands, |ui, commands| {
         let id = sought_id();
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();

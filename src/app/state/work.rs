@@ -6,18 +6,16 @@ use std::sync::Arc;
 use super::AppState;
 use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Opened, Source};
-use crate::app::jobs::Workers;
 use crate::app::{Activity, Command, ComparisonCommand, Framing, LeftOff, PlotFile, RefusedEdit, plots};
 use crate::exchange::cut::Cut;
 use crate::exchange::form::Form;
 use crate::mechanics::machine::Machine;
-use crate::picture::scene::stage::Outlined;
-use crate::planning::pose_space::PoseSpace;
+use crate::picture::scene::stage::Outlining;
+use crate::query::{Asked, Job, Queries, Same, Shared, State, Ticket, Workers};
 use crate::session::scenario::{MAX_BRANCHES, Scenario};
-use crate::session::{Edit, Refusal, Session};
-use crate::simulation::frame::Totals;
-use crate::study::comparison::{Compared, Comparison, run_ways};
-use crate::study::tolerance::{Study, ToleranceError};
+use crate::session::{Ahead, Edit, Refusal, Session};
+use crate::study::comparison::{Compared, Comparison, Ways};
+use crate::study::tolerance::{Studied, Study, Studying};
 
 /// The most steps that are run ahead to see how far the base will move.
 const MOST_AHEAD: f64 = 20_000.0;
@@ -28,6 +26,11 @@ impl AppState {
     pub fn with_workers(mut self, workers: impl Workers + Send + Sync + 'static) -> Self {
         self.background.hire(workers);
         self
+    }
+
+    /// What is derived of the session.
+    pub(super) fn queries(&self) -> &Queries {
+        &self.background.queries
     }
 
     /// Says how something went.
@@ -42,18 +45,11 @@ impl AppState {
     /// Takes what jobs have done; whether one has ended.
     pub(super) fn collect(&mut self) -> bool {
         let [changed, opened] = [self.collect_change(), self.collect_opening()];
-        let fault = |what: &str| format!("{what} broke off: this is a fault of the program");
         let mut any = changed || opened;
-        if let Some((of, study)) = ended(&mut self.background.study) {
-            let study = study.unwrap_or_else(|| Some(Err(fault("the study"))));
-            self.study = study.map(|study| (of, study)).or(self.study.take());
-            any = true;
-        }
-        if let Some((of, ways)) = ended(&mut self.background.ways) {
-            if let (Some(comparison), Some(Some(ways))) = (&mut self.comparison, ways) {
-                comparison.follow_with(&of, ways);
-            }
-            any = true;
+        if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
+            && let Some(ways) = ways.known()
+        {
+            comparison.follow(ways);
         }
         while let Some(first) = self.background.kept.pop_front() {
             let mut first = Some(first);
@@ -87,31 +83,27 @@ impl AppState {
             self.tell(said.map(Some));
             any = true;
         }
-        if let Some(((), totals)) = ended(&mut self.background.foreseen) {
-            self.foreseen = totals.unwrap_or_default();
-            self.adjust();
-            any = true;
-        }
+        self.adjust();
         any
     }
 
     /// Has what the machine reaches outlined, where that is yet to be found and takes long; whether it has come.
     pub(super) fn outline(&mut self) -> bool {
-        let slot = &mut self.background.outline;
         let Some(space) = self.views.unoutlined() else {
-            *slot = None;
+            // What was being outlined is wanted no more.
+            if self.queries().progress::<Outlining>().is_some() {
+                self.queries().forget::<Outlining>();
+            }
             return false;
         };
-        if slot.as_ref().is_none_or(|(of, _)| *of != space) {
-            // What was being outlined is wanted no more.
-            *slot = None;
-            let of = PoseSpace::clone(&space);
-            let job = self.background.start(move |ticket| Outlined::of(of, &mut |done| ticket.goes_on(done)));
-            self.background.outline = Some((space, job));
-        }
-        let Some((space, outline)) = ended(&mut self.background.outline) else { return false };
+        let asked = self.queries().ask_beside::<Outlining>(&Shared(space.clone()));
+        let outline = match (asked.known(), asked.state) {
+            (Some(outline), _) => Option::clone(outline),
+            (None, State::UnderWay(_)) => return false,
+            (None, _) => None,
+        };
         let views = Arc::make_mut(&mut self.views);
-        views.set_outline(&space, outline.flatten());
+        views.set_outline(&space, outline);
         views.raise_tower(self.session.run());
         if self.view_state.grabbed.is_none() {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
@@ -315,7 +307,7 @@ impl AppState {
         &mut self,
         slot: fn(&mut Self) -> &mut Slot<K, Result<String, String>>,
         of: K,
-        job: crate::app::jobs::Job<Result<String, String>>,
+        job: Job<Result<String, String>>,
     ) {
         *slot(self) = Some((of, job));
         self.collect();
@@ -349,7 +341,8 @@ impl AppState {
             return Err("one file is being saved: want that to end first".into());
         }
         let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
-        let what = plots::Shown { session, signals, comparison: self.comparison.as_ref(), view_state };
+        let queries = self.queries();
+        let what = plots::Shown { session, queries, signals, comparison: self.comparison.as_ref(), view_state };
         let (content, path) = (plots::written(&what, &self.prepared, plot, file)?, path.to_owned());
         let job = self.background.start(move |_| {
             crate::files::write_new(&path, &content()?, replaces).map_err(|e| e.to_string())?;
@@ -410,56 +403,42 @@ impl AppState {
 
     /// Runs ahead to where the planned motion ends, to know how far the base will move.
     pub(super) fn foresee(&mut self) {
-        self.foreseen = Totals::default();
-        let scenario = self.session.scenario();
-        let steps = (self.session.run().planned_time() / scenario.step).ceil();
-        self.background.foreseen = None;
-        if scenario.base.moves() && !self.session.is_led() && steps <= MOST_AHEAD {
-            let mut run = self.session.run().clone();
-            let job = self.background.start(move |ticket| {
-                let mut wanted = true;
-                while wanted && (run.simulation().step_count() as f64) < steps {
-                    run.advance();
-                    let done = run.simulation().step_count();
-                    wanted = !done.is_multiple_of(256) || ticket.goes_on(done as f64 / steps);
-                }
-                run.frame().totals
-            });
-            self.background.foreseen = Some(((), job));
-            self.collect();
+        let run = self.session.run();
+        if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MOST_AHEAD {
+            let _ = self.queries().ask_beside::<Ahead>(&Same(Arc::new(run.clone())));
+        } else {
+            self.queries().forget::<Ahead>();
+        }
+        self.adjust();
+    }
+
+    /// Studies the run on display; only the newest counts.
+    pub(super) fn refresh_study(&mut self) {
+        if !self.view_state.study {
+            self.queries().forget::<Studying>();
+        } else if self.view_state.grabbed.is_none() {
+            let _ = self.queries().ask_beside::<Studying>(&Studied(Arc::new(self.session.run().clone())));
         }
     }
 
-    /// Studies the run on display, if its last study is of another; only the newest counts.
-    pub(super) fn refresh_study(&mut self) {
-        if !self.view_state.study {
-            (self.study, self.background.study) = (None, None);
-            return;
-        }
-        let scenario = self.session.scenario();
-        let known = self.background.study.as_ref().map(|(of, _)| of).or(self.study.as_ref().map(|(of, _)| of));
-        if self.view_state.grabbed.is_some() || known == Some(scenario) {
-            return;
-        }
-        self.background.study = None;
-        match self.session.run().waiting() {
-            Some(waiting) => self.study = Some((scenario.clone(), Err(waiting.why.to_string()))),
-            None => {
-                let run = self.session.run().clone();
-                let job =
-                    self.background.start(move |ticket| match Study::watched(&run, &mut |done| ticket.goes_on(done)) {
-                        Err(ToleranceError::Stopped) => None,
-                        study => Some(study.map_err(|why| why.to_string())),
-                    });
-                self.background.study = Some((scenario.clone(), job));
+    /// What there is to show of that study, or why there is none.
+    pub(super) fn study(&self) -> Option<Arc<Result<Study, String>>> {
+        let Asked { last, state } = self.queries().newest::<Studying>()?;
+        match state {
+            State::Broken => Some(Arc::new(Err(fault("the study")))),
+            // It is not begun again until something changes.
+            State::Stopped if last.is_none() => {
+                Some(Arc::new(Err("cancelled: to change something draws machines again".into())))
             }
+            _ => last,
         }
     }
 
     /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
     pub(super) fn refresh_comparison(&mut self) {
         if !self.view_state.compare {
-            (self.comparison, self.background.ways, self.declined) = (None, None, None);
+            self.comparison = None;
+            self.queries().forget::<Ways>();
             self.background.kept.clear();
             return;
         }
@@ -472,19 +451,10 @@ impl AppState {
             .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
-        let wanted = match &self.background.ways {
-            Some((of, _)) => of != scenario,
-            None => stale && self.declined.as_ref() != Some(scenario),
-        };
-        if !wanted || (!first && self.view_state.grabbed.is_some()) {
-            return;
+        let wanted = stale || self.queries().progress::<Ways>().is_some();
+        if wanted && (first || self.view_state.grabbed.is_none()) {
+            let _ = self.queries().ask_beside::<Ways>(&self.session.run().shared_scenario());
         }
-        let of = scenario.clone();
-        let job = self.background.start({
-            let of = of.clone();
-            move |ticket| run_ways(&of, &mut |done| ticket.goes_on(done))
-        });
-        self.background.ways = Some((of, job));
     }
 
     pub(super) fn change_comparison(&mut self, on: ComparisonCommand) {
@@ -522,8 +492,7 @@ impl AppState {
 
     /// Runs a scenario to be kept beside the ways of the task.
     fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
-        let work =
-            move |ticket: &crate::app::jobs::Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
+        let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
         let job = self.background.start(work);
         self.background.kept.push_back((news, job));
         self.collect();
@@ -548,15 +517,8 @@ impl AppState {
             }
             Activity::Opening => self.background.opening = None,
             Activity::Recording => self.background.recording = None,
-            Activity::Study => {
-                // It is not begun again until something changes.
-                if let Some((of, _)) = self.background.study.take() {
-                    let known = self.study.take().map(|(_, study)| study);
-                    let none = || Err("cancelled: to change something draws machines again".into());
-                    self.study = Some((of, known.unwrap_or_else(none)));
-                }
-            }
-            Activity::Ways => self.declined = self.background.ways.take().map(|(of, _)| of),
+            Activity::Study => self.queries().stop::<Studying>(),
+            Activity::Ways => self.queries().stop::<Ways>(),
             Activity::Kept => self.background.kept.clear(),
             Activity::Saving => {}
         }
@@ -572,6 +534,11 @@ impl AppState {
 /// The whole name of a file, so that it can be found again.
 fn whole(path: &Path) -> String {
     crate::files::whole(path).unwrap_or_else(|| path.into()).display().to_string()
+}
+
+/// What is said of work that broke off.
+fn fault(what: &str) -> String {
+    format!("{what} broke off: this is a fault of the program")
 }
 
 /// Whether two scenarios differ in their tasks at most.

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     let p = &view_state.palette();
     heading(ui, p, "(7) and (8)", "part of each link; below: what is left");
     let hot = hot_link(view_state, session);
-    for term in &facts.terms {
+    for term in facts.terms.iter() {
         row(ui, p, session, term, hot);
     }
     if facts.terms.iter().any(|term| term.left[1].abs() > 1e-9) {

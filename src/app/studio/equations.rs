@@ -24,7 +24,7 @@ const GUTTER: f32 = 48.0;
 pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewState) {
     let p = &view_state.palette();
     note(ui, p, &when(lesson, session));
-    let wanted = ui.scope(|ui| index(ui, p, lesson.equations())).inner;
+    let wanted = ui.scope(|ui| index(ui, p, &lesson.equations)).inner;
     ui.add_space(2.0);
     let machine = &session.scenario().machine;
     let pen = Pen { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewSt
         ui.set_width(ui.available_width() - BAR);
         ui.spacing_mut().item_spacing.y = 2.0;
         let mut heights = Heights::of(ui);
-        for (i, equation) in lesson.equations().iter().enumerate() {
+        for (i, equation) in lesson.equations.iter().enumerate() {
             let top = ui.cursor().min;
             // What is out of sight only takes its room.
             let known = heights.known(i);
@@ -94,10 +94,10 @@ impl Heights {
 
 /// The instant in words.
 fn when(lesson: &Lesson, session: &Session) -> String {
-    let instant = match lesson.when() {
-        Some(When::Plan(time)) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
-        Some(When::Run(time)) => format!("Numbers at {} s.", signed(time, 3)),
-        Some(When::Given) | None => String::new(),
+    let instant = match lesson.when {
+        When::Plan(time) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
+        When::Run(time) => format!("Numbers at {} s.", signed(time, 3)),
+        When::Given => String::new(),
     };
     match session.scenario().base.moves() {
         true => format!("{instant} As on a base that stands still."),

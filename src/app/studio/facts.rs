@@ -1,11 +1,14 @@
-//! [`Facts`]: what the panels say of a machine that has to be found first. It is found when the machine changes.
+//! [`Facts`]: what the panels say of a machine, asked for each picture of them.
+
+use std::sync::Arc;
 
 use super::lesson::Lesson;
 use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::counterweights::{Placed, Residual, Weighing, over_payloads};
+use crate::mechanics::counterweights::{Front, FrontSearch, NoWeights, Placed, Residual, over_payloads};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::options::Offered;
-use crate::planning::forecast::Forecast;
+use crate::planning::Motion;
+use crate::query::{Asked, Portion, Queries, Query, Quick, Same, State, Watch, Whole};
 use crate::session::Session;
 use crate::session::design::Brief;
 use crate::settings::number::subscript;
@@ -14,34 +17,132 @@ use crate::study::measures::Measures;
 
 /// How many machines the front has.
 const POINTS: usize = 25;
+/// Payloads at which the balance is looked at.
+const PAYLOADS: usize = 41;
 
 /// Of the machine on display.
-#[derive(Default)]
 pub struct Facts {
-    of: Option<Machine>,
     /// One of each line of (7) and (8).
-    pub(super) terms: Vec<Term>,
-    /// λ of the drives, or why there are none.
-    pub(super) lambda: Vec<f64>,
-    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
-    pub(super) now: [f64; 2],
-    /// What balance has cost beside the machine without its counterweights, with the forecast of the task that it is of.
-    pub(super) measures: Option<(Forecast, Measures)>,
-    /// It without its counterweights.
-    bare: Option<Machine>,
-    weighed: Option<(Machine, Weighing)>,
-    front: Option<Result<Vec<Point>, String>>,
-    /// What tells the machines of the front apart, of each of them, with the forecast of the task that it is of.
-    pub(super) told: Option<(FrontMeasure, Forecast, Vec<Option<f64>>)>,
+    pub(super) terms: Arc<Vec<Term>>,
+    sums: Arc<Sums>,
+    /// What balance has cost beside the machine without its counterweights.
+    pub(super) measures: Option<Arc<Measures>>,
     /// What is left of balance over the payloads that are asked for.
-    pub(super) payloads: Vec<Residual>,
-    held: Option<[f64; 2]>,
-    /// Its equations, as far as they were asked for.
-    pub(super) lesson: Lesson,
+    pub(super) payloads: Option<Arc<Vec<Residual>>>,
+    /// What less inertia costs in mass; none while the equations are on display.
+    front: Option<Asked<Points>>,
+    /// What tells the machines of the front apart, of each of them.
+    pub(super) told: Option<(FrontMeasure, Arc<Vec<Option<f64>>>)>,
+    /// Its equations; none while the front is on display.
+    pub(super) lesson: Option<Arc<Lesson>>,
 }
 
-/// Payloads at which that is looked at.
-const PAYLOADS: usize = 41;
+/// The machines of a front, from light to quick, or why there are none.
+type Points = Result<Vec<Point>, String>;
+
+/// What a machine adds up to.
+struct Sums {
+    /// λ of the drives.
+    lambda: Vec<f64>,
+    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
+    now: [f64; 2],
+    /// It without its counterweights.
+    bare: Option<Machine>,
+}
+
+impl Quick for Sums {
+    type Input = Machine;
+    type Answer = Self;
+
+    fn answer(machine: &Machine) -> Self {
+        let inertia = Inertia::of(machine);
+        let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
+        Self {
+            lambda: inertia.lambda().to_vec(),
+            now: [added, inertia.total_momentum()],
+            bare: machine.without_counterweights().ok(),
+        }
+    }
+}
+
+/// The lines of (7) and (8) of a machine.
+struct Terms;
+
+impl Quick for Terms {
+    type Input = Machine;
+    type Answer = Vec<Term>;
+
+    fn answer(machine: &Machine) -> Vec<Term> {
+        terms(machine)
+    }
+}
+
+/// What balance has cost a machine beside the bare one, in a motion of both.
+struct Cost;
+
+impl Quick for Cost {
+    type Input = (Machine, Machine, Option<Same<Motion>>);
+    type Answer = Measures;
+
+    fn answer((bare, machine, motion): &Self::Input) -> Measures {
+        Measures::of(bare, machine, motion.as_ref().map(|motion| &*motion.0))
+    }
+}
+
+/// What is left of a machine's balance over payloads, kg, from one to another.
+struct OverPayloads;
+
+impl Quick for OverPayloads {
+    type Input = (Machine, [f64; 2]);
+    type Answer = Vec<Residual>;
+
+    fn answer((machine, ends): &Self::Input) -> Vec<Residual> {
+        over_payloads(machine, *ends, PAYLOADS).unwrap_or_default()
+    }
+}
+
+/// A front with what its machines add up to.
+struct FrontPoints;
+
+impl Quick for FrontPoints {
+    type Input = Same<Result<Front, NoWeights>>;
+    type Answer = Points;
+
+    fn answer(front: &Self::Input) -> Points {
+        let front = front.0.as_ref().as_ref().map_err(ToString::to_string)?;
+        let measures = front.measures().into_iter();
+        let point = |(placed, [_, inertia]): (&Placed, [f64; 2])| Point { placed: placed.clone(), inertia };
+        Ok(front.points.iter().zip(measures).map(point).collect())
+    }
+}
+
+/// What tells the machines of a front apart, one of them in a portion.
+struct Telling {
+    of: <Self as Query>::Input,
+    told: Vec<Option<f64>>,
+}
+
+impl Query for Telling {
+    /// The front, by what, and in which motion.
+    type Input = (Same<Points>, FrontMeasure, Option<Same<Motion>>);
+    type Answer = Vec<Option<f64>>;
+
+    fn begin(of: Self::Input) -> Self {
+        Self { of, told: Vec::new() }
+    }
+
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+        let (front, by, motion) = &self.of;
+        let points = front.0.as_deref().unwrap_or_default();
+        match points.get(self.told.len()) {
+            Some(point) => {
+                self.told.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
+                Portion::More(self.told.len() as f64 / points.len() as f64)
+            }
+            None => Portion::Done(std::mem::take(&mut self.told)),
+        }
+    }
+}
 
 /// A machine of the front.
 pub(super) struct Point {
@@ -77,84 +178,77 @@ impl Term {
 const NOTHING: f64 = 1e-9;
 
 impl Facts {
-    /// Finds the equations, if what they depend on has changed.
-    pub fn learn(&mut self, session: &Session, brief: &Brief) {
-        self.follow(session, brief);
-        self.lesson.follow(session, brief.preset);
-    }
-
-    /// Finds what has to be said, if the machine or what is asked for has changed.
-    fn follow(&mut self, session: &Session, brief: &Brief) {
-        let (machine, plan) = (&session.scenario().machine, session.run().plan());
-        let is_new = self.of.as_ref() != Some(machine);
-        if is_new {
-            self.terms = terms(machine);
-            let inertia = Inertia::of(machine);
-            self.lambda = inertia.lambda().to_vec();
-            let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
-            self.now = [added, inertia.total_momentum()];
-            self.bare = machine.without_counterweights().ok();
-            self.of = Some(machine.clone());
-        }
-        let is_measured = || self.measures.as_ref().is_some_and(|(forecast, _)| *forecast == plan.forecast);
-        if is_new || !is_measured() {
-            let of = |bare| (plan.forecast, Measures::of(bare, machine, session.run().motion()));
-            self.measures = self.bare.as_ref().map(of);
-        }
-        if is_new || self.held != brief.payload {
-            let payloads = brief.payload.and_then(|ends| over_payloads(machine, ends, PAYLOADS).ok());
-            (self.payloads, self.held) = (payloads.unwrap_or_default(), brief.payload);
-        }
-    }
-
-    /// Finds the front, too, and what tells its machines apart.
-    pub fn weigh(&mut self, session: &Session, brief: &Brief, by: Option<FrontMeasure>) {
-        self.follow(session, brief);
-        let Some(bare) = &self.bare else { return };
-        let asked = brief.weighing(bare);
-        if !self.weighed.as_ref().is_some_and(|(known, what)| known == bare && *what == asked) {
-            let found = brief.front(bare, POINTS).map_err(|why| why.to_string());
-            self.front = Some(found.map(|front| {
-                let measures = front.measures();
-                let both = front.points.into_iter().zip(measures);
-                both.map(|(placed, [_, inertia])| Point { placed, inertia }).collect()
-            }));
-            self.weighed = Some((bare.clone(), asked));
-            self.told = None;
-        }
-        self.tell(session, by);
-    }
-
-    /// Finds what tells the machines of the front apart.
-    fn tell(&mut self, session: &Session, by: Option<FrontMeasure>) {
-        let run = session.run();
-        let forecast = run.plan().forecast;
-        if by == self.told.as_ref().map(|(known, ..)| *known)
-            && self.told.as_ref().is_none_or(|(_, known, _)| *known == forecast)
-        {
-            return;
-        }
+    /// Of the machine on display, with its front.
+    pub fn weighed(queries: &Queries, session: &Session, brief: &Brief, by: Option<FrontMeasure>) -> Self {
+        let mut facts = Self::of(queries, session, brief);
+        let Some(bare) = &facts.sums.bare else { return facts };
+        let front = queries.ask_beside::<FrontSearch>(&asked(bare, brief));
+        let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
         // One that waits does not move.
-        let motion = run.motion().filter(|_| run.waiting().is_none());
-        let of = |by: FrontMeasure| {
-            let points = self.front().unwrap_or_default().iter();
-            (by, forecast, points.map(|point| by.of(&point.placed, motion)).collect())
-        };
-        self.told = by.map(of);
+        let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
+        facts.told = by.zip(points.clone()).and_then(|(by, points)| {
+            let told = queries.ask_beside::<Telling>(&(Same(points), by, motion));
+            Some((by, told.known()?.clone()))
+        });
+        facts.front = Some(Asked { last: points, state: front.state });
+        facts
     }
 
-    /// The machines of the front, from light to quick.
+    /// The same with its equations.
+    pub fn learned(queries: &Queries, session: &Session, brief: &Brief) -> Self {
+        let lesson = Lesson::of(queries, session, brief.preset);
+        Self { lesson, ..Self::of(queries, session, brief) }
+    }
+
+    fn of(queries: &Queries, session: &Session, brief: &Brief) -> Self {
+        let (machine, run) = (&session.scenario().machine, session.run());
+        let sums = queries.ask::<Whole<Sums>>(machine);
+        let cost = |bare: &Machine| {
+            queries.ask_beside::<Whole<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
+        };
+        let over = |ends| queries.ask_beside::<Whole<OverPayloads>>(&(machine.clone(), ends)).last;
+        Self {
+            terms: queries.ask::<Whole<Terms>>(machine),
+            measures: sums.bare.as_ref().and_then(cost),
+            payloads: brief.payload.and_then(over),
+            sums,
+            front: None,
+            told: None,
+            lesson: None,
+        }
+    }
+
+    /// λ of the drives.
+    pub(super) fn lambda(&self) -> &[f64] {
+        &self.sums.lambda
+    }
+
+    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
+    pub(super) fn now(&self) -> [f64; 2] {
+        self.sums.now
+    }
+
+    /// The machines of the front, from light to quick; none before the first front is found.
     pub(super) fn front(&self) -> Result<&[Point], &str> {
-        match &self.front {
+        match self.front.as_ref().and_then(|front| front.last.as_deref()) {
             Some(Ok(points)) => Ok(points),
             Some(Err(why)) => Err(why),
             None => Ok(&[]),
         }
     }
 
+    /// How much of the front of the machine on display is found, while that is under way.
+    pub(super) fn front_under_way(&self) -> Option<f64> {
+        match self.front.as_ref()?.state {
+            State::UnderWay(share) => Some(share),
+            _ => None,
+        }
+    }
+
     /// The counterweights of one of them.
     pub fn weights(&self, i: usize) -> Vec<Offered> {
-        let spec = self.of_front(i).map(Machine::spec);
+        let point = self.front().ok().and_then(|points| points.get(i));
+        let spec = point.map(|point| point.placed.machine.spec());
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(|weight| {
                 let link = spec.links.iter().position(|link| link.name == weight.link)?;
@@ -163,11 +257,18 @@ impl Facts {
         });
         weights.collect()
     }
+}
 
-    /// One of them.
-    pub fn of_front(&self, i: usize) -> Option<&Machine> {
-        Some(&self.front().ok()?.get(i)?.placed.machine)
-    }
+/// One machine of the front that is on display; of the machine and the brief as they are.
+pub fn of_front(queries: &Queries, session: &Session, brief: &Brief, i: usize) -> Option<Machine> {
+    let sums = queries.ask::<Whole<Sums>>(&session.scenario().machine);
+    let front = queries.ask::<FrontSearch>(&asked(sums.bare.as_ref()?, brief));
+    Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
+}
+
+/// What a front is asked for with.
+fn asked(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
+    (bare.clone(), brief.weighing(bare), POINTS)
 }
 
 fn terms(machine: &Machine) -> Vec<Term> {

@@ -25,6 +25,9 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     let p = &view_state.palette();
     ui.add_space(8.0);
     heading(ui, p, "Counterweights", "hover shows, click takes");
+    if let Some(share) = facts.front_under_way() {
+        note(ui, p, &format!("looking for them: {:.0} %", 100.0 * share));
+    }
     let points = match facts.front() {
         Ok([]) => return,
         Ok(points) => points,
@@ -33,7 +36,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     if points.iter().all(|point| point.placed.added_mass < NOTHING) {
         return note(ui, p, "The links balance each other: nothing needs to be added.");
     }
-    let [mass, inertia] = facts.now;
+    let [mass, inertia] = facts.now();
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
     // Taken counterweights are shown among the others, where they are within reach of them.
     let shown = mass > NOTHING;
@@ -45,7 +48,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    let told = facts.told.as_ref().and_then(|(by, _, values)| Told::of(*by, values));
+    let told = facts.told.as_ref().and_then(|(by, values)| Told::of(*by, values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| by(ui, view_state, commands));
@@ -80,7 +83,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
                 plot.points(dot.allow_hover(false));
             }
             if shown {
-                let at = PlotPoints::from(vec![facts.now]);
+                let at = PlotPoints::from(vec![facts.now()]);
                 plot.points(Points::new("now", at).radius(6.0).color(colour(p.amber)).allow_hover(false));
             }
         });
@@ -207,7 +210,7 @@ fn say(
     let at = near.or(view_state.ghost).filter(|i| *i < points.len());
     let (mass, inertia) = match at.map(|i| &points[i]) {
         Some(point) => (point.placed.added_mass, point.inertia),
-        None => (facts.now[0], facts.now[1]),
+        None => facts.now().into(),
     };
     let mut text = match at.is_none() && mass < NOTHING {
         true => "no counterweights yet".to_owned(),

@@ -1,40 +1,39 @@
-//! [`Lesson`]: the equations of the machine on display with its numbers, found when these change.
+//! [`Lesson`]: the equations of the machine on display with its numbers.
+
+use std::sync::Arc;
 
 use crate::mechanics::balance::Preset;
 use crate::mechanics::machine::Machine;
+use crate::query::{Queries, Quick, Whole};
 use crate::session::Session;
 use crate::study::equations::{Equation, State, When, equations};
 
-/// Of the machine and the instant on display.
-#[derive(Default)]
+/// Of a machine at an instant.
 pub struct Lesson {
-    of: Option<(Machine, State, Preset)>,
-    equations: Vec<Equation>,
+    /// In the order of the paper.
+    pub(super) equations: Vec<Equation>,
+    /// The instant.
+    pub(super) when: When,
+}
+
+impl Quick for Lesson {
+    /// The machine, the instant, and the penalties of (10).
+    type Input = (Machine, State, Preset);
+    type Answer = Self;
+
+    fn answer((machine, state, penalties): &Self::Input) -> Self {
+        Self { equations: equations(machine, state, *penalties), when: state.when }
+    }
 }
 
 impl Lesson {
-    /// Finds them, if the machine, the instant or the penalties of (10) have changed.
-    pub fn follow(&mut self, session: &Session, penalties: Preset) {
+    /// Of the machine and the instant on display.
+    pub fn of(queries: &Queries, session: &Session, penalties: Preset) -> Option<Arc<Self>> {
         let (machine, state) = (&session.scenario().machine, State::of(session.run(), session.frame()));
-        let is_known = self
-            .of
-            .as_ref()
-            .is_some_and(|(known, then, how)| *known == *machine && *then == state && *how == penalties);
         // A run that waits may be of a machine with fewer drives.
-        if is_known || state.q.len() != machine.drives() {
-            return;
+        match state.q.len() == machine.drives() {
+            true => Some(queries.ask::<Whole<Self>>(&(machine.clone(), state, penalties))),
+            false => queries.last::<Whole<Self>>(),
         }
-        self.equations = equations(machine, &state, penalties);
-        self.of = Some((machine.clone(), state, penalties));
-    }
-
-    /// In the order of the paper.
-    pub(super) fn equations(&self) -> &[Equation] {
-        &self.equations
-    }
-
-    /// The instant.
-    pub(super) fn when(&self) -> Option<When> {
-        self.of.as_ref().map(|(_, state, _)| state.when)
     }
 }

@@ -17,18 +17,18 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     ui.add_space(8.0);
     heading(ui, p, "What it comes to", "");
     let (machine, run) = (&session.scenario().machine, session.run());
-    let lambda: Vec<String> = facts.lambda.iter().map(|lambda| signed(*lambda, 3)).collect();
+    let lambda: Vec<String> = facts.lambda().iter().map(|lambda| signed(*lambda, 3)).collect();
     let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
     let mut rows = vec![
         ("mass of all", format!("{} kg", signed(machine.mass(), 2))),
-        ("inertia of all drives, Σ D", format!("{} kg m²", signed(facts.now[1], 3))),
+        ("inertia of all drives, Σ D", format!("{} kg m²", signed(facts.now()[1], 3))),
         (if is_balanced { "λ" } else { "λ if no C were left" }, lambda.join("  ")),
     ];
     if let Some(planes) = run.planes() {
         let noun = if planes.is_reactionless() { "reactionless workspace" } else { "nearly reactionless workspace" };
         rows.push((noun, format!("{} m²", signed(planes.boundary().area(), 3))));
     }
-    if let Some((_, measures)) = &facts.measures
+    if let Some(measures) = &facts.measures
         && measures.added_mass > 1e-9
     {
         let of = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));

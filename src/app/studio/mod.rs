@@ -21,7 +21,7 @@ use super::theme::{colour, plain};
 use super::{Command, FileDialog, Purpose, ViewState};
 use crate::session::Session;
 
-pub use facts::Facts;
+pub use facts::{Facts, of_front};
 
 /// How wide the panels are made by themselves, points.
 const TABLE: f32 = 336.0;
@@ -53,8 +53,8 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     if view_state.plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
             tabs::show(ui, view_state, commands);
-            if view_state.learns {
-                equations::show(ui, session, &facts.lesson, view_state);
+            if let Some(lesson) = &facts.lesson {
+                equations::show(ui, session, lesson, view_state);
             } else {
                 scrolled(ui, |ui| {
                     bars::show(ui, session, facts, view_state);

@@ -14,10 +14,11 @@ const HEIGHT: f32 = 96.0;
 
 /// Draws it, if a range of payloads is asked for; `held` is what the end effector holds now, kg.
 pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
-    let Some((first, last)) = facts.payloads.first().zip(facts.payloads.last()) else { return };
+    let Some(payloads) = &facts.payloads else { return };
+    let Some((first, last)) = payloads.first().zip(payloads.last()) else { return };
     ui.add_space(8.0);
     heading(ui, p, "Over the payloads", "what is left of this machine's balance");
-    let worst = facts.payloads.iter().fold([0.0_f64; 2], |most, at| [most[0].max(at.force), most[1].max(at.coupling)]);
+    let worst = payloads.iter().fold([0.0_f64; 2], |most, at| [most[0].max(at.force), most[1].max(at.coupling)]);
     let ([left, right], top) = ([first.payload, last.payload], (1.1 * worst[0]).max(1e-6));
     ui.label(RichText::new("greatest |g|, kg m").font(plain(11.0)).color(colour(p.dim)));
     small_axes(ui);
@@ -32,7 +33,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
             plot.set_plot_bounds_x(left..=right);
             plot.set_plot_bounds_y(0.0..=top);
             plot.vline(VLine::new("held", held).color(colour(faded(p.amber, 0.7))).width(1.0).allow_hover(false));
-            let points: Vec<[f64; 2]> = facts.payloads.iter().map(|at| [at.payload, at.force]).collect();
+            let points: Vec<[f64; 2]> = payloads.iter().map(|at| [at.payload, at.force]).collect();
             let line = Line::new("left", PlotPoints::from(points)).width(1.8).color(colour(p.reaction));
             plot.line(line.allow_hover(false));
         });

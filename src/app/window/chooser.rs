@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use rfd::{AsyncFileDialog, FileHandle};
 use winit::window::Window;
 
-use crate::app::jobs::{Job, Poll, Threads};
+use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, FileDialog, PlotFile, Purpose};
+use crate::query::{Job, Poll};
 
 /// Asks for files by a dialog of the system, beside the window.
 #[derive(Default)]

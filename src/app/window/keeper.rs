@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::app::jobs::{Job, Poll, Threads};
+use crate::app::jobs::Threads;
 use crate::app::{AppState, LeftOff, Preferences};
 use crate::files::journal::{self, Journal, Left};
 use crate::files::preferences;
+use crate::query::{Job, Poll};
 
 /// Writes what changes, beside the window: the first change at once, later ones within a second.
 pub struct Keeper {

@@ -158,7 +158,7 @@ impl Tolerance {
     fn section(&self, scenario: &Scenario) -> Section {
         let mut section = scenario.tolerance.clone();
         section.spreads.extend(self.spreads.iter().cloned());
-        section.spreads = section.spreads_or_default();
+        section.spreads = section.spreads_or_default(&scenario.machine);
         section.seed = self.seed.or(section.seed);
         section.samples = self.samples.or(section.samples);
         section.moment_limit = self.limit_moment.or(section.moment_limit);

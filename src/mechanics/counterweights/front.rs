@@ -4,6 +4,7 @@ use super::asked::{Objective, Weighing};
 use super::place::{Placed, place};
 use super::refusal::NoWeights;
 use crate::mechanics::machine::{Inertia, Machine};
+use crate::query::{Portion, Query, Watch, answered};
 
 /// Machines from the least added mass to the least inertia: none is better than another in both.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,26 +30,72 @@ fn measures(placed: &Placed) -> [f64; 2] {
 /// # Errors
 /// As [`place`].
 pub fn front(machine: &Machine, asked: &Weighing, count: usize) -> Result<Front, NoWeights> {
-    let mass = Weighing { objective: Objective::mass(), ..asked.clone() };
-    let inertia = Weighing { objective: Objective::inertia(), ..asked.clone() };
-    let quick = place(machine, &inertia)?;
-    let light = place(machine, &mass)?;
-    let mut points: Vec<([f64; 2], Placed)> = [light, quick].map(|placed| (measures(&placed), placed)).into();
-    let size = [0, 1].map(|i| (points[1].0[i] - points[0].0[i]).abs().max(f64::MIN_POSITIVE));
-    while points.len() < count {
-        let apart = |i: usize| [0, 1].map(|axis| (points[i + 1].0[axis] - points[i].0[axis]).abs() / size[axis]);
-        let furthest = (0..points.len() - 1).map(|i| (i, apart(i)));
-        let Some((i, [by_mass, by_inertia])) =
-            furthest.max_by(|a, b| a.1[0].hypot(a.1[1]).total_cmp(&b.1[0].hypot(b.1[1])))
-        else {
-            break;
-        };
-        let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
-        let between = match by_mass > by_inertia {
-            true => place(machine, &Weighing { most_mass: halfway(0), ..inertia.clone() }),
-            false => place(machine, &Weighing { most_inertia: halfway(1), ..mass.clone() }),
-        }?;
-        points.insert(i + 1, (measures(&between), between));
+    answered::<FrontSearch>((machine.clone(), asked.clone(), count))
+}
+
+/// The search for a [`front`] of a machine, of as many machines as asked for: one machine in a portion.
+#[derive(Clone, Debug)]
+pub struct FrontSearch {
+    machine: Machine,
+    mass: Weighing,
+    inertia: Weighing,
+    count: usize,
+    /// From light to quick, with their measures.
+    points: Vec<([f64; 2], Placed)>,
+}
+
+impl Query for FrontSearch {
+    type Input = (Machine, Weighing, usize);
+    type Answer = Result<Front, NoWeights>;
+
+    fn begin((machine, asked, count): Self::Input) -> Self {
+        let mass = Weighing { objective: Objective::mass(), ..asked.clone() };
+        let inertia = Weighing { objective: Objective::inertia(), ..asked };
+        Self { machine, mass, inertia, count, points: Vec::with_capacity(count) }
     }
-    Ok(Front { points: points.into_iter().map(|(_, placed)| placed).collect() })
+
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+        match self.one_more() {
+            Ok(true) => Portion::More(self.points.len() as f64 / self.count.max(2) as f64),
+            Ok(false) => {
+                let points = std::mem::take(&mut self.points);
+                Portion::Done(Ok(Front { points: points.into_iter().map(|(_, placed)| placed).collect() }))
+            }
+            Err(why) => Portion::Done(Err(why)),
+        }
+    }
+}
+
+impl FrontSearch {
+    /// Finds another machine; whether there was one to be found.
+    fn one_more(&mut self) -> Result<bool, NoWeights> {
+        let Self { machine, mass, inertia, count, points } = self;
+        let (i, asked) = match points.len() {
+            // The quick one first: what is asked of both is refused in its words.
+            0 => (0, inertia.clone()),
+            1 => (0, mass.clone()),
+            known if known >= *count => return Ok(false),
+            last => {
+                let size =
+                    [0, 1].map(|axis| (points[last - 1].0[axis] - points[0].0[axis]).abs().max(f64::MIN_POSITIVE));
+                let apart =
+                    |i: usize| [0, 1].map(|axis| (points[i + 1].0[axis] - points[i].0[axis]).abs() / size[axis]);
+                let furthest = (0..last - 1).map(|i| (i, apart(i)));
+                let Some((i, [by_mass, by_inertia])) =
+                    furthest.max_by(|a, b| a.1[0].hypot(a.1[1]).total_cmp(&b.1[0].hypot(b.1[1])))
+                else {
+                    return Ok(false);
+                };
+                let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
+                let between = match by_mass > by_inertia {
+                    true => Weighing { most_mass: halfway(0), ..inertia.clone() },
+                    false => Weighing { most_inertia: halfway(1), ..mass.clone() },
+                };
+                (i + 1, between)
+            }
+        };
+        let placed = place(machine, &asked)?;
+        points.insert(i, (measures(&placed), placed));
+        Ok(true)
+    }
 }

@@ -27,7 +27,7 @@ mod tolerance;
 mod unknowns;
 
 pub use asked::{Disc, Free, FreeRotor, MATERIALS, Objective, Sites, Weighing};
-pub use front::{Front, front};
+pub use front::{Front, FrontSearch, front};
 pub use payload::{Residual, over_payloads};
 pub use place::{Placed, place, place_with, unreachable_by_weights};
 pub use refusal::{Bound, NoWeights, Relief};

@@ -4,7 +4,7 @@ use super::Chain;
 use super::caps::{MAX_IN_A_ROW, check_counts};
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
-use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
+use super::model::{Machine, Model, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::motors::Motors;
 use super::ranges::{LENGTH, PLACE, check_numbers, within};
 use super::spec::{Angle, Attach, Closure, Length, Link, MachineSpec, PlaceOnLink, Point, Rotor};
@@ -28,7 +28,7 @@ impl Machine {
         }
         let Parts { links, bodies, end_effector, end_link, angles, loops, motors } =
             Parts::of(&spec).map_err(|error| error.named(&spec))?;
-        let machine = Self { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors };
+        let machine = Self::from(Model { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors });
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -36,7 +36,7 @@ impl Machine {
     fn check_inertia(&self) -> Result<(), MachineError> {
         let inertia = Inertia::of(self);
         match (0..self.drives()).find(|&k| inertia.diagonal(k).partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)) {
-            Some(k) => Err(MachineError::Massless { drive: self.spec.drives[k].name.clone() }),
+            Some(k) => Err(MachineError::Massless { drive: self.spec().drives[k].name.clone() }),
             None => Ok(()),
         }
     }

@@ -1,15 +1,20 @@
 //! [`Machine`]: a description that has been checked, with what follows from it.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use super::Chain;
 use super::motors::Motors;
 use super::spec::{Link, MachineSpec};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
-/// A valid machine.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Machine {
+/// A valid machine; copies share what they hold, so they are made and told from others at once.
+#[derive(Clone, Debug)]
+pub struct Machine(Arc<Model>);
+
+/// What a machine holds.
+#[derive(Debug, PartialEq)]
+pub(super) struct Model {
     pub(super) spec: MachineSpec,
     pub(super) bodies: Vec<Link>,
     pub(super) parts: Vec<ResolvedLink>,
@@ -76,75 +81,87 @@ impl ResolvedLink {
     }
 }
 
+impl From<Model> for Machine {
+    fn from(model: Model) -> Self {
+        Self(Arc::new(model))
+    }
+}
+
+impl PartialEq for Machine {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
+    }
+}
+
 impl Machine {
     /// What it was made of.
     pub fn spec(&self) -> &MachineSpec {
-        &self.spec
+        &self.0.spec
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
-        &self.spec.name
+        &self.0.spec.name
     }
 
     /// Number of drives n.
     pub fn drives(&self) -> usize {
-        self.spec.drives.len()
+        self.0.spec.drives.len()
     }
 
     /// Its links, each with the counterweights that it carries as one body; as described where it carries none.
     pub fn links(&self) -> &[Link] {
-        &self.bodies
+        &self.0.bodies
     }
 
     /// Its links as resolved, in the same order.
     pub fn resolved_links(&self) -> &[ResolvedLink] {
-        &self.parts
+        &self.0.parts
     }
 
     /// The end effector as a sum of unit vectors, (14).
     pub fn end_effector(&self) -> &Chain {
-        &self.end_effector
+        &self.0.end_effector
     }
 
     /// How far the end effector can be from B at most, Σ |L_k|, m.
     pub fn reach(&self) -> f64 {
-        self.end_effector.iter().map(|length| length.abs()).sum()
+        self.0.end_effector.iter().map(|length| length.abs()).sum()
     }
 
     /// The link that carries the end effector.
     pub fn end_link(&self) -> usize {
-        self.end_link
+        self.0.end_link
     }
 
     /// Relative joint angles and their limits.
     pub fn angles(&self) -> &[RelativeAngle] {
-        &self.angles
+        &self.0.angles
     }
 
     /// Its closures as resolved, in the order of the file.
     pub fn loops(&self) -> &[ResolvedClosure] {
-        &self.loops
+        &self.0.loops
     }
 
     /// Where its motors sit.
     pub fn motors(&self) -> &Motors {
-        &self.motors
+        &self.0.motors
     }
 
     /// Acceleration of gravity, m/s².
     pub fn gravity(&self) -> Vector {
-        Vector::new(self.spec.gravity[0], self.spec.gravity[1])
+        Vector::new(self.0.spec.gravity[0], self.0.spec.gravity[1])
     }
 
     /// Total mass with payload, kg.
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().map(|l| l.mass).sum::<f64>() + self.spec.payload.mass
+        self.0.bodies.iter().map(|l| l.mass).sum::<f64>() + self.0.spec.payload.mass
     }
 
     /// The CM of link j as Σ_k a_jk e(q_k), complex where the CM lies off the link's axis.
     pub fn com_chain(&self, j: usize) -> [Vector; MAX_DRIVES] {
-        let (link, part) = (&self.bodies[j], &self.parts[j]);
+        let (link, part) = (&self.0.bodies[j], &self.0.parts[j]);
         let mut a = part.root.map(|w| Vector::new(w, 0.0));
         a[part.drive] += part.sign * Vector::new(link.com, link.com_normal);
         a
@@ -154,16 +171,16 @@ impl Machine {
     /// zero in every pose.
     pub fn closure_gaps(&self) -> Vec<Chain> {
         let gap = |l: &ResolvedClosure| {
-            let (a, b) = (self.parts[l.a].point(l.at_a), self.parts[l.b].point(l.at_b));
+            let (a, b) = (self.0.parts[l.a].point(l.at_a), self.0.parts[l.b].point(l.at_b));
             std::array::from_fn(|k| a[k] - b[k])
         };
-        self.loops.iter().map(gap).collect()
+        self.0.loops.iter().map(gap).collect()
     }
 
     /// The centre of mass of the payload as a sum of unit vectors, complex where it lies off the link's axis.
     pub fn payload_chain(&self) -> [Vector; MAX_DRIVES] {
-        let (part, [along, left]) = (&self.parts[self.end_link], self.spec.payload.offset);
-        let mut a = self.end_effector.map(|w| Vector::new(w, 0.0));
+        let (part, [along, left]) = (&self.0.parts[self.0.end_link], self.0.spec.payload.offset);
+        let mut a = self.0.end_effector.map(|w| Vector::new(w, 0.0));
         a[part.drive] += part.sign * Vector::new(along, left);
         a
     }

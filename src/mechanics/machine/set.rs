@@ -27,7 +27,7 @@ impl Machine {
     /// # Errors
     /// If only they make it a machine.
     pub fn without_counterweights(&self) -> Result<Self, MachineError> {
-        let mut spec = self.spec.clone();
+        let mut spec = self.spec().clone();
         spec.counterweights.retain(|weight| weight.fixed);
         Self::new(spec)
     }

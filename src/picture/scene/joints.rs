@@ -26,7 +26,7 @@ impl Joints {
     pub fn of(run: &Run) -> Option<Self> {
         match run.pose_map().ok()? {
             PoseMap::Planes(_) => JointSpace::of(run).map(|space| Self::Planes(Box::new(space))),
-            PoseMap::Space(space) => Section::of(run, space).map(|section| Self::Section(Box::new(section))),
+            PoseMap::Space(space) => Section::of(run, &space).map(|section| Self::Section(Box::new(section))),
         }
     }
 
@@ -35,7 +35,7 @@ impl Joints {
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
         match run.pose_map().ok()? {
             PoseMap::Planes(_) => JointSpace::over(run, b).map(|space| Self::Planes(Box::new(space))),
-            PoseMap::Space(space) => Section::over(run, space, b).map(|section| Self::Section(Box::new(section))),
+            PoseMap::Space(space) => Section::over(run, &space, b).map(|section| Self::Section(Box::new(section))),
         }
     }
 

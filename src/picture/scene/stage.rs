@@ -14,7 +14,7 @@ mod under;
 mod workspace;
 
 pub use base::PULL;
-pub use outline::Outlined;
+pub use outline::{Outlined, Outlining};
 
 use std::sync::Arc;
 
@@ -31,6 +31,7 @@ use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
+use crate::query::{Shared, answered};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
@@ -51,7 +52,7 @@ pub struct Stage {
     /// Of a machine with a b to turn.
     ring: Option<Ring>,
     /// The same of other than three drives.
-    outline: Outlining,
+    outline: Outline,
     /// The mesh that fills it.
     fill: Option<usize>,
     plan: Option<Plan>,
@@ -67,7 +68,7 @@ pub struct Stage {
 
 /// The outline of what other than three drives reach while b is held.
 #[derive(Clone, Debug)]
-enum Outlining {
+enum Outline {
     /// There is none.
     None,
     /// It is yet to be found.
@@ -76,7 +77,7 @@ enum Outlining {
     Done(Arc<Outlined>),
 }
 
-impl Outlining {
+impl Outline {
     fn done(&self) -> Option<&Outlined> {
         match self {
             Self::Done(outline) => Some(outline),
@@ -96,7 +97,7 @@ impl Stage {
     /// Finds the outline, where it is still wanted.
     pub fn finish(&mut self) {
         if let Some(space) = self.unoutlined() {
-            self.set_outline(&space, Outlined::of((*space).clone(), &mut |_| true));
+            self.set_outline(&space, answered::<Outlining>(Shared(space.clone())));
         }
     }
 
@@ -111,16 +112,16 @@ impl Stage {
             base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared)),
             compared,
-            ring: run.pose_map().ok().filter(|map| map.angles() > 0).map(|map| Ring::of(map, ring_radius(&linkage))),
+            ring: run.pose_map().ok().filter(|map| map.angles() > 0).map(|map| Ring::of(&map, ring_radius(&linkage))),
             outline: match run.pose_map() {
-                Ok(PoseMap::Space(space)) => Outlining::Wanted(space.clone()),
-                _ => Outlining::None,
+                Ok(PoseMap::Space(space)) => Outline::Wanted(space),
+                _ => Outline::None,
             },
             fill: None,
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
             follows: run.waiting().is_none() && run.pose_map().is_ok(),
-            holds: run.waiting().is_none() && run.pose_map().is_ok_and(PoseMap::holds),
+            holds: run.waiting().is_none() && run.pose_map().is_ok_and(|map| map.holds()),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: Grid::of(&linkage),
@@ -131,7 +132,7 @@ impl Stage {
     /// The same without a workspace, for a run that is led otherwise.
     #[must_use]
     pub fn without_workspace(self) -> Self {
-        Self { workspace: None, ring: None, outline: Outlining::None, ..self }
+        Self { workspace: None, ring: None, outline: Outline::None, ..self }
     }
 
     /// The outline of what other than three drives reach, once it is found.
@@ -142,24 +143,24 @@ impl Stage {
     /// What is yet to be outlined.
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
         match &self.outline {
-            Outlining::Wanted(space) => Some(space.clone()),
+            Outline::Wanted(space) => Some(space.clone()),
             _ => None,
         }
     }
 
     /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Outlined>) {
-        if matches!(&self.outline, Outlining::Wanted(space) if **space == *of) {
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Outlined>>) {
+        if matches!(&self.outline, Outline::Wanted(space) if **space == *of) {
             match outline {
-                Some(outline) => self.take(Arc::new(outline)),
-                None => self.outline = Outlining::None,
+                Some(outline) => self.take(outline),
+                None => self.outline = Outline::None,
             }
         }
     }
 
     /// Takes the outline over from another stage, if it is the same.
     pub fn keep_outline(&mut self, other: &Self) {
-        if let (Outlining::Wanted(space), Outlining::Done(outline)) = (&self.outline, &other.outline)
+        if let (Outline::Wanted(space), Outline::Done(outline)) = (&self.outline, &other.outline)
             && outline.space() == &**space
         {
             self.take(outline.clone());
@@ -170,7 +171,7 @@ impl Stage {
         if !outline.fill().triangles.is_empty() {
             self.fill = Some(self.linkage.add(outline.fill().clone()));
         }
-        self.outline = Outlining::Done(outline);
+        self.outline = Outline::Done(outline);
     }
 
     /// Takes over what has changed of base and payload.
@@ -191,14 +192,6 @@ impl Stage {
     /// From where to where a measure of dexterity is shaded.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
         self.workspace.as_ref().map_or([0.0, 1.0], |workspace| workspace.shaded(measure))
-    }
-
-    /// How many poses of the present plane put the end effector where it is, and how far it is from the boundary of
-    /// the workspace, m, positive inside. `None` for a machine without planes.
-    pub fn standing(&self, frame: &Frame) -> Option<(usize, f64)> {
-        let boundary = self.workspace.as_ref()?.planes().boundary();
-        let at = frame.in_base(frame.end_effector);
-        Some((boundary.pose_count(at, frame.b), boundary.distance(at, frame.b)))
     }
 
     /// Radius of the b ring, m.

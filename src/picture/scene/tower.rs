@@ -90,14 +90,14 @@ impl Tower {
         let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
         let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN));
         match outline {
-            Some(outline) => Self::rising(run, run.pose_map().ok()?.clone(), outline.shape(), span, fixed),
+            Some(outline) => Self::rising(run, run.pose_map().ok()?, outline.shape(), span, fixed),
             None => Self::showing(run, span, fixed),
         }
     }
 
     /// Of a machine of other than three drives, whose workspace is outlined, over [`SPAN`].
     pub fn outlined(run: &Run, outline: &Outlined) -> Option<Self> {
-        let map = run.pose_map().ok()?.clone();
+        let map = run.pose_map().ok()?;
         Self::rising(run, map, outline.shape(), SPAN, None)
     }
 

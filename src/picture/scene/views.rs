@@ -164,7 +164,7 @@ impl Views {
     }
 
     /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Outlined>) {
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Outlined>>) {
         self.stage.set_outline(of, outline);
     }
 

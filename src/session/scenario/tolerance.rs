@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::mechanics::machine::{Link, Machine};
 use crate::settings::change;
 use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Range, clipped};
@@ -93,23 +94,27 @@ impl Tolerance {
         *self == Self::default()
     }
 
-    /// The spreads, or [`default_spreads`] if none is given.
-    pub fn spreads_or_default(&self) -> BTreeMap<String, Spread> {
-        if self.spreads.is_empty() { default_spreads() } else { self.spreads.clone() }
+    /// The spreads, or [`default_spreads`] of a machine if none is given.
+    pub fn spreads_or_default(&self, machine: &Machine) -> BTreeMap<String, Spread> {
+        if self.spreads.is_empty() { default_spreads(machine) } else { self.spreads.clone() }
     }
 }
 
 /// What is taken where no spread is given: careful workshop practice. Centres of mass to 0.5 mm in both directions,
-/// masses to 0.5 %, inertias to 2 %, lengths to 0.05 mm; all normal, standard deviations.
-pub fn default_spreads() -> BTreeMap<String, Spread> {
+/// masses to 0.5 %, inertias to 2 %, lengths with a name to 0.05 mm; all normal, standard deviations. What a machine
+/// has none of does not vary.
+pub fn default_spreads(machine: &Machine) -> BTreeMap<String, Spread> {
+    let spec = machine.spec();
+    let has = |of: fn(&Link) -> f64| spec.links.iter().any(|link| of(link) != 0.0);
     let rows = [
-        ("link.*.com", Amount::Absolute(5e-4)),
-        ("link.*.com_normal", Amount::Absolute(5e-4)),
-        ("link.*.mass", Amount::Percent(0.5)),
-        ("link.*.inertia", Amount::Percent(2.0)),
-        ("length.*", Amount::Absolute(5e-5)),
+        ("link.*.com", Amount::Absolute(5e-4), true),
+        ("link.*.com_normal", Amount::Absolute(5e-4), true),
+        ("link.*.mass", Amount::Percent(0.5), has(|link| link.mass)),
+        ("link.*.inertia", Amount::Percent(2.0), has(|link| link.inertia)),
+        ("length.*", Amount::Absolute(5e-5), !spec.lengths.is_empty()),
     ];
-    rows.into_iter().map(|(key, amount)| (key.into(), Spread::Normal(amount))).collect()
+    let rows = rows.into_iter().filter(|(.., varies)| *varies);
+    rows.map(|(key, amount, _)| (key.into(), Spread::Normal(amount))).collect()
 }
 
 /// How a parameter lies about its nominal value.

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{COLUMNS, Compared, DESIGN, Design, alternatives};
+use crate::query::{Portion, Query, Shared, Watch};
+use crate::session::Refusal;
 use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Watch};
 use crate::settings::number::nine_digits;
 
 /// One row of the comparison.
@@ -38,6 +39,8 @@ pub struct Comparison {
     task: Scenario,
     entries: Vec<Entry>,
     sort: Option<(usize, bool)>,
+    /// The ways that it shows.
+    ways: Option<Arc<<Ways as Query>::Answer>>,
 }
 
 /// What a way is called, and its run, or why there is none.
@@ -62,18 +65,42 @@ pub fn run_ways(scenario: &Scenario, goes_on: Watch<'_>) -> Option<Vec<Outcome>>
     ways.into_iter().enumerate().map(run).collect()
 }
 
+/// The runs of the ways of a scenario's task.
+#[derive(Debug)]
+pub struct Ways(Shared<Scenario>);
+
+impl Query for Ways {
+    type Input = Shared<Scenario>;
+    /// The scenario, and what its ways come to.
+    type Answer = (Shared<Scenario>, Vec<Outcome>);
+
+    fn begin(scenario: Self::Input) -> Self {
+        Self(scenario)
+    }
+
+    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+        let ways = run_ways(&self.0.0, goes_on);
+        ways.map_or(Portion::Stopped, |ways| Portion::Done((self.0.clone(), ways)))
+    }
+}
+
 impl Comparison {
     /// One without any run yet.
     pub fn empty(scenario: &Scenario) -> Self {
-        Self { task: scenario.clone(), entries: Vec::new(), sort: None }
+        Self { task: scenario.clone(), entries: Vec::new(), sort: None, ways: None }
     }
 
-    /// Puts other runs of the ways of a task in place of its own; what was kept, shown and sorted stays so.
-    pub fn follow_with(&mut self, scenario: &Scenario, ways: Vec<Outcome>) {
-        self.task = scenario.clone();
+    /// Puts the ways of a task in place of its own, if it does not show these; what was kept, shown and sorted stays so.
+    pub fn follow(&mut self, found: &Arc<<Ways as Query>::Answer>) {
+        if self.ways.as_ref().is_some_and(|ways| Arc::ptr_eq(ways, found)) {
+            return;
+        }
+        self.ways = Some(found.clone());
+        let (Shared(scenario), ways) = &**found;
+        self.task = Scenario::clone(scenario);
         let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
         let kept: Vec<Entry> = self.entries.drain(..).filter(|e| e.kept).collect();
-        let own = ways.into_iter().map(|(title, outcome)| {
+        let own = ways.iter().cloned().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
             Entry { title, outcome, shown, kept: false, design: None }
         });

@@ -40,4 +40,4 @@ pub use parameter::Parameter;
 pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};
-pub use study::{INSTANTS, Study, left_out};
+pub use study::{INSTANTS, Studied, Study, Studying, left_out};

@@ -1,7 +1,11 @@
 //! [`Study`]: everything that there is to say of a run's tolerances, and of its frequencies, as plain data.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use super::{Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, ToleranceError, Yield};
-use crate::session::scenario::{Scenario, Tolerance};
+use crate::query::{Portion, Query, Watch};
+use crate::session::scenario::{Scenario, Spread, Tolerance};
 use crate::session::{Run, felt};
 use crate::simulation::control::Control;
 use crate::simulation::plant::PlantDifferences;
@@ -21,6 +25,8 @@ const MOST: u64 = 1_000_000;
 pub struct Study {
     /// What varies, and by how much.
     pub tolerance: Tolerance,
+    /// The same by key, with what is taken where none is given.
+    pub spreads: BTreeMap<String, Spread>,
     /// Machines drawn.
     pub samples: u64,
     /// Numbers that vary in each.
@@ -45,17 +51,51 @@ pub struct Study {
     pub left_out: Vec<&'static str>,
 }
 
+/// The study of a run on display, or why there is none in words.
+#[derive(Debug)]
+pub struct Studying(Run);
+
+/// A run that is studied: as long as its scenario is the same, so is its study.
+#[derive(Clone, Debug)]
+pub struct Studied(pub Arc<Run>);
+
+impl PartialEq for Studied {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.shared_scenario() == other.0.shared_scenario()
+    }
+}
+
+impl Query for Studying {
+    type Input = Studied;
+    type Answer = Result<Study, String>;
+
+    fn begin(Studied(run): Studied) -> Self {
+        Self(Run::clone(&run))
+    }
+
+    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+        if let Some(waiting) = self.0.waiting() {
+            return Portion::Done(Err(waiting.why.to_string()));
+        }
+        match Study::watched(&self.0, goes_on) {
+            Err(ToleranceError::Stopped) => Portion::Stopped,
+            study => Portion::Done(study.map_err(|why| why.to_string())),
+        }
+    }
+}
+
 impl Study {
     /// Of a run's planned motion; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted.
     ///
     /// # Errors
     /// If nothing varies, a key or spread is wrong, a length cannot vary alone, or the rest is not wanted.
-    pub fn watched(run: &Run, goes_on: &mut dyn FnMut(f64) -> bool) -> Result<Self, ToleranceError> {
+    pub fn watched(run: &Run, goes_on: Watch<'_>) -> Result<Self, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
         let (seed, samples) = (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(SAMPLES).clamp(1, MOST));
-        let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &tolerance.spreads_or_default(), seed)?;
+        let spreads = tolerance.spreads_or_default(&plant);
+        let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &spreads, seed)?;
         let mut sampler = ensemble.sampler();
         let mut outcomes: Vec<Outcome> = Vec::with_capacity(samples as usize + CHUNK);
         let chunks = samples.div_ceil(CHUNK as u64);
@@ -100,6 +140,7 @@ impl Study {
             spectra: spectra(run),
             left_out: left_out(scenario),
             tolerance,
+            spreads,
         })
     }
 }

@@ -9,6 +9,7 @@ use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Changes, Label, Line, Marker, Mesh, Scene, Solid, Strips, fill, point, posed};
 use crate::planning::pose_space::PoseSpace;
+use crate::query::{Portion, Query, Shared, Watch};
 use crate::simulation::frame::Frame;
 
 /// Chords are as near to the boundary as this, m for an arm of a metre: less than a pixel.
@@ -64,10 +65,34 @@ fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], roo
     roomy.max_by(|p, q| p.0.total_cmp(&q.0)).map(|(_, p)| p).unwrap_or_default()
 }
 
+/// The outline of what a pose space reaches while b is held.
+#[derive(Debug)]
+pub struct Outlining(Shared<PoseSpace>);
+
+impl Query for Outlining {
+    type Input = Shared<PoseSpace>;
+    /// Nothing of a machine that stays on a point.
+    type Answer = Option<Arc<Outlined>>;
+
+    fn begin(space: Self::Input) -> Self {
+        Self(space)
+    }
+
+    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+        let mut stopped = false;
+        let mut watched = |share: f64| {
+            stopped = !goes_on(share);
+            !stopped
+        };
+        let outline = Outlined::of(PoseSpace::clone(&self.0.0), &mut watched);
+        if stopped { Portion::Stopped } else { Portion::Done(outline.map(Arc::new)) }
+    }
+}
+
 impl Outlined {
     /// Of a machine with a pose constant; nothing of one that stays on a point, or if, told how much is done, the caller
     /// wants the rest no more.
-    pub fn of(space: PoseSpace, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Self> {
+    pub fn of(space: PoseSpace, goes_on: Watch<'_>) -> Option<Self> {
         let outline = space.outline_within(0.0, CHORD, goes_on)?;
         let vectors =
             |points: &[[f64; 2]]| -> Vec<Vector> { points.iter().map(|[x, y]| Vector::new(*x, *y)).collect() };

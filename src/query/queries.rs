@@ -1,0 +1,139 @@
+//! [`Queries`]: where answers are kept.
+
+use std::any::{Any, TypeId};
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::asked::Asked;
+use super::job::{AtOnce, Workers};
+use super::question::{Query, answered};
+use super::slot::{Kept, Slot, Working};
+
+/// Answers that are known, and the work on others. Copies share both.
+#[derive(Clone)]
+pub struct Queries(Arc<Store>);
+
+struct Store {
+    /// One for each query that was asked.
+    slots: Mutex<HashMap<TypeId, Box<dyn Kept>>>,
+    place: Mutex<Place>,
+}
+
+/// Who works, and who is told.
+struct Place {
+    workers: Option<Arc<dyn Workers + Send + Sync>>,
+    wake: Option<Arc<dyn Fn() + Send + Sync>>,
+}
+
+impl Default for Queries {
+    /// Work beside is done at once.
+    fn default() -> Self {
+        let place = Place { workers: Some(Arc::new(AtOnce)), wake: None };
+        Self(Arc::new(Store { slots: Mutex::default(), place: Mutex::new(place) }))
+    }
+}
+
+impl fmt::Debug for Queries {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Queries({})", self.slots().len())
+    }
+}
+
+impl Queries {
+    /// Has work done beside by somebody from now on.
+    pub fn hire(&self, workers: Arc<dyn Workers + Send + Sync>) {
+        self.place().workers = Some(workers);
+    }
+
+    /// From now on work is done in portions, one for each time it is asked about.
+    pub fn work_in_portions(&self) {
+        self.place().workers = None;
+    }
+
+    /// Calls this whenever work beside has ended.
+    pub fn wakes(&self, wake: impl Fn() + Send + Sync + 'static) {
+        self.place().wake = Some(Arc::new(wake));
+    }
+
+    /// The answer, at once.
+    pub fn ask<Q: Query>(&self, input: &Q::Input) -> Arc<Q::Answer> {
+        if let Some(answer) = self.slot::<Q, _>(|slot| slot.known(input)) {
+            return answer;
+        }
+        // The slots are free meanwhile: what is asked may ask others.
+        let answer = Arc::new(answered::<Q>(input.clone()));
+        self.slot::<Q, _>(|slot| slot.keep(input.clone(), answer.clone()));
+        answer
+    }
+
+    /// The answer if it is known; if not, it is worked on beside, and there is the last one so long.
+    pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> Asked<Q::Answer> {
+        if self.slot::<Q, _>(|slot| slot.is_new(input)) {
+            let (workers, wake) = {
+                let place = self.place();
+                (place.workers.clone(), place.wake.clone())
+            };
+            // Begun outside of the slots, as work that is done at once may ask others.
+            let work = Working::begin(input.clone(), workers.as_deref(), wake);
+            self.slot::<Q, _>(|slot| slot.work_on(work));
+        } else if let Some(mut work) = self.slot::<Q, _>(|slot| slot.take_portions()) {
+            work.go_on();
+            self.slot::<Q, _>(|slot| slot.work_on(work));
+        }
+        self.slot::<Q, _>(|slot| slot.asked(input))
+    }
+
+    /// The newest answer, whatever it is of; none if there is none.
+    pub fn last<Q: Query>(&self) -> Option<Arc<Q::Answer>> {
+        self.slot::<Q, _>(|slot| slot.last())
+    }
+
+    /// How much of the work beside is done, from 0 to 1, while it is under way.
+    pub fn progress<Q: Query>(&self) -> Option<f64> {
+        self.slot::<Q, _>(|slot| {
+            slot.collect();
+            slot.progress()
+        })
+    }
+
+    /// The newest answer, and how it stands to the input that was asked about last; none if nothing was asked beside.
+    pub fn newest<Q: Query>(&self) -> Option<Asked<Q::Answer>> {
+        self.slot::<Q, _>(|slot| slot.newest())
+    }
+
+    /// Whether any work beside is under way.
+    pub fn is_busy(&self) -> bool {
+        self.slots().values_mut().any(|slot| slot.works())
+    }
+
+    /// Stops work that is under way; it is not begun again until the input changes.
+    pub fn stop<Q: Query>(&self) {
+        self.slot::<Q, _>(Slot::stop);
+    }
+
+    /// Stops work and forgets the answer.
+    pub fn forget<Q: Query>(&self) {
+        self.slots().remove(&TypeId::of::<Q>());
+    }
+
+    fn slot<Q: Query, T>(&self, with: impl FnOnce(&mut Slot<Q>) -> T) -> T {
+        let mut slots = self.slots();
+        let slot = slots.entry(TypeId::of::<Q>()).or_insert_with(|| Box::new(Slot::<Q>::default()));
+        let slot: &mut dyn Any = &mut **slot;
+        match slot.downcast_mut() {
+            Some(slot) => with(slot),
+            // Of its own type there is no other.
+            None => with(&mut Slot::default()),
+        }
+    }
+
+    fn slots(&self) -> MutexGuard<'_, HashMap<TypeId, Box<dyn Kept>>> {
+        // What a panic left is whole: slots change in one go.
+        self.0.slots.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn place(&self) -> MutexGuard<'_, Place> {
+        self.0.place.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

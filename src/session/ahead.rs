@@ -1,0 +1,38 @@
+//! [`Ahead`]: a run on to where its planned motion ends, to know how far the base will move.
+
+use super::run::Run;
+use crate::query::{Portion, Query, Same, Watch};
+use crate::simulation::frame::Totals;
+
+/// Steps of a portion.
+const STEPS: u64 = 256;
+
+/// A run that goes on beside the one on display.
+#[derive(Debug)]
+pub struct Ahead {
+    run: Run,
+    /// The step at which its motion ends.
+    last: u64,
+}
+
+impl Query for Ahead {
+    type Input = Same<Run>;
+    type Answer = Totals;
+
+    fn begin(Same(run): Self::Input) -> Self {
+        let run = Run::clone(&run);
+        Self { last: run.planned_steps() as u64, run }
+    }
+
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<Totals> {
+        let done = |run: &Run| run.simulation().step_count();
+        let until = self.last.min(done(&self.run) + STEPS);
+        while done(&self.run) < until {
+            self.run.advance();
+        }
+        match done(&self.run) < self.last {
+            true => Portion::More(done(&self.run) as f64 / self.last as f64),
+            false => Portion::Done(self.run.frame().totals),
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! What is derived is made when its input changes, kept until then, and worked on beside.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use stillbase::query::{Asked, Portion, Queries, Query, Quick, Same, Shared, State, Watch, Whole, Workers, answered};
+
+/// How often something was made: each test has its own.
+type Counter = Same<AtomicUsize>;
+
+fn counter() -> Counter {
+    Same(Arc::new(AtomicUsize::new(0)))
+}
+
+fn count(counter: &Counter) -> usize {
+    counter.0.load(Ordering::Relaxed)
+}
+
+/// A number squared.
+struct Square;
+
+impl Quick for Square {
+    type Input = (Counter, i64);
+    type Answer = i64;
+
+    fn answer((counter, x): &Self::Input) -> i64 {
+        counter.0.fetch_add(1, Ordering::Relaxed);
+        x * x
+    }
+}
+
+/// 1 + 2 + … + n, a summand in a portion; 13 breaks off.
+struct Sum {
+    counter: Counter,
+    n: u64,
+    at: u64,
+    sum: u64,
+}
+
+impl Query for Sum {
+    type Input = (Counter, u64);
+    type Answer = u64;
+
+    fn begin((counter, n): Self::Input) -> Self {
+        Self { counter, n, at: 0, sum: 0 }
+    }
+
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<u64> {
+        self.counter.0.fetch_add(1, Ordering::Relaxed);
+        assert!(self.n != 13, "this one breaks off");
+        if self.at == self.n {
+            return Portion::Done(self.sum);
+        }
+        self.at += 1;
+        self.sum += self.at;
+        Portion::More(self.at as f64 / self.n as f64)
+    }
+}
+
+/// Someone who does what is given when told to.
+#[derive(Clone, Default)]
+struct Later(Arc<Mutex<Vec<Box<dyn FnOnce() + Send>>>>);
+
+impl Workers for Later {
+    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+        self.0.lock().expect("no panic").push(work);
+    }
+}
+
+impl Later {
+    fn work(&self) -> usize {
+        let all = std::mem::take(&mut *self.0.lock().expect("no panic"));
+        let count = all.len();
+        all.into_iter().for_each(|work| work());
+        count
+    }
+}
+
+fn with_later() -> (Queries, Later) {
+    let (queries, later) = (Queries::default(), Later::default());
+    queries.hire(Arc::new(later.clone()));
+    (queries, later)
+}
+
+fn known<A: Copy>(asked: &Asked<A>) -> Option<A> {
+    asked.known().map(|answer| **answer)
+}
+
+#[test]
+fn an_answer_is_made_once_for_each_input() {
+    let (queries, made) = (Queries::default(), counter());
+    let ask = |x: i64| *queries.ask::<Whole<Square>>(&(made.clone(), x));
+    assert_eq!((ask(3), ask(3), ask(4), ask(4)), (9, 9, 16, 16));
+    assert_eq!(count(&made), 2);
+    // Copies ask the same store.
+    assert_eq!((*queries.clone().ask::<Whole<Square>>(&(made.clone(), 4)), count(&made)), (16, 2));
+    assert_eq!((ask(3), count(&made)), (9, 3), "only the newest is kept");
+    queries.forget::<Whole<Square>>();
+    assert_eq!((ask(3), count(&made)), (9, 4));
+}
+
+#[test]
+fn work_beside_shows_the_last_answer_meanwhile() {
+    let ((queries, later), made) = (with_later(), counter());
+    let woken = counter();
+    queries.wakes({
+        let woken = woken.clone();
+        move || {
+            woken.0.fetch_add(1, Ordering::Relaxed);
+        }
+    });
+    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    let first = ask(4);
+    assert!(first.last.is_none() && matches!(first.state, State::UnderWay(_)) && queries.is_busy());
+    assert_eq!((later.work(), count(&woken)), (1, 1));
+    assert_eq!((known(&ask(4)), queries.is_busy()), (Some(10), false));
+    let next = ask(5);
+    assert_eq!((next.last.as_deref(), known(&next)), (Some(&10), None), "the answer before, and not as this one's");
+    later.work();
+    assert_eq!(known(&ask(5)), Some(15));
+    // An answer at once does for both.
+    assert_eq!(*queries.ask::<Sum>(&(made.clone(), 5)), 15);
+    let before = count(&made);
+    assert_eq!((known(&ask(5)), later.work(), count(&made)), (Some(15), 0, before));
+}
+
+#[test]
+fn the_newest_asking_counts() {
+    let ((queries, later), made) = (with_later(), counter());
+    for n in 1..=20 {
+        // Each is asked about several times, as by every repaint.
+        for _ in 0..3 {
+            let _ = queries.ask_beside::<Sum>(&(made.clone(), n + 20));
+        }
+    }
+    assert_eq!(later.work(), 20);
+    // Those before have stopped at their first word.
+    assert_eq!(count(&made), 19 + 41);
+    assert_eq!(known(&queries.ask_beside::<Sum>(&(made.clone(), 40))), Some(820));
+}
+
+#[test]
+fn short_work_ends_while_the_input_changes_all_the_time() {
+    let ((queries, later), made) = (with_later(), counter());
+    let ask = |x: i64| queries.ask_beside::<Whole<Square>>(&(made.clone(), x));
+    let mut seen = Vec::new();
+    for x in 1..=6 {
+        seen.push(ask(x).last.map(|answer| *answer));
+        if x % 2 == 0 {
+            later.work();
+        }
+    }
+    // Those that had begun, one after the other; the newest in the end.
+    assert_eq!(seen, [None, None, Some(1), Some(1), Some(9), Some(9)]);
+    assert_eq!((known(&ask(6)), later.work(), known(&ask(6)), count(&made)), (None, 1, Some(36), 4));
+}
+
+#[test]
+fn what_was_stopped_or_broke_off_is_not_begun_again() {
+    let ((queries, later), made) = (with_later(), counter());
+    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    let _ = ask(6);
+    queries.stop::<Sum>();
+    later.work();
+    assert_eq!((ask(6).state, later.work()), (State::Stopped, 0));
+    assert_eq!(queries.newest::<Sum>().map(|asked| asked.state), Some(State::Stopped));
+    let _ = ask(7);
+    assert_eq!((later.work(), known(&ask(7))), (1, Some(28)));
+    let _ = ask(6);
+    assert_eq!((later.work(), known(&ask(6))), (1, Some(21)), "another input lets it begin again");
+    let _ = ask(13);
+    let broke = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| later.work()));
+    assert!(broke.is_err());
+    let asked = ask(13);
+    assert_eq!((asked.state, asked.last.as_deref(), queries.is_busy()), (State::Broken, Some(&21), false));
+    assert_eq!(later.work(), 0);
+}
+
+#[test]
+fn without_threads_work_is_done_in_portions() {
+    let (queries, made) = (Queries::default(), counter());
+    queries.work_in_portions();
+    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    for i in 1..=4 {
+        let asked = ask(4);
+        assert_eq!((asked.state, count(&made)), (State::UnderWay(f64::from(i) / 4.0), i as usize));
+    }
+    assert_eq!((known(&ask(4)), count(&made), queries.is_busy()), (Some(10), 5, false));
+    assert_eq!((known(&ask(4)), count(&made)), (Some(10), 5));
+    // What is new begins anew.
+    assert_eq!(ask(2).state, State::UnderWay(0.5));
+    assert_eq!(ask(8).state, State::UnderWay(0.125));
+}
+
+/// An answer may be asked for while another is made.
+struct Twice;
+
+impl Quick for Twice {
+    type Input = (Same<Queries>, i64);
+    type Answer = i64;
+
+    fn answer((queries, x): &Self::Input) -> i64 {
+        2 * *queries.0.ask::<Whole<Square>>(&(counter(), *x))
+    }
+}
+
+#[test]
+fn answers_build_on_others() {
+    let queries = Queries::default();
+    let same = Same(Arc::new(queries.clone()));
+    assert_eq!(*queries.ask::<Whole<Twice>>(&(same.clone(), 5)), 50);
+    assert_eq!(known(&queries.ask_beside::<Whole<Twice>>(&(same.clone(), 6))), Some(72));
+    assert_eq!(answered::<Whole<Twice>>((same, 7)), 98);
+}
+
+#[test]
+fn shared_inputs_are_compared_by_what_they_hold_and_same_ones_are_not() {
+    let [one, other] = [(); 2].map(|()| Arc::new(vec![1.0, 2.0]));
+    assert!(Shared(one.clone()) == Shared(other.clone()) && Shared(one.clone()) != Shared(Arc::new(vec![1.0])));
+    assert!(Same(one.clone()) == Same(one.clone()) && Same(one) != Same(other));
+}
