@@ -16,6 +16,7 @@ mod facts;
 mod finder;
 mod framing;
 mod gallery;
+mod hand;
 mod history;
 mod icon;
 mod intro;

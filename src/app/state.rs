@@ -22,21 +22,22 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::{ViewKind, Views};
+use crate::picture::scene::views::{Seen, ViewKind, Views};
+use crate::query::Whole;
 use crate::session::design::weights_of;
-use crate::session::scenario::{Scenario, Task};
+use crate::session::scenario::Scenario;
 use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
-use crate::simulation::plant::PlantDifferences;
 use crate::simulation::signals::{Signal, signals};
 use crate::study::comparison::Comparison;
 
 /// A session on display.
 pub struct AppState {
     session: Session,
+    /// The views as they were made, and as base, payload and outline are now.
+    made: Arc<Views>,
     views: Arc<Views>,
     signals: Vec<Signal>,
-    stage_of: StageKey,
     /// The machine before the change under way in that view.
     designed_from: Option<Machine>,
     view_state: ViewState,
@@ -78,11 +79,13 @@ impl AppState {
     }
 
     fn around(session: Session, theme: Theme) -> Self {
-        let views = Views::begun(session.run());
+        let background = Background::default();
+        let made = background.queries.ask::<Whole<Views>>(&Seen::of(session.run(), None, &background.queries));
+        let views = Views::clone(&made);
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             signals: signals(&session.scenario().machine),
-            stage_of: StageKey::of(&session),
+            made,
             designed_from: None,
             views: Arc::new(views),
             session,
@@ -91,7 +94,7 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
-            background: Background::default(),
+            background,
             owed: 0.0,
             pace: Pace::default(),
             marks: Marks::default(),
@@ -713,22 +716,22 @@ impl AppState {
 
     /// Makes the stage again when what it shows has changed.
     fn refresh(&mut self) {
-        let key = StageKey::of(&self.session);
-        if key != self.stage_of {
-            let mut views = Views::begun(self.session.run());
+        let run = self.session.run();
+        let queries = self.queries();
+        let made = queries.ask_if::<Whole<Views>>(|seen| seen.is_of(run), || Seen::of(run, None, queries));
+        if !Arc::ptr_eq(&made, &self.made) {
+            let mut views = Views::clone(&made);
             views.keep_outline(&self.views);
             // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the
             // hand.
-            let (new, old) = (&key.machine, &self.stage_of.machine);
-            if new.links() != old.links() || new.resolved_links() != old.resolved_links() {
+            if !views.looks_like(&self.views) {
                 self.view_state.framing.iter_mut().for_each(Framing::renew);
             }
             if Views::has(self.view_state.view, self.session.run()).is_err() {
                 self.view_state.view = ViewKind::Flat;
             }
-            self.views = Arc::new(views);
+            (self.views, self.made) = (Arc::new(views), made);
             self.signals = signals(&self.session.scenario().machine);
-            self.stage_of = key;
         }
         let views = Arc::make_mut(&mut self.views);
         views.refresh(self.session.run());
@@ -737,31 +740,5 @@ impl AppState {
         self.refresh_study();
         self.refresh_comparison();
         self.collect();
-    }
-}
-
-/// What a stage depends on.
-#[derive(PartialEq)]
-struct StageKey {
-    machine: Machine,
-    task: Task,
-    compare_b: Option<f64>,
-    on_path: bool,
-    waits: bool,
-    plant: PlantDifferences,
-}
-
-impl StageKey {
-    fn of(session: &Session) -> Self {
-        let scenario = session.scenario();
-        let PlantDifferences { length, link, .. } = scenario.plant.clone();
-        Self {
-            machine: scenario.machine.clone(),
-            task: scenario.task.clone(),
-            compare_b: scenario.compare_b,
-            on_path: session.run().motion().is_some(),
-            waits: session.run().waiting().is_some(),
-            plant: PlantDifferences { length, link, ..PlantDifferences::default() },
-        }
     }
 }

@@ -5,20 +5,19 @@ use std::sync::Arc;
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
 
 use super::card::Card;
+use super::hand::Hand;
 use super::intro::Intro;
 use super::tour::Tour;
-use super::widgets::{FINE, name};
-use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, place, present, set_b, status};
+use super::widgets::name;
+use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, present, status};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
 use crate::picture::scene::exaggeration::{Exaggeration, Shown};
 use crate::picture::scene::options::{Handle, Offered, Other, ViewOptions};
-use crate::picture::scene::pick::{Aim, Pick};
+use crate::picture::scene::pick::Pick;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::planning::pose_map::PoseMap;
-use crate::session::design::length_of;
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::study::comparison::Comparison;
@@ -61,8 +60,8 @@ pub fn show(
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             let demonstrates = intro.is_some_and(Intro::demonstrates);
-            let how = (views, demonstrates);
-            point_at(ui, &response, &spot, (session, &shown), how, view_state, commands);
+            let hand = Hand::over(ui, &response, &spot, (session, &shown), (views, demonstrates), view_state);
+            hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
             menu::show(&response, session, (view_state.hot, at), commands);
@@ -136,14 +135,8 @@ fn spoken_of(spot: &Spot, stage: &Stage, shown: &Shown<'_>) -> Vec<Rect> {
     ring.into_iter().chain(target).collect()
 }
 
-/// Smaller changes of the pulling force send no new edit, N.
-const LEAST_PUSH: f64 = 0.02;
-
 /// How long the pointer is on a thing before it is told what that is, s.
 const TOLD_AFTER: f64 = 0.35;
-
-/// From how far away the tip can be taken hold of while the demonstration goes on, points.
-const GENEROUS: f64 = 60.0;
 
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
@@ -177,166 +170,6 @@ fn others(comparison: &Comparison, time: f64) -> Vec<Other> {
 fn force(session: &Session) -> Option<[f64; 2]> {
     let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
     Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
-}
-
-fn point_at(
-    ui: &Ui,
-    response: &egui::Response,
-    spot: &Spot,
-    (session, shown): (&Session, &Shown<'_>),
-    (views, demonstrates): (&Views, bool),
-    view_state: &mut ViewState,
-    commands: &mut Vec<Command>,
-) {
-    let view = view_state.view;
-    // Dragging pushes with Alt held, or after U.
-    let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
-    // The demonstration's arm moves, so that its tip is hard to catch: any part of it will do.
-    let arm = |pos: Pos2| {
-        let near = demonstrates && view.shows_machine() && !pushes;
-        near.then(|| views.pick_arm(shown, &spot.pointer(pos), GENEROUS)).flatten()
-    };
-    let under = |pos: Pos2| match pushes {
-        true => views.pick_tip(shown, &spot.pointer(pos)),
-        false => arm(pos).or_else(|| views.pick(view, shown, &spot.pointer(pos))),
-    };
-    // Nothing follows while the run waits, in joint space and tower either.
-    let follows = |pick: &Pick| pick.handle != Handle::Target || session.follows_hands();
-    let under = |pos: Pos2| under(pos).filter(follows);
-    if view_state.grabbed.is_none() {
-        let seen = |pos: Pos2| match pushes {
-            true => under(pos).map(|pick| pick.handle),
-            false => arm(pos).map(|pick| pick.handle).or_else(|| views.under(view, shown, &spot.pointer(pos))),
-        };
-        view_state.hot = response.hover_pos().and_then(seen);
-    }
-    if response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_pressed()) {
-        // What is held is what was there when the button went down: it may move on.
-        let origin = ui.input(|i| i.pointer.press_origin());
-        view_state.pressed = origin.and_then(under);
-        if session.is_playing() && origin.and_then(arm).is_some() {
-            commands.push(Command::TogglePlay);
-        }
-    }
-    if response.drag_started_by(PointerButton::Primary) {
-        // A drag begins where the button went down, not where it was noticed.
-        let origin = ui.input(|i| i.pointer.press_origin());
-        view_state.grabbed = view_state.pressed.take().or_else(|| origin.and_then(under));
-        view_state.fine = [origin.unwrap_or_default().to_vec2(), Vec2::ZERO];
-        view_state.force = Some(session.scenario().plant.force);
-        view_state.undone_to = session.undo_count();
-    }
-    let (shift, snaps) = ui.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command));
-    let ask = |pick: Pick, pos: Pos2, view_state: &mut ViewState| {
-        let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
-        let aim = views.aim(view, &pick, shown, &spot.pointer(pos), session.b_aim())?;
-        let edit = match if snaps { aim.snapped() } else { aim } {
-            Aim::Target([x, y]) => {
-                view_state.held = Some([x, y]);
-                Edit::DragTarget { x, y }
-            }
-            Aim::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
-            Aim::Pull { link, along, at: [x, y] } => {
-                let link = session.scenario().machine.links().get(link)?.name.clone();
-                Edit::PullLink { link, along, x, y }
-            }
-            Aim::B(b) => set_b(session, view_state, b),
-            Aim::Push([x, y]) => {
-                let [now_x, now_y] = session.scenario().plant.force;
-                if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
-                    return None;
-                }
-                Edit::Push { x, y }
-            }
-            Aim::Limit { angle, ends, .. } => {
-                let name = &session.scenario().machine.angles().get(angle)?.name;
-                Edit::at(&["limits", name], ends.to_vec())
-            }
-            Aim::Mass { link, to } => {
-                Edit::at(&["link", &session.scenario().machine.links().get(link)?.name, "com"], to)
-            }
-            Aim::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
-            Aim::Length { link, to } => length_of(session.scenario().machine.spec().links.get(link)?, to),
-            Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
-            Aim::Waypoint(i, [x, y]) => {
-                view_state.held = Some([x, y]);
-                Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?)
-            }
-        };
-        Some(Command::Edit(edit))
-    };
-    if let Some(pick) = view_state.grabbed {
-        ui.ctx().set_cursor_icon(cursor(pick.handle, true));
-        // The last movement may come together with the release.
-        let pushes = pick.handle == Handle::EndEffector;
-        // A push goes on while the pointer stands still and the machine moves on.
-        let pulls = pushes && session.is_moving();
-        let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || pulls;
-        if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            let [last, behind] = &mut view_state.fine;
-            if shift {
-                *behind += (1.0 - FINE) * (pos.to_vec2() - *last);
-            }
-            *last = pos.to_vec2();
-            let at = pos - *behind;
-            commands.extend(ask(pick, at, view_state));
-            if pushes && !session.is_playing() {
-                commands.push(Command::TogglePlay);
-            }
-        }
-        let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
-        if response.drag_stopped() || let_go {
-            view_state.grabbed = None;
-            if pushes && view_state.dragged {
-                // Back to the force that acted before the push.
-                let [x, y] = view_state.force.take().unwrap_or_default();
-                commands.push(Command::Edit(Edit::Push { x, y }));
-            }
-            commands.push(Command::EndGesture);
-            if let_go && view_state.dragged {
-                commands.push(Command::TakeBack(view_state.undone_to));
-            }
-            view_state.dragged = false;
-        }
-    } else if let Some(hot) = view_state.hot {
-        let turns = session.follows_hands()
-            && session.run().pose_map().is_ok_and(|map| map.holds() || matches!(map, PoseMap::Planes(_)));
-        let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
-        ui.ctx().set_cursor_icon(cursor(hot, false));
-    }
-    // A bar needs no dragging: a click chooses.
-    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary))
-        && let Some(pick) = under(pos).filter(|pick| pick.handle == Handle::Bar)
-        && let Some(edit) = ask(pick, pos, view_state)
-    {
-        commands.extend([edit, Command::EndGesture]);
-    }
-    if response.clicked_by(PointerButton::Primary)
-        && let Some(thing) = view_state.hot.filter(|thing| place::is_in_panel(*thing))
-    {
-        commands.push(Command::Reveal(thing));
-    }
-    let task = &session.scenario().task;
-    // A double click beside all handles adds a point to the path.
-    let beside = !view_state.hot.is_some_and(Handle::can_be_dragged);
-    let twice = response.double_clicked_by(PointerButton::Primary) && beside && view.shows_machine();
-    if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
-        && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
-        && let Some(change) = task.adding(Vector::new(x, y))
-    {
-        commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
-    }
-    let typing = ui.ctx().egui_wants_keyboard_input();
-    let out = !typing && ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
-    if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
-        && let Some(change) = task.removing(i)
-    {
-        commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
-        view_state.hot = None;
-    }
-    if view_state.grabbed.is_none() {
-        view_state.held = None;
-    }
 }
 
 /// Says what is under the pointer, once that has been so for a while.
@@ -395,17 +228,6 @@ fn draw(
         if let Some(change) = Task::drawing(&points) {
             commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
         }
-    }
-}
-
-fn cursor(handle: Handle, held: bool) -> CursorIcon {
-    match (handle, held) {
-        (Handle::Bar, _) => CursorIcon::PointingHand,
-        (Handle::Plane, _) => CursorIcon::ResizeVertical,
-        (thing, true) if thing.can_be_dragged() => CursorIcon::Grabbing,
-        (thing, false) if thing.can_be_dragged() => CursorIcon::Grab,
-        (thing, _) if place::is_in_panel(thing) => CursorIcon::PointingHand,
-        _ => CursorIcon::Default,
     }
 }
 

@@ -58,12 +58,22 @@ impl Queries {
 
     /// The answer, at once.
     pub fn ask<Q: Query>(&self, input: &Q::Input) -> Arc<Q::Answer> {
-        if let Some(answer) = self.slot::<Q, _>(|slot| slot.known(input)) {
+        self.ask_if::<Q>(|known| known == input, || input.clone())
+    }
+
+    /// The same of an input that is made only if it is not the one that is known.
+    pub fn ask_if<Q: Query>(
+        &self,
+        is_known: impl FnOnce(&Q::Input) -> bool,
+        input: impl FnOnce() -> Q::Input,
+    ) -> Arc<Q::Answer> {
+        if let Some(answer) = self.slot::<Q, _>(|slot| slot.known(is_known)) {
             return answer;
         }
+        let input = input();
         // The slots are free meanwhile: what is asked may ask others.
         let answer = Arc::new(answered::<Q>(input.clone()));
-        self.slot::<Q, _>(|slot| slot.keep(input.clone(), answer.clone()));
+        self.slot::<Q, _>(|slot| slot.keep(input, answer.clone()));
         answer
     }
 

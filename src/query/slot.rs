@@ -94,9 +94,9 @@ impl<Q: Query> Working<Q> {
 type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl<Q: Query> Slot<Q> {
-    /// The answer to this input, if it is known.
-    pub fn known(&self, input: &Q::Input) -> Option<Arc<Q::Answer>> {
-        self.known.as_ref().filter(|(of, _)| of == input).map(|(_, answer)| answer.clone())
+    /// The answer, if it is of this input.
+    pub fn known(&self, is_of: impl FnOnce(&Q::Input) -> bool) -> Option<Arc<Q::Answer>> {
+        self.known.as_ref().filter(|(of, _)| is_of(of)).map(|(_, answer)| answer.clone())
     }
 
     /// The newest answer.

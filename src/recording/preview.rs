@@ -12,6 +12,7 @@ use crate::picture::scene::camera::Orbit;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::reaction::Scale;
 use crate::picture::scene::views::{ViewKind, Views};
+use crate::query::Queries;
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, replay_while};
 use crate::simulation::frame::Peaks;
@@ -39,8 +40,8 @@ pub struct Preview {
     pub charts: Vec<(Chart, [f64; 2])>,
     /// From where the machine is seen.
     pub scene: Eye,
-    /// The views of its machine as it is at the end.
-    pub views: Views,
+    /// What is derived of the run.
+    pub queries: Queries,
     /// From where joint space is seen, if there is one.
     pub joints: Option<Eye>,
     /// From where the tower is seen, if there is one.
@@ -75,7 +76,7 @@ impl Preview {
         })?;
         let last = run.frame();
         let reach = Linkage::of(&run.scenario().machine).reach();
-        let views = Views::over(&run, b, None);
+        let views = Views::over(&run, b, run.queries());
         let eye = |kind: ViewKind, axes| views.shows(kind).then(|| Eye::of(&views.camera(kind), axes));
         let (joints, tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));
         Ok(Self {
@@ -92,7 +93,7 @@ impl Preview {
             candidate: Candidate::of(&run),
             design: Design::of(scenario, &run, first.unwrap_or(last))?,
             tower,
-            views,
+            queries: run.queries().clone(),
         })
     }
 }

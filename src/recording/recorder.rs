@@ -16,14 +16,13 @@ use super::stop::Stop;
 use super::store::{Clock, Instant, Store};
 use super::style::{lines, under};
 use super::topic::Topic;
-use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::views::{ViewKind, Views};
+use crate::picture::scene::views::{Seen, ViewKind, Views};
 use crate::picture::scene::{Scene, point};
-use crate::planning::pose_constant::Planes;
+use crate::query::Whole;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::{Statements, Verdict};
 use crate::session::{Edit, Plan, Run, replay_while};
@@ -100,42 +99,10 @@ struct Recorder<'a> {
     events: Events,
 }
 
-/// What is drawn from, and of what it was made.
+/// What is drawn from: views as they were made, and as base and payload are now.
 struct Drawn {
+    made: Arc<Views>,
     views: Views,
-    machine: Machine,
-    plant: Option<Machine>,
-    planes: Option<Arc<Planes>>,
-    leads: bool,
-    compared: Option<f64>,
-}
-
-impl Drawn {
-    fn of(run: &Run, b: [f64; 2], known: &Views) -> Self {
-        let scenario = run.scenario();
-        Self {
-            views: Views::over(run, b, Some(known)),
-            machine: scenario.machine.clone(),
-            plant: scenario.plant.machine(&scenario.machine).ok(),
-            planes: run.planes().cloned(),
-            leads: run.motion().is_some(),
-            compared: scenario.compare_b,
-        }
-    }
-
-    fn is_of(&self, run: &Run) -> bool {
-        let scenario = run.scenario();
-        let planes = match (&self.planes, run.planes()) {
-            (Some(known), Some(now)) => Arc::ptr_eq(known, now),
-            (None, None) => true,
-            _ => false,
-        };
-        planes
-            && self.leads == run.motion().is_some()
-            && self.compared == scenario.compare_b
-            && self.machine == scenario.machine
-            && self.plant == scenario.plant.machine(&scenario.machine).ok()
-    }
 }
 
 impl Instant {
@@ -221,8 +188,11 @@ impl<'a> Recorder<'a> {
     fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
         let force = run.scenario().plant.force;
         self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
+        let over = Some(self.forecast.b);
+        let queries = &self.forecast.queries;
+        let made = queries.ask_if::<Whole<Views>>(|seen| seen.is_of(run), || Seen::of(run, over, queries));
         match &mut self.drawn {
-            Some(drawn) if drawn.is_of(run) => {
+            Some(drawn) if Arc::ptr_eq(&drawn.made, &made) => {
                 drawn.views.refresh(run);
                 return false;
             }
@@ -238,7 +208,7 @@ impl<'a> Recorder<'a> {
         let other = other.map(|other| if other == own { format!("{other} compared") } else { other });
         let names = other.map(|other| ("workspace/compared", other)).into_iter().chain([("workspace", own)]);
         self.machine.rename(names.collect());
-        self.drawn = Some(Drawn::of(run, self.forecast.b, &self.forecast.views));
+        self.drawn = Some(Drawn { views: Views::clone(&made), made });
         true
     }
 

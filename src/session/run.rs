@@ -126,6 +126,11 @@ impl Run {
         Shared(self.scenario.clone())
     }
 
+    /// What is derived of it, and of its copies.
+    pub fn queries(&self) -> &Queries {
+        &self.queries
+    }
+
     /// The machine's reactionless planes.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
         self.planes.as_ref()

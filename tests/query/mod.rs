@@ -57,12 +57,14 @@ impl Query for Sum {
     }
 }
 
+type Work = Box<dyn FnOnce() + Send>;
+
 /// Someone who does what is given when told to.
 #[derive(Clone, Default)]
-struct Later(Arc<Mutex<Vec<Box<dyn FnOnce() + Send>>>>);
+struct Later(Arc<Mutex<Vec<Work>>>);
 
 impl Workers for Later {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start(&self, work: Work) {
         self.0.lock().expect("no panic").push(work);
     }
 }

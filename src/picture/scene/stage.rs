@@ -31,7 +31,7 @@ use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Shared, answered};
+use crate::query::{Queries, Shared};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
@@ -90,14 +90,14 @@ impl Stage {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
         let mut stage = Self::begun(run);
-        stage.finish();
+        stage.finish(run.queries());
         stage
     }
 
     /// Finds the outline, where it is still wanted.
-    pub fn finish(&mut self) {
+    pub fn finish(&mut self, queries: &Queries) {
         if let Some(space) = self.unoutlined() {
-            self.set_outline(&space, answered::<Outlining>(Shared(space.clone())));
+            self.set_outline(&space, Option::clone(&queries.ask::<Outlining>(&Shared(space.clone()))));
         }
     }
 

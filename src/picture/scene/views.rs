@@ -16,8 +16,10 @@ use super::pointer::Pointer;
 use super::section::Section;
 use super::stage::{Outlined, PULL, Stage};
 use super::tower::Tower;
+use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::DriveAngles;
 use crate::planning::pose_space::PoseSpace;
+use crate::query::{Queries, Quick};
 use crate::session::Run;
 use crate::settings::number::Short;
 use crate::simulation::frame::Frame;
@@ -111,26 +113,72 @@ pub struct Views {
     joints: Option<Joints>,
     tower: Option<Tower>,
     draft: Draft,
+    machine: Machine,
+}
+
+/// What views are made of: a run, as far as it stands still in them; in those of a whole run, over a range of b, rad.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    run: Run,
+    over: Option<[f64; 2]>,
+    /// Where outlines are kept.
+    queries: Queries,
+}
+
+impl Seen {
+    /// A run in the window, or a whole one in a recording.
+    pub fn of(run: &Run, over: Option<[f64; 2]>, queries: &Queries) -> Self {
+        Self { run: run.clone(), over, queries: queries.clone() }
+    }
+
+    /// Whether nothing that stands still differs in another run: machine, plan, and what is built otherwise.
+    pub fn is_of(&self, run: &Run) -> bool {
+        let (one, other) = (self.run.scenario(), run.scenario());
+        one.machine == other.machine
+            && one.task == other.task
+            && one.step == other.step
+            && one.compare_b == other.compare_b
+            && one.plant.length == other.plant.length
+            && one.plant.link == other.plant.link
+            && self.run.motion().is_some() == run.motion().is_some()
+            && self.run.waiting() == run.waiting()
+    }
+}
+
+impl PartialEq for Seen {
+    fn eq(&self, other: &Self) -> bool {
+        self.over == other.over && self.is_of(&other.run)
+    }
+}
+
+impl Quick for Views {
+    type Input = Seen;
+    /// In the window but for the outline of what other than three drives reach, which takes longer, and their tower.
+    type Answer = Self;
+
+    fn answer(seen: &Seen) -> Self {
+        match seen.over {
+            None => Self::begun(&seen.run),
+            Some(b) => Self::over(&seen.run, b, &seen.queries),
+        }
+    }
 }
 
 impl Views {
-    /// Prepares a run for drawing; to be made again when its machine or plan changes.
+    /// Prepares a run for drawing.
     pub fn of(run: &Run) -> Self {
         let mut views = Self::with(Stage::of(run), run);
         views.refresh(run);
         views
     }
 
-    /// For a whole run, whose b lie in a range, rad: joint space and tower show all of them and stand still. An outline
-    /// is taken over from other views, if it is the same.
-    pub fn over(run: &Run, b: [f64; 2], known: Option<&Self>) -> Self {
+    /// For a whole run, whose b lie in a range, rad: joint space and tower show all of them and stand still.
+    pub fn over(run: &Run, b: [f64; 2], queries: &Queries) -> Self {
         let mut stage = Stage::begun(run);
-        if let Some(known) = known {
-            stage.keep_outline(&known.stage);
-        }
-        stage.finish();
+        stage.finish(queries);
         let (joints, tower) = (Joints::over(run, b), Tower::over(run, stage.outlined(), b));
-        Self { joints, tower, draft: Draft::of(&run.scenario().machine), stage }
+        let machine = run.scenario().machine.clone();
+        Self { joints, tower, draft: Draft::of(&machine), stage, machine }
     }
 
     /// The same but for the outline of what other than three drives reach, which takes longer, and their tower.
@@ -139,8 +187,14 @@ impl Views {
     }
 
     fn with(stage: Stage, run: &Run) -> Self {
-        let draft = Draft::of(&run.scenario().machine);
-        Self { stage, joints: Joints::of(run), tower: Tower::of(run), draft }
+        let machine = run.scenario().machine.clone();
+        Self { stage, joints: Joints::of(run), tower: Tower::of(run), draft: Draft::of(&machine), machine }
+    }
+
+    /// Whether a machine looks like that of other views: its links are the same, wherever its limits are.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        let (one, other) = (&self.machine, &other.machine);
+        one.links() == other.links() && one.resolved_links() == other.resolved_links()
     }
 
     /// Why a machine has no such view, in words.

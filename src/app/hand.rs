@@ -1,0 +1,255 @@
+//! The [`Hand`]: the pointer over the scene, what it takes hold of, and what pulling at it asks for.
+
+use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
+
+use super::widgets::FINE;
+use super::{Command, ViewState, place, set_b};
+use crate::mechanics::planar::Vector;
+use crate::picture::paint::Spot;
+use crate::picture::scene::exaggeration::Shown;
+use crate::picture::scene::options::Handle;
+use crate::picture::scene::pick::{Aim, Pick};
+use crate::picture::scene::views::{ViewKind, Views};
+use crate::planning::pose_map::PoseMap;
+use crate::session::design::length_of;
+use crate::session::{Edit, Session};
+
+/// From how far away the tip can be taken hold of while the demonstration goes on, points.
+const GENEROUS: f64 = 60.0;
+/// Smaller changes of the pulling force send no new edit, N.
+const LEAST_PUSH: f64 = 0.02;
+
+/// The pointer over a scene.
+pub struct Hand<'a> {
+    ui: &'a Ui,
+    response: &'a Response,
+    spot: &'a Spot,
+    session: &'a Session,
+    shown: &'a Shown<'a>,
+    views: &'a Views,
+    view: ViewKind,
+    /// The demonstration's arm moves, so that its tip is hard to catch: any part of it will do.
+    catches_arm: bool,
+    /// A drag pushes.
+    pushes: bool,
+}
+
+impl<'a> Hand<'a> {
+    /// Over a scene of a session as it is shown; whether that is the demonstration.
+    pub fn over(
+        ui: &'a Ui,
+        response: &'a Response,
+        spot: &'a Spot,
+        (session, shown): (&'a Session, &'a Shown<'a>),
+        (views, demonstrates): (&'a Views, bool),
+        view_state: &ViewState,
+    ) -> Self {
+        let view = view_state.view;
+        // Dragging pushes with Alt held, or after U.
+        let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
+        let catches_arm = demonstrates && view.shows_machine() && !pushes;
+        Self { ui, response, spot, session, shown, views, view, catches_arm, pushes }
+    }
+
+    /// Takes hold, pulls, lets go, clicks, and takes points out by a key.
+    pub fn points(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+        self.looks(view_state);
+        self.takes_hold(view_state, commands);
+        match view_state.grabbed {
+            Some(pick) => self.pulls(pick, view_state, commands),
+            None => self.hovers(view_state),
+        }
+        self.clicks(view_state, commands);
+        self.takes_out(view_state, commands);
+        if view_state.grabbed.is_none() {
+            view_state.held = None;
+        }
+    }
+
+    /// The arm of the demonstration, near a place.
+    fn arm(&self, pos: Pos2) -> Option<Pick> {
+        let near = || self.views.pick_arm(self.shown, &self.spot.pointer(pos), GENEROUS);
+        self.catches_arm.then(near).flatten()
+    }
+
+    /// What can be pulled at.
+    fn under(&self, pos: Pos2) -> Option<Pick> {
+        let pointer = self.spot.pointer(pos);
+        let pick = match self.pushes {
+            true => self.views.pick_tip(self.shown, &pointer),
+            false => self.arm(pos).or_else(|| self.views.pick(self.view, self.shown, &pointer)),
+        };
+        // Nothing follows while the run waits, in joint space and tower either.
+        pick.filter(|pick| pick.handle != Handle::Target || self.session.follows_hands())
+    }
+
+    /// Remembers what is under the pointer.
+    fn looks(&self, view_state: &mut ViewState) {
+        if view_state.grabbed.is_some() {
+            return;
+        }
+        let seen = |pos: Pos2| match self.pushes {
+            true => self.under(pos).map(|pick| pick.handle),
+            false => {
+                let arm = self.arm(pos).map(|pick| pick.handle);
+                arm.or_else(|| self.views.under(self.view, self.shown, &self.spot.pointer(pos)))
+            }
+        };
+        view_state.hot = self.response.hover_pos().and_then(seen);
+    }
+
+    /// Takes hold of what was there when the button went down: it may move on.
+    fn takes_hold(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+        let origin = || self.ui.input(|i| i.pointer.press_origin());
+        if self.response.is_pointer_button_down_on() && self.ui.input(|i| i.pointer.primary_pressed()) {
+            let origin = origin();
+            view_state.pressed = origin.and_then(|pos| self.under(pos));
+            if self.session.is_playing() && origin.and_then(|pos| self.arm(pos)).is_some() {
+                commands.push(Command::TogglePlay);
+            }
+        }
+        if self.response.drag_started_by(PointerButton::Primary) {
+            // A drag begins where the button went down, not where it was noticed.
+            let origin = origin();
+            view_state.grabbed = view_state.pressed.take().or_else(|| origin.and_then(|pos| self.under(pos)));
+            view_state.fine = [origin.unwrap_or_default().to_vec2(), Vec2::ZERO];
+            view_state.force = Some(self.session.scenario().plant.force);
+            view_state.undone_to = self.session.undo_count();
+        }
+    }
+
+    /// The command that pulling at something to a place asks for.
+    fn asks(&self, pick: Pick, pos: Pos2, view_state: &mut ViewState) -> Option<Command> {
+        let (session, pointer) = (self.session, self.spot.pointer(pos));
+        let snaps = self.ui.input(|i| i.modifiers.ctrl || i.modifiers.command);
+        let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
+        let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
+        let aim = if snaps { aim.snapped() } else { aim };
+        if let Aim::Target(at) | Aim::Waypoint(_, at) = aim {
+            view_state.held = Some(at);
+        }
+        edit_of(aim, session, view_state).map(Command::Edit)
+    }
+
+    /// Pulls at what is held, and lets go of it.
+    fn pulls(&self, pick: Pick, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+        let response = self.response;
+        self.ui.ctx().set_cursor_icon(cursor(pick.handle, true));
+        let pushes = pick.handle == Handle::EndEffector;
+        // A push goes on while the pointer stands still and the machine moves on.
+        let lasts = pushes && self.session.is_moving();
+        // The last movement may come together with the release.
+        let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || lasts;
+        if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
+            let [last, behind] = &mut view_state.fine;
+            if self.ui.input(|i| i.modifiers.shift) {
+                *behind += (1.0 - FINE) * (pos.to_vec2() - *last);
+            }
+            *last = pos.to_vec2();
+            let at = pos - *behind;
+            commands.extend(self.asks(pick, at, view_state));
+            if pushes && !self.session.is_playing() {
+                commands.push(Command::TogglePlay);
+            }
+        }
+        let gives_up = self.ui.input(|i| i.key_pressed(egui::Key::Escape));
+        if response.drag_stopped() || gives_up {
+            view_state.grabbed = None;
+            if pushes && view_state.dragged {
+                // Back to the force that acted before the push.
+                let [x, y] = view_state.force.take().unwrap_or_default();
+                commands.push(Command::Edit(Edit::Push { x, y }));
+            }
+            commands.push(Command::EndGesture);
+            if gives_up && view_state.dragged {
+                commands.push(Command::TakeBack(view_state.undone_to));
+            }
+            view_state.dragged = false;
+        }
+    }
+
+    /// Shows by the cursor what could be pulled at.
+    fn hovers(&self, view_state: &ViewState) {
+        let Some(hot) = view_state.hot else { return };
+        let turns = self.session.follows_hands()
+            && self.session.run().pose_map().is_ok_and(|map| map.holds() || matches!(map, PoseMap::Planes(_)));
+        let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
+        self.ui.ctx().set_cursor_icon(cursor(hot, false));
+    }
+
+    /// A click on a bar chooses its b, one on what stands in the panel shows it there; a double click beside all handles
+    /// adds a point to the path.
+    fn clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+        let clicked = self.response.clicked_by(PointerButton::Primary);
+        let pos = self.response.interact_pointer_pos();
+        if let Some(pos) = pos.filter(|_| clicked)
+            && let Some(pick) = self.under(pos).filter(|pick| pick.handle == Handle::Bar)
+            && let Some(edit) = self.asks(pick, pos, view_state)
+        {
+            commands.extend([edit, Command::EndGesture]);
+        }
+        if clicked && let Some(thing) = view_state.hot.filter(|thing| place::is_in_panel(*thing)) {
+            commands.push(Command::Reveal(thing));
+        }
+        let beside = !view_state.hot.is_some_and(Handle::can_be_dragged);
+        let twice = self.response.double_clicked_by(PointerButton::Primary) && beside && self.view.shows_machine();
+        let height = self.views.stage().handle_height();
+        if let Some(pos) = pos.filter(|_| twice)
+            && let Some([x, y]) = self.spot.pointer(pos).ray().and_then(|ray| ray.at_height(height))
+            && let Some(change) = self.session.scenario().task.adding(Vector::new(x, y))
+        {
+            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+        }
+    }
+
+    /// Takes the point of the path under the pointer out, at the key for that.
+    fn takes_out(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+        let typing = self.ui.ctx().egui_wants_keyboard_input();
+        let key = |i: &egui::InputState| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace);
+        let out = !typing && self.ui.input(key);
+        if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
+            && let Some(change) = self.session.scenario().task.removing(i)
+        {
+            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+            view_state.hot = None;
+        }
+    }
+}
+
+/// The edit that an aim is; none if what it names is not there, or a push is as it was.
+fn edit_of(aim: Aim, session: &Session, view_state: &ViewState) -> Option<Edit> {
+    let machine = &session.scenario().machine;
+    Some(match aim {
+        Aim::Target([x, y]) => Edit::DragTarget { x, y },
+        Aim::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
+        Aim::Pull { link, along, at: [x, y] } => {
+            let link = machine.links().get(link)?.name.clone();
+            Edit::PullLink { link, along, x, y }
+        }
+        Aim::B(b) => set_b(session, view_state, b),
+        Aim::Push([x, y]) => {
+            let [now_x, now_y] = session.scenario().plant.force;
+            if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
+                return None;
+            }
+            Edit::Push { x, y }
+        }
+        Aim::Limit { angle, ends, .. } => Edit::at(&["limits", &machine.angles().get(angle)?.name], ends.to_vec()),
+        Aim::Mass { link, to } => Edit::at(&["link", &machine.links().get(link)?.name, "com"], to),
+        Aim::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
+        Aim::Length { link, to } => length_of(machine.spec().links.get(link)?, to),
+        Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
+        Aim::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),
+    })
+}
+
+fn cursor(handle: Handle, held: bool) -> CursorIcon {
+    match (handle, held) {
+        (Handle::Bar, _) => CursorIcon::PointingHand,
+        (Handle::Plane, _) => CursorIcon::ResizeVertical,
+        (thing, true) if thing.can_be_dragged() => CursorIcon::Grabbing,
+        (thing, false) if thing.can_be_dragged() => CursorIcon::Grab,
+        (thing, _) if place::is_in_panel(thing) => CursorIcon::PointingHand,
+        _ => CursorIcon::Default,
+    }
+}
