@@ -116,7 +116,7 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
         lines > 0
     };
     assert!(!outlined(&h), "the window is there before the outline");
-    assert_eq!(workers.work(), 1);
+    assert_eq!(workers.work(), 2, "the outline, and which b reach A and B");
     h.run_steps(2);
     assert!(outlined(&h), "it comes when it is found");
     // What does not change the machine does not ask for it again.
@@ -133,7 +133,7 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
         h.run_steps(2);
         assert!(!outlined(&h), "of a machine with other limits it is found anew");
     }
-    assert_eq!(workers.work(), 1, "what was found for the limits before is wanted no more");
+    assert_eq!(workers.work(), 2, "what was found for the limits before is wanted no more");
     h.run_steps(2);
     assert!(outlined(&h) && workers.work() == 0);
 }

@@ -325,3 +325,44 @@ fn every_kind_of_edit_is_drawn() {
     assert!(seen(&|s| s.plant.friction.pin_coulomb > 0.0));
     assert!(seen(&|s| s.control.encoder > 0.0) && seen(&|s| s.control.delay > 0.0));
 }
+
+/// What is derived is of the session as it is: after each of many edits, every view shows what one made afresh shows.
+#[cfg(feature = "ui")]
+#[test]
+fn views_of_any_sitting_are_those_made_afresh() {
+    use stillbase::app::{AppState, Command};
+    use stillbase::picture::scene::options::ViewOptions;
+    use stillbase::picture::scene::palette::Theme;
+    use stillbase::picture::scene::views::{ViewKind, Views};
+
+    let mut runner = TestRunner::deterministic();
+    let (mut compared, mut made) = (0, 0);
+    for _ in 0..4 {
+        let start = any_start().new_tree(&mut runner).expect("drawn").current();
+        let Ok(mut app) = AppState::new(start, Theme::Dark) else { continue };
+        for i in 0..40 {
+            let command = match i % 8 {
+                5 => Command::EndGesture,
+                6 => Command::Undo,
+                7 => Command::Seek(0.0),
+                _ => Command::Edit(any_edit().new_tree(&mut runner).expect("drawn").current()),
+            };
+            let before = app.session().scenario().clone();
+            app.carry_out(command.clone());
+            made += usize::from(before != *app.session().scenario());
+            app.pass(0.05);
+            let (run, frame, options) = (app.session().run(), app.session().frame(), ViewOptions::default());
+            let fresh = Views::of(run);
+            for kind in ViewKind::ALL {
+                let (shown, wanted) = (app.views(), &fresh);
+                assert_eq!(shown.shows(kind), wanted.shows(kind), "{kind:?} after {command:?}");
+                if wanted.shows(kind) {
+                    let scenes = [shown, wanted].map(|views| views.scene(kind, frame, &options, &wanted.camera(kind)));
+                    assert!(scenes[0] == scenes[1], "{kind:?} after {command:?}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 500 && made > 40, "{compared} scenes of {made} changes");
+}
