@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::Threads;
@@ -36,6 +36,7 @@ pub const TESTS: &[Test] = tests![
     what_is_done_beside_equals_what_is_done_at_once,
     jobs_end_break_off_and_are_stopped,
     what_a_machine_reaches_is_outlined_beside_the_window,
+    counterweights_are_looked_for_beside_the_window,
 ];
 
 /// Does nothing until it is told to.
@@ -136,6 +137,39 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
     assert_eq!(workers.work(), 2, "what was found for the limits before is wanted no more");
     h.run_steps(2);
     assert!(outlined(&h) && workers.work() == 0);
+}
+
+/// The panel is there before them, keeps those of the machine before meanwhile, and says so once that takes long.
+fn counterweights_are_looked_for_beside_the_window() {
+    let workers = Waiting::default();
+    let mut h = window("nine-link-bare", &workers);
+    tell(&mut h, Command::View(ViewKind::Design));
+    let front = |h: &Window| {
+        let plot = h.query_by_label_contains("Counterweights to choose from");
+        plot.map(|node| node.accesskit_node().label().unwrap_or_default())
+    };
+    let said = |h: &Window| h.query_by_label_contains("looking for them: 0 %").is_some();
+    assert!(front(&h).is_none() && said(&h), "there is nothing else to show");
+    workers.work();
+    h.run_steps(25);
+    let first = front(&h).expect("found");
+    assert!(!said(&h));
+    // What is planned anew is planned beside the window, too.
+    tell(&mut h, Command::Edit(Edit::set("link.9.mass", 0.9)));
+    workers.work();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().machine.links()[8].mass, 0.9);
+    assert_eq!((front(&h).as_ref(), said(&h)), (Some(&first), false), "those before, meanwhile");
+    h.run_steps(60);
+    assert_eq!((front(&h).as_ref(), said(&h)), (Some(&first), true), "it takes long");
+    workers.work();
+    h.run_steps(2);
+    let next = front(&h).expect("found");
+    assert_ne!(next, first);
+    tell(&mut h, Command::EndGesture);
+    workers.work();
+    h.run_steps(2);
+    assert_eq!((front(&h), workers.work()), (Some(next), 0), "nothing is left to do");
 }
 
 fn the_ways_of_a_task_run_beside_the_window() {

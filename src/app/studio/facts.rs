@@ -32,7 +32,7 @@ pub struct Facts {
     /// What less inertia costs in mass; none while the equations are on display.
     front: Option<Asked<Points>>,
     /// What tells the machines of the front apart, of each of them.
-    pub(super) told: Option<(FrontMeasure, Arc<Vec<Option<f64>>>)>,
+    pub(super) told: Option<Arc<Told>>,
     /// Its equations; none while the front is on display.
     pub(super) lesson: Option<Arc<Lesson>>,
 }
@@ -116,7 +116,14 @@ impl Quick for FrontPoints {
     }
 }
 
-/// What tells the machines of a front apart, one of them in a portion.
+/// What tells the machines of a front apart.
+pub(super) struct Told {
+    pub by: FrontMeasure,
+    /// Of each machine; none where it has none.
+    pub values: Vec<Option<f64>>,
+}
+
+/// The search for it, one machine in a portion.
 struct Telling {
     of: <Self as Query>::Input,
     told: Vec<Option<f64>>,
@@ -125,7 +132,7 @@ struct Telling {
 impl Query for Telling {
     /// The front, by what, and in which motion.
     type Input = (Same<Points>, FrontMeasure, Option<Same<Motion>>);
-    type Answer = Vec<Option<f64>>;
+    type Answer = Told;
 
     fn begin(of: Self::Input) -> Self {
         Self { of, told: Vec::new() }
@@ -139,7 +146,7 @@ impl Query for Telling {
                 self.told.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
                 Portion::More(self.told.len() as f64 / points.len() as f64)
             }
-            None => Portion::Done(std::mem::take(&mut self.told)),
+            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.told) }),
         }
     }
 }
@@ -187,8 +194,9 @@ impl Facts {
         // One that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
         facts.told = by.zip(points.clone()).and_then(|(by, points)| {
-            let told = queries.ask_beside::<Telling>(&(Same(points), by, motion));
-            Some((by, told.known()?.clone()))
+            let told = queries.ask_beside::<Telling>(&(Same(points.clone()), by, motion)).last?;
+            // Those of another front tell nothing of this one.
+            (told.by == by && told.values.len() == points.as_deref().map_or(0, <[Point]>::len)).then_some(told)
         });
         facts.front = Some(Asked { last: points, state: front.state });
         facts

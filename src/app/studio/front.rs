@@ -1,6 +1,6 @@
 //! What less inertia costs in mass: counterweights to choose from, each as light as its inertia lets it be.
 
-use egui::{Rect, RichText, Sense, Ui, vec2};
+use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
 use super::facts::{Facts, Point};
@@ -15,6 +15,8 @@ use crate::picture::scene::palette::{Palette, faded, mix};
 use crate::study::front_point::FrontMeasure;
 
 const HEIGHT: f32 = 210.0;
+/// After so long it is said that the machines are being looked for, s.
+const SPOKEN_OF: f32 = 0.4;
 /// A point is chosen from so near, points of the screen.
 const NEAR: f32 = 14.0;
 /// Counterweights below this are none, kg.
@@ -24,9 +26,12 @@ const NOTHING: f64 = 1e-6;
 pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.add_space(8.0);
-    heading(ui, p, "Counterweights", "hover shows, click takes");
-    if let Some(share) = facts.front_under_way() {
-        note(ui, p, &format!("looking for them: {:.0} %", 100.0 * share));
+    let under_way = facts.front_under_way();
+    // What comes soon in place of others is not spoken of.
+    let lasts = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), SPOKEN_OF);
+    match under_way.filter(|_| lasts >= 1.0) {
+        Some(share) => heading(ui, p, "Counterweights", &format!("looking for them: {:.0} %", 100.0 * share)),
+        None => heading(ui, p, "Counterweights", "hover shows, click takes"),
     }
     let points = match facts.front() {
         Ok([]) => return,
@@ -48,7 +53,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    let told = facts.told.as_ref().and_then(|(by, values)| Told::of(*by, values));
+    let told = facts.told.as_ref().and_then(|told| Told::of(told.by, &told.values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| by(ui, view_state, commands));
