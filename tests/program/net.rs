@@ -40,6 +40,56 @@ struct Answer {
     said: String,
 }
 
+/// What is recorded, beside that: the paper's cases, other ways, bases and numbers of drives, and a session with edits.
+const RECORDED: &str = "\
+headless case-1 case-2 -o a.rrd
+headless case-3 -o a.rrd
+headless change-b -o a.rrd
+headless circle -o a.rrd
+headless least-reaction -o a.rrd
+headless drift -o a.rrd
+headless spacecraft -o a.rrd
+headless wheel -o a.rrd
+headless pick-up -o a.rrd
+headless nine-link-bare -o a.rrd
+headless two-drive -o a.rrd
+headless four-drive -o a.rrd
+headless session.toml -o a.rrd";
+
+/// Limits and a payload change on the way, then it is led by hand.
+const SESSION: &str = r#"
+machine = "nine-link"
+step = 0.002
+duration = 1.2
+compare_b = 2.0
+[task]
+kind = "reactionless"
+from = [0.5, 0.5]
+to = [0.55, 0.9]
+b = 2.4
+[[edit]]
+step = 0
+do = "set"
+change = { task = { time = 0.6 } }
+[[edit]]
+step = 100
+do = "set"
+change = { limits = { a1 = [0.1, 2.9] } }
+[[edit]]
+step = 200
+do = "set"
+change = { plant = { payload = { mass = 0.2 } } }
+[[edit]]
+step = 350
+do = "drag-target"
+x = 0.45
+y = 0.8
+[[edit]]
+step = 420
+do = "slide-b"
+b = 2.5
+"#;
+
 /// What it answers to the commands of a line, one after another in a folder.
 fn asked(program: &Path, line: &str, folder: &Path) -> Vec<Answer> {
     let answer = |command: &str| {
@@ -55,8 +105,8 @@ fn asked(program: &Path, line: &str, folder: &Path) -> Vec<Answer> {
 }
 
 /// Does something with each line, on all cores.
-fn each_line<T: Send>(what: impl Fn(usize, &str) -> T + Sync) -> BTreeMap<&'static str, T> {
-    let (lines, next, done) = (lines(), AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
+fn each_line<T: Send>(lines: Vec<&'static str>, what: impl Fn(usize, &str) -> T + Sync) -> BTreeMap<&'static str, T> {
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(2, usize::from) {
             scope.spawn(|| {
@@ -147,7 +197,7 @@ fn differs(got: &Value, want: &Value, place: &str, all: &mut Vec<String>) {
 #[test]
 fn command_lines_answer_as_they_did() {
     let home = folder("net");
-    let answers = each_line(|i, line| {
+    let answers = each_line(lines(), |i, line| {
         let here = home.join(i.to_string());
         fs::create_dir_all(&here).expect("a folder");
         stated(&asked(Path::new(PROGRAM), line, &here))
@@ -166,11 +216,22 @@ fn command_lines_answer_as_they_did() {
     assert!(all.is_empty(), "{} differences:\n{}", all.len(), all.join("\n"));
 }
 
-/// Names and bytes of the files in a folder; of recordings, which bear the time at which they were made, the names.
+/// What a recording tells, as bytes.
+#[cfg(feature = "record")]
+fn told(file: &Path) -> Vec<u8> {
+    crate::recording::told(file).into_bytes()
+}
+
+#[cfg(not(feature = "record"))]
+fn told(_: &Path) -> Vec<u8> {
+    Vec::new()
+}
+
+/// Names and bytes of the files in a folder; of recordings, which bear the time at which they were made, what they tell.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let bytes =
-        |file: &Path| if file.extension().is_some_and(|end| end == "rrd") { Ok(Vec::new()) } else { fs::read(file) };
+        |file: &Path| if file.extension().is_some_and(|end| end == "rrd") { Ok(told(file)) } else { fs::read(file) };
     entries.map(|file| (file.file_name().expect("a name").into(), bytes(&file).expect("readable"))).collect()
 }
 
@@ -179,10 +240,11 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 fn another_build_prints_and_writes_the_same_bytes() {
     let other = PathBuf::from(env::var_os("STILLBASE_NET_AGAINST").expect("STILLBASE_NET_AGAINST names another build"));
     let home = folder("net-against");
-    let differ = each_line(|i, line| {
+    let differ = each_line(lines().into_iter().chain(RECORDED.lines()).collect(), |i, line| {
         let one = |name: &str, program: &Path| {
             let here = home.join(format!("{i}-{name}/here"));
             fs::create_dir_all(&here).expect("a folder");
+            fs::write(here.join("session.toml"), SESSION).expect("the session");
             (asked(program, line, &here), files(&here))
         };
         let (mine, others) = (one("mine", Path::new(PROGRAM)), one("other", &other));

@@ -12,6 +12,8 @@ mod signals;
 mod window;
 
 use std::collections::{BTreeMap, BTreeSet};
+#[cfg(feature = "cli")]
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
 
 use rerun::external::arrow::array::{
@@ -153,6 +155,34 @@ impl Contents {
         });
         texts.collect()
     }
+}
+
+/// A line for each component of each entity of a file: how many rows it has, and a number of all that stands in them and of
+/// their times, but for when the file was written. The same content gives the same lines, however it is cut into chunks.
+#[cfg(feature = "cli")]
+pub fn told(file: &std::path::Path) -> String {
+    let mut columns: BTreeMap<String, (usize, DefaultHasher)> = BTreeMap::new();
+    for (store, chunks) in Contents::of(file).stores {
+        for chunk in chunks {
+            let written = |name: &str| ["log_time", "log_tick"].contains(&name);
+            let timelines = chunk.timelines().iter().filter(|(name, _)| !written(name.as_str()));
+            let timelines: BTreeMap<String, &[i64]> =
+                timelines.map(|(name, at)| (name.to_string(), at.times_raw())).collect();
+            for (component, column) in chunk.components().0.iter() {
+                let name = format!("{:?} {} {component}", store.kind(), chunk.entity_path());
+                if name.contains("start_time") {
+                    continue;
+                }
+                let (count, hasher) = columns.entry(name).or_default();
+                for row in 0..chunk.num_rows() {
+                    timelines.iter().for_each(|(name, times)| (name, times[row]).hash(hasher));
+                    format!("{:?}", column.list_array.value(row).to_data()).hash(hasher);
+                    *count += 1;
+                }
+            }
+        }
+    }
+    columns.iter().map(|(name, (count, hasher))| format!("{name}: {count} rows, {:x}\n", hasher.finish())).collect()
 }
 
 fn vectors(flat: &dyn Array) -> Vec<[f32; 3]> {
