@@ -479,11 +479,15 @@ fn what_cannot_vary_is_refused() {
 /// frequencies, and what perfect tracking leaves out.
 #[test]
 fn a_study_is_of_one_piece() {
+    use std::sync::Arc;
     use stillbase::session::Run;
-    use stillbase::study::tolerance::{Study, left_out};
+
+    use stillbase::query::answered;
+    use stillbase::study::tolerance::{Studied, Studying, left_out};
     let mut scenario = stillbase::session::scenario::Scenario::builtin("case-3").expect("built in");
     scenario.tolerance = toml::from_str("samples = 3000\nmoment_limit = 0.01").expect("tolerances");
-    let study = Study::watched(&Run::new(&scenario).expect("planned"), &mut |_| true).expect("something varies");
+    let run = Studied(Arc::new(Run::new(&scenario).expect("planned")));
+    let study = answered::<Studying>(run).expect("something varies");
     assert!((study.shares.iter().map(|s| s.moment_share).sum::<f64>() - 1.0).abs() < 1e-9);
     assert!(study.shares.is_sorted_by(|a, b| a.moment_share >= b.moment_share));
     assert!(study.moment.values.is_sorted() && study.moment_histogram.counts.iter().sum::<u64>() == 3000);

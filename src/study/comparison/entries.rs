@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{COLUMNS, Compared, DESIGN, Design, alternatives};
+use super::{Alternative, COLUMNS, Compared, DESIGN, Design, alternatives};
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
@@ -46,28 +46,13 @@ pub struct Comparison {
 /// What a way is called, and its run, or why there is none.
 pub type Outcome = (String, Result<Arc<Compared>, String>);
 
-/// Runs the ways of a scenario's task; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is
-/// wanted. `None` if it is not.
-pub fn run_ways(scenario: &Scenario, goes_on: Watch<'_>) -> Option<Vec<Outcome>> {
-    let ways = alternatives(scenario);
-    let count = ways.len() as f64;
-    let run = |(i, (way, scenario)): (usize, (super::Alternative, Scenario))| {
-        let share = |done: f64| (i as f64 + done) / count;
-        if !goes_on(share(0.0)) {
-            return None;
-        }
-        let outcome = match Compared::of_while(scenario, &mut |done| goes_on(share(done))) {
-            Err(Refusal::Stopped) => return None,
-            outcome => outcome.map(Arc::new).map_err(|why| why.to_string()),
-        };
-        Some((way.title().to_owned(), outcome))
-    };
-    ways.into_iter().enumerate().map(run).collect()
-}
-
-/// The runs of the ways of a scenario's task.
+/// The runs of the ways of a scenario's task: a way in a portion.
 #[derive(Debug)]
-pub struct Ways(Shared<Scenario>);
+pub struct Ways {
+    scenario: Shared<Scenario>,
+    ways: Vec<(Alternative, Scenario)>,
+    done: Vec<Outcome>,
+}
 
 impl Query for Ways {
     type Input = Shared<Scenario>;
@@ -75,12 +60,21 @@ impl Query for Ways {
     type Answer = (Shared<Scenario>, Vec<Outcome>);
 
     fn begin(scenario: Self::Input) -> Self {
-        Self(scenario)
+        Self { ways: alternatives(&scenario.0), done: Vec::new(), scenario }
     }
 
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
-        let ways = run_ways(&self.0.0, goes_on);
-        ways.map_or(Portion::Stopped, |ways| Portion::Done((self.0.clone(), ways)))
+        let (known, count) = (self.done.len(), self.ways.len() as f64);
+        let Some((way, scenario)) = self.ways.get(known) else {
+            return Portion::Done((self.scenario.clone(), std::mem::take(&mut self.done)));
+        };
+        let share = |done: f64| (known as f64 + done) / count;
+        let outcome = match Compared::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
+            Err(Refusal::Stopped) => return Portion::Stopped,
+            outcome => outcome.map(Arc::new).map_err(|why| why.to_string()),
+        };
+        self.done.push((way.title().to_owned(), outcome));
+        Portion::More(share(1.0))
     }
 }
 

@@ -9,7 +9,7 @@ mod summary;
 pub use alternative::{Alternative, SLOWER};
 pub use design::{Candidate, DESIGN, Design};
 pub use difference::Difference;
-pub use entries::{Comparison, Entry, Outcome, Ways, run_ways};
+pub use entries::{Comparison, Entry, Outcome, Ways};
 pub use summary::{COLUMNS, Column, Summary};
 
 use crate::mechanics::machine::Machine;

@@ -22,9 +22,6 @@ pub enum ToleranceError {
         /// The key.
         key: String,
     },
-    /// Whoever asked for it does not want it any more.
-    #[error("the study was stopped before it ended")]
-    Stopped,
     /// Every spread is zero.
     #[error("nothing varies: want a spread above 0")]
     NothingVaries,

@@ -51,9 +51,27 @@ pub struct Study {
     pub left_out: Vec<&'static str>,
 }
 
-/// The study of a run on display, or why there is none in words.
+/// The study of a run: a portion draws some hundred machines.
 #[derive(Debug)]
-pub struct Studying(Run);
+pub struct Studying {
+    run: Run,
+    drawing: Option<Drawing>,
+}
+
+/// Machines that are being drawn.
+#[derive(Debug)]
+struct Drawing {
+    tolerance: Tolerance,
+    spreads: BTreeMap<String, Spread>,
+    ensemble: Ensemble,
+    samples: u64,
+    outcomes: Vec<Outcome>,
+    /// Chunks that are drawn.
+    drawn: u64,
+}
+
+/// Chunks of a portion: together a few milliseconds.
+const PORTION: u64 = 8;
 
 /// A run that is studied: as long as its scenario is the same, so is its study.
 #[derive(Clone, Debug)]
@@ -70,42 +88,72 @@ impl Query for Studying {
     type Answer = Result<Study, String>;
 
     fn begin(Studied(run): Studied) -> Self {
-        Self(Run::clone(&run))
+        Self { run: Run::clone(&run), drawing: None }
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
-        if let Some(waiting) = self.0.waiting() {
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+        if let Some(waiting) = self.run.waiting() {
             return Portion::Done(Err(waiting.why.to_string()));
         }
-        match Study::watched(&self.0, goes_on) {
-            Err(ToleranceError::Stopped) => Portion::Stopped,
-            study => Portion::Done(study.map_err(|why| why.to_string())),
+        let Some(drawing) = &mut self.drawing else {
+            return match Drawing::of(&self.run) {
+                Ok(drawing) => {
+                    self.drawing = Some(drawing);
+                    Portion::More(0.0)
+                }
+                Err(why) => Portion::Done(Err(why.to_string())),
+            };
+        };
+        drawing.draw(PORTION);
+        match drawing.share() {
+            share if share < 1.0 => Portion::More(share),
+            _ => Portion::Done(Ok(Study::of(&self.run, drawing))),
         }
     }
 }
 
-impl Study {
-    /// Of a run's planned motion; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted.
+impl Drawing {
+    /// Of a run's planned motion.
     ///
     /// # Errors
-    /// If nothing varies, a key or spread is wrong, a length cannot vary alone, or the rest is not wanted.
-    pub fn watched(run: &Run, goes_on: Watch<'_>) -> Result<Self, ToleranceError> {
+    /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
+    fn of(run: &Run) -> Result<Self, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
         let (seed, samples) = (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(SAMPLES).clamp(1, MOST));
         let spreads = tolerance.spreads_or_default(&plant);
         let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &spreads, seed)?;
-        let mut sampler = ensemble.sampler();
-        let mut outcomes: Vec<Outcome> = Vec::with_capacity(samples as usize + CHUNK);
-        let chunks = samples.div_ceil(CHUNK as u64);
-        for chunk in 0..chunks {
-            if !goes_on(chunk as f64 / chunks as f64) {
-                return Err(ToleranceError::Stopped);
-            }
-            outcomes.extend(sampler.outcomes(chunk));
+        let outcomes = Vec::with_capacity(samples as usize + CHUNK);
+        Ok(Self { tolerance, spreads, ensemble, samples, outcomes, drawn: 0 })
+    }
+
+    fn chunks(&self) -> u64 {
+        self.samples.div_ceil(CHUNK as u64)
+    }
+
+    /// How much is drawn, from 0 to 1.
+    fn share(&self) -> f64 {
+        self.drawn as f64 / self.chunks() as f64
+    }
+
+    /// Draws so many chunks more, as far as there are any.
+    fn draw(&mut self, chunks: u64) {
+        let until = self.chunks().min(self.drawn + chunks);
+        let mut sampler = self.ensemble.sampler();
+        for chunk in self.drawn..until {
+            self.outcomes.extend(sampler.outcomes(chunk));
         }
-        outcomes.truncate(samples as usize);
+        self.drawn = until;
+        self.outcomes.truncate(self.samples as usize);
+    }
+}
+
+impl Study {
+    /// Of a run and the machines that were drawn of its tolerances.
+    fn of(run: &Run, drawing: &Drawing) -> Self {
+        let Drawing { tolerance, spreads, ensemble, outcomes, .. } = drawing;
+        let (scenario, samples) = (run.scenario(), drawing.samples);
         let sorted = |value: fn(&Outcome) -> f64| {
             let mut values: Vec<f64> = outcomes.iter().map(value).collect();
             values.sort_unstable_by(f64::total_cmp);
@@ -123,10 +171,10 @@ impl Study {
             });
             Yield::new(good.count() as u64, samples)
         });
-        let bands = Bands::of(&ensemble, samples);
-        let mut shares = Shares::of(&ensemble).parameters;
+        let bands = Bands::of(ensemble, samples);
+        let mut shares = Shares::of(ensemble).parameters;
         shares.sort_by(|a, b| b.moment_share.total_cmp(&a.moment_share));
-        Ok(Self {
+        Self {
             samples,
             parameters: ensemble.parameters().len(),
             agreement: Agreement::of(&bands),
@@ -139,9 +187,9 @@ impl Study {
             shares,
             spectra: spectra(run),
             left_out: left_out(scenario),
-            tolerance,
-            spreads,
-        })
+            tolerance: tolerance.clone(),
+            spreads: spreads.clone(),
+        }
     }
 }
 
