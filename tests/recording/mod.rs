@@ -17,7 +17,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
 
 use rerun::external::arrow::array::{
-    Array, BooleanArray, FixedSizeListArray, Float32Array, Float64Array, ListArray, StringArray,
+    Array, BooleanArray, FixedSizeListArray, Float32Array, Float64Array, ListArray, StringArray, UInt32Array,
 };
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_log_types::StoreId;
@@ -176,13 +176,33 @@ pub fn told(file: &std::path::Path) -> String {
                 let (count, hasher) = columns.entry(name).or_default();
                 for row in 0..chunk.num_rows() {
                     timelines.iter().for_each(|(name, times)| (name, times[row]).hash(hasher));
-                    format!("{:?}", column.list_array.value(row).to_data()).hash(hasher);
+                    told_of(&*column.list_array.value(row), hasher);
                     *count += 1;
                 }
             }
         }
     }
     columns.iter().map(|(name, (count, hasher))| format!("{name}: {count} rows, {:x}\n", hasher.finish())).collect()
+}
+
+/// All that stands in an array.
+#[cfg(feature = "cli")]
+fn told_of(array: &dyn Array, hasher: &mut DefaultHasher) {
+    let any = array.as_any();
+    array.len().hash(hasher);
+    if let Some(numbers) = any.downcast_ref::<Float32Array>() {
+        numbers.values().iter().for_each(|x| x.to_bits().hash(hasher));
+    } else if let Some(numbers) = any.downcast_ref::<Float64Array>() {
+        numbers.values().iter().for_each(|x| x.to_bits().hash(hasher));
+    } else if let Some(numbers) = any.downcast_ref::<UInt32Array>() {
+        numbers.values().iter().for_each(|x| x.hash(hasher));
+    } else if let Some(list) = any.downcast_ref::<FixedSizeListArray>() {
+        told_of(&**list.values(), hasher);
+    } else if let Some(list) = any.downcast_ref::<ListArray>() {
+        (0..list.len()).for_each(|i| told_of(&*list.value(i), hasher));
+    } else {
+        format!("{array:?}").hash(hasher);
+    }
 }
 
 fn vectors(flat: &dyn Array) -> Vec<[f32; 3]> {
