@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use crate::settings::range::shortened;
+use crate::settings::range::{clipped, shortened};
 
 /// The word that takes a key out, so that its default returns.
 pub const DEFAULT: &str = "default";
@@ -24,7 +24,7 @@ pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Resul
 /// As [`with`].
 pub fn with_as<T: Serialize, U: DeserializeOwned>(value: &T, change: &Table) -> Result<U, String> {
     if let Some(key) = not_finite(change) {
-        return Err(format!("{key} is not a finite number: want one"));
+        return Err(format!("{} is not a finite number: want one", clipped(&key)));
     }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
     lay(&mut table, change);

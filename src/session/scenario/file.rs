@@ -113,7 +113,7 @@ impl Scenario {
         if let Some(key) =
             text.parse().ok().and_then(|table| change::not_finite(&table)).filter(|key| key.starts_with("task"))
         {
-            let message = format!("{key} is not a finite number: want one");
+            let message = format!("{} is not a finite number: want one", clipped(&key));
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
         for (key, text) in [("name", file.name.as_deref().unwrap_or_default()), ("title", &file.title)] {
