@@ -9,8 +9,8 @@
 //! | [`Queries::ask_beside`] | answers at once what is known, else with the last answer while work goes on beside |
 //!
 //! An answer follows from its input alone, because nothing else is given to the work. Of several inputs asked about one
-//! after the other the newest counts: work on an older one stops, or ends first if it is short. Where there are no threads the work is done in
-//! portions, one for each time it is asked about.
+//! after the other the newest counts: work on an older one stops, or ends first if it is short. Where there are no
+//! threads the work is done in portions, one for each time it is asked about.
 
 mod asked;
 mod input;
@@ -22,5 +22,5 @@ mod slot;
 pub use asked::{Asked, State};
 pub use input::{Same, Shared};
 pub use job::{AtOnce, Job, Poll, Ticket, Workers};
-pub use queries::Queries;
+pub use queries::{Asking, Queries};
 pub use question::{Portion, Query, Quick, Watch, Whole, answered};

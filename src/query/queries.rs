@@ -3,7 +3,7 @@
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use super::asked::Asked;
 use super::job::{AtOnce, Workers};
@@ -13,6 +13,23 @@ use super::slot::{Kept, Slot, Working};
 /// Answers that are known, and the work on others. Copies share both.
 #[derive(Clone)]
 pub struct Queries(Arc<Store>);
+
+/// The same from an input, which is kept in them: they end when nobody else has them.
+#[derive(Clone)]
+pub struct Asking(Weak<Store>);
+
+impl Asking {
+    /// They, or none that are known.
+    pub fn queries(&self) -> Queries {
+        self.0.upgrade().map_or_else(Queries::default, Queries)
+    }
+}
+
+impl fmt::Debug for Asking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Asking")
+    }
+}
 
 struct Store {
     /// One for each query that was asked.
@@ -41,6 +58,11 @@ impl fmt::Debug for Queries {
 }
 
 impl Queries {
+    /// For an input that asks others.
+    pub fn asking(&self) -> Asking {
+        Asking(Arc::downgrade(&self.0))
+    }
+
     /// Has work done beside by somebody from now on.
     pub fn hire(&self, workers: Arc<dyn Workers + Send + Sync>) {
         self.place().workers = Some(workers);

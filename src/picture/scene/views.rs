@@ -19,7 +19,7 @@ use super::tower::Tower;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::DriveAngles;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Queries, Quick};
+use crate::query::{Asking, Queries, Quick};
 use crate::session::Run;
 use crate::settings::number::Short;
 use crate::simulation::frame::Frame;
@@ -122,13 +122,13 @@ pub struct Seen {
     run: Run,
     over: Option<[f64; 2]>,
     /// Where outlines are kept.
-    queries: Queries,
+    queries: Asking,
 }
 
 impl Seen {
     /// A run in the window, or a whole one in a recording.
     pub fn of(run: &Run, over: Option<[f64; 2]>, queries: &Queries) -> Self {
-        Self { run: run.clone(), over, queries: queries.clone() }
+        Self { run: run.clone(), over, queries: queries.asking() }
     }
 
     /// Whether nothing that stands still differs in another run: machine, plan, and what is built otherwise.
@@ -159,7 +159,7 @@ impl Quick for Views {
     fn answer(seen: &Seen) -> Self {
         match seen.over {
             None => Self::begun(&seen.run),
-            Some(b) => Self::over(&seen.run, b, &seen.queries),
+            Some(b) => Self::over(&seen.run, b, &seen.queries.queries()),
         }
     }
 }
