@@ -25,25 +25,27 @@
 //! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
 //! # Ok::<(), stillbase::mechanics::balance::DesignError>(())
 //! ```
-//! Its planes ([`Planes`](planning::pose_constant::Planes)) know which b reach a point, where, and how far the
-//! workspace goes:
+//! Its pose space ([`PoseSpace`](planning::pose_space::PoseSpace)) knows which b reach a point, where, and how far the
+//! workspace goes, for any number of drives:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
-//! # use stillbase::planning::pose_constant::Planes;
+//! use stillbase::planning::pose_space::PoseSpace;
 //! # let machine = machine::builtin("nine-link").expect("built in");
-//! let planes = Planes::of(machine).expect("three drives, two angles");
-//! let a = planes.map().reach(Vector::new(0.50, 0.50)).expect("within reach");
+//! let space = PoseSpace::of(machine).expect("it has a b");
+//! let a = space.reach(Vector::new(0.50, 0.50)).expect("within reach");
 //! assert!((a.intervals[0][0] - 1.6495370969).abs() < 1e-9);
-//! assert!((planes.boundary().area() - 0.8451448471).abs() < 1e-9);
+//! assert!((space.outline(2.4).area - 0.8451448471).abs() < 1e-9);
 //! ```
-//! A curve of the end effector is followed on a plane, or refused with where, why, and which b would do:
+//! What only some machines have it gives out by name, or says why not. On planes a curve of the end effector is followed
+//! exactly, or refused with where, why, and which b would do:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
-//! # use stillbase::planning::pose_constant::Planes;
+//! # use stillbase::planning::pose_space::PoseSpace;
 //! # let machine = machine::builtin("nine-link").expect("built in");
-//! # let planes = Planes::of(machine).expect("three drives, two angles");
+//! # let space = PoseSpace::of(machine).expect("it has a b");
+//! let planes = space.planes().expect("three drives, limits of both angles");
 //! use stillbase::planning::curves::Curve;
 //! use stillbase::planning::following::{Rule, trace};
 //! let line = [Curve::line(Vector::new(0.50, 0.50), Vector::new(0.55, 0.90))];
@@ -106,6 +108,10 @@
 //! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
 //!   own). Window, figures and recordings show it then; what can be switched on is an option in
 //!   `picture/scene/options.rs`.
+//! * **What is asked of a machine's poses**: a method of [`PoseSpace`](planning::pose_space::PoseSpace), for any number of
+//!   drives. If only some machines have it, it gives a `Result` with the reason in words; if three drives have a closed
+//!   form, the method takes it, and a test lays it beside [`general`](planning::pose_space::PoseSpace::general).
+//! * **A kind of task**: a variant of `TaskKind`, and its function in `session/planner/`, listed in `choose.rs` there.
 //! * **A time law**: a variant in `planning/timing/law.rs`. Files, commands and the window know it by its words there.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
 //!   follow; write a line of `guide/command_line.md`.

@@ -1,5 +1,7 @@
 //! What several tests share: reference files, the twin of a machine, states and planes at random, comparison by scale.
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
 use serde_json::Value;
 use stillbase::mechanics::kinematics::end_effector;
@@ -7,6 +9,7 @@ use stillbase::mechanics::machine::{Chain, Machine, PlaceOnLink, builtin, parse}
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::curves::path::{PathError, minimum_norm_path};
 use stillbase::planning::curves::{CurvePoint, PathTable};
+use stillbase::planning::pose_space::{Planes, PoseSpace};
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 use crate::mechanics::nine_body::NineBody;
@@ -26,6 +29,11 @@ pub fn planning() -> Value {
 
 pub fn family() -> Value {
     serde_json::from_str(include_str!("reference/family.json")).expect("valid JSON")
+}
+
+/// The planes of a machine that has some.
+pub fn planes(machine: &Machine) -> Arc<Planes> {
+    PoseSpace::of(machine).expect("it has a b").planes().expect("three drives").clone()
 }
 
 /// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).

@@ -80,13 +80,13 @@ const ZOOM: f64 = 1.15;
 
 /// The target moved from where it is wanted, m.
 fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
-    session.run().pose_map().ok()?;
+    session.run().pose_space().ok()?;
     let now = session.frame().target.at;
     Some(Command::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y }))
 }
 
 fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
-    session.run().pose_map().ok()?;
+    session.run().pose_space().ok()?;
     Some(Command::Edit(set_b(session, view_state, session.b_aim() + by)))
 }
 

@@ -8,7 +8,6 @@ use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::Views;
-use crate::planning::pose_map::PoseMap;
 use crate::session::Session;
 use crate::settings::number::subscript;
 use crate::simulation::frame::Reach;
@@ -50,7 +49,7 @@ impl Card {
                     Reach::Inside | Reach::Carried => Vec::new(),
                     Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
                 };
-                let hint = match session.run().pose_map() {
+                let hint = match session.run().pose_space() {
                     _ if session.run().waiting().is_some() => WAITS,
                     Ok(_) => "drag: the machine follows, b stays",
                     Err(_) => "",
@@ -129,7 +128,7 @@ impl Card {
         let (machine, frame) = (&session.scenario().machine, session.frame());
         let drive = machine.resolved_links().get(i)?.drive;
         let title = format!("drive {}, q{} = {}°", drive + 1, subscript(drive + 1), degrees(frame.q[drive]));
-        let held = session.run().pose_map().is_ok_and(|map| map.holds());
+        let held = session.run().pose_space().is_ok_and(|map| map.leaves_freedoms());
         let others = if held { "the tip stays, and" } else { "the others follow:" };
         let mut rows = vec![format!("{others} b stays {} rad", signed(frame.b_reference, 3))];
         for (k, angle) in machine.angles().iter().enumerate() {
@@ -168,12 +167,14 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
     }
-    let map = session.run().pose_map().ok().filter(|_| session.follows_hands());
+    let map = session.run().pose_space().ok().filter(|_| session.follows_hands());
     let hint = match map {
-        Some(PoseMap::Planes(_)) => {
+        Some(map) if map.planes().is_ok() => {
             format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
         }
-        Some(map) if map.holds() => "drag: it goes along, the tip and b stay\nclick: its rows in the panel".to_owned(),
+        Some(map) if map.leaves_freedoms() => {
+            "drag: it goes along, the tip and b stay\nclick: its rows in the panel".to_owned()
+        }
         _ => "click: its rows in the panel".to_owned(),
     };
     Some(Card::new(title, rows, hint))

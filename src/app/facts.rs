@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::mechanics::machine::{Inertia, Machine, builtins};
 use crate::mechanics::planar::Vector;
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::Planes;
 use crate::query::{Queries, Quick, Same, Shared, Whole};
 use crate::session::Session;
 use crate::session::scenario::{Scenario, Value};

@@ -10,7 +10,6 @@ use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::planning::pose_map::PoseMap;
 use crate::session::design::length_of;
 use crate::session::{Edit, Session};
 
@@ -172,7 +171,7 @@ impl<'a> Hand<'a> {
     fn hovers(&self, view_state: &ViewState) {
         let Some(hot) = view_state.hot else { return };
         let turns = self.session.follows_hands()
-            && self.session.run().pose_map().is_ok_and(|map| map.holds() || matches!(map, PoseMap::Planes(_)));
+            && self.session.run().pose_space().is_ok_and(|map| map.leaves_freedoms() || map.planes().is_ok());
         let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
         self.ui.ctx().set_cursor_icon(cursor(hot, false));
     }

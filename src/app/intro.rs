@@ -46,9 +46,9 @@ const HINTS: usize = 3;
 
 /// What a hint asks for on a machine, and why; none where there is nothing to drag or to turn.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
-    let map = session.run().pose_map().ok().filter(|_| session.follows_hands())?;
+    let map = session.run().pose_space().ok().filter(|_| session.follows_hands())?;
     // What is amber: two drives reach a curve, more of them an area.
-    let (on, off, amber) = if map.angles() > 1 { ("inside", "out of", "area") } else { ("on", "off", "curve") };
+    let (on, off, amber) = if map.reaches_area() { ("inside", "out of", "area") } else { ("on", "off", "curve") };
     let (title, why) = match i {
         0 => (
             "Drag the white ring.".into(),

@@ -63,7 +63,7 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
         entry(ui, &words, once(Edit::set("plant.payload.mass", HELD)));
     }
     if let Some([x, y]) = at {
-        if thing != Some(Handle::Target) && session.run().pose_map().is_ok() {
+        if thing != Some(Handle::Target) && session.run().pose_space().is_ok() {
             entry(ui, "Send the target here", once(Edit::DragTarget { x, y }));
         }
         if let Some(change) = task.adding(Vector::new(x, y)) {

@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     for named in status::statements(session).named() {
         status::lamp(&mut corner, named, 0.32 * large, &p);
     }
-    let b = session.run().pose_map().ok().map(|map| f.b.rem_euclid(map.period()));
+    let b = session.run().pose_space().ok().map(|map| f.b.rem_euclid(map.period()));
     let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
     line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));

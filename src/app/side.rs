@@ -50,7 +50,7 @@ pub fn show(
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - BAR);
             place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
-            if session.run().pose_map().is_ok() {
+            if session.run().pose_space().is_ok() {
                 place::of(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
             }
             place::of(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
@@ -75,11 +75,11 @@ fn pose_constant(
 ) {
     let (scenario, p) = (session.scenario(), &view_state.palette());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
-    let map = match session.run().pose_map() {
+    let map = match session.run().pose_space() {
         Ok(map) => map,
         Err(why) => {
             note(ui, p, &why.to_string());
-            if why == NoPoseSpace::Free {
+            if *why == NoPoseSpace::Free {
                 note(ui, p, "any path will do: drag A or B and the arm follows, or draw a path (P)");
             }
             return;
@@ -136,7 +136,7 @@ fn pose_constant(
         let who = all_points(session);
         let text = match session.run().bands() {
             // Two drives reach a point at one b alone.
-            Some(common) if map.angles() == 1 => {
+            Some(common) if !map.reaches_area() => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
                 format!("{who}: b {} rad alone", all.join(" or "))
@@ -146,7 +146,7 @@ fn pose_constant(
         };
         note(ui, p, &text);
     }
-    if !session.is_led() && map.angles() > 1 {
+    if !session.is_led() && map.reaches_area() {
         let who = all_points(session);
         let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));

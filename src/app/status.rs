@@ -189,7 +189,7 @@ pub fn show(
             let mut facts: Vec<String> = Vec::new();
             let remarks = Verdict::of(session.scenario(), f).so_far();
             facts.extend(remarks.iter().filter(|_| ui.available_width() > 460.0).map(|remark| remark.short.clone()));
-            if let Ok(map) = session.run().pose_map() {
+            if let Ok(map) = session.run().pose_space() {
                 facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
             }
             let bad_news = matches!(view_state.message, Some((_, true)));
@@ -264,10 +264,10 @@ pub fn show(
                     (None, _) if session.is_led() => {
                         ("led by hand  ·  key B: back to the path  ·  F1 keys".into(), p.dim)
                     }
-                    (None, _) if view_state.view.shows_machine() && session.run().pose_map().is_ok() => {
+                    (None, _) if view_state.view.shows_machine() && session.run().pose_space().is_ok() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
-                    (None, _) if matches!(session.run().pose_map(), Err(NoPoseSpace::Free)) => {
+                    (None, _) if matches!(session.run().pose_space(), Err(NoPoseSpace::Free)) => {
                         ("any path is reactionless: drag A, B, or draw one (P)  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),

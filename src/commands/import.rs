@@ -16,6 +16,7 @@ use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Samples;
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 
 use super::columns::{Content, Read, samples};
@@ -24,7 +25,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
 use answer::Answer;
-use judge::{Judge, Poses};
+use judge::Judge;
 use stillbase::settings::number::fixed;
 use table::table;
 use ways::{Asked, Keep, Ways, of_drives, of_tip};
@@ -106,19 +107,21 @@ impl Import {
         let judge = Judge {
             model: Inertia::of(&machine),
             around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
-            poses: Poses::of(&machine),
+            space: PoseSpace::of(&machine),
             instants: (8 * samples.count()).clamp(4000, 200_000),
             machine,
         };
         let asked = Asked { b: self.b, keep: self.keep };
         let drives = found.content == Content::Drives;
-        let Ways { given: motion, candidates } = match &judge.poses {
-            Poses::Planes(planes) if drives => of_drives(&asked, &judge, planes, &samples)?,
-            Poses::Planes(planes) => of_tip(&asked, &judge, planes, &samples)?,
-            Poses::Space(space) if drives => freedoms::of_drives(&asked, &judge, space, &samples)?,
-            Poses::Space(space) => freedoms::of_tip(&asked, &judge, space, &samples)?,
-            Poses::Free => freedoms::as_given(&judge, &samples, drives)?,
-            Poses::None(why) => {
+        let Ways { given: motion, candidates } = match &judge.space {
+            Ok(space) => match space.planes() {
+                Ok(planes) if drives => of_drives(&asked, &judge, planes, &samples)?,
+                Ok(planes) => of_tip(&asked, &judge, (space, planes), &samples)?,
+                Err(_) if drives => freedoms::of_drives(&asked, &judge, space, &samples)?,
+                Err(_) => freedoms::of_tip(&asked, &judge, space, &samples)?,
+            },
+            Err(NoPoseSpace::Free) => freedoms::as_given(&judge, &samples, drives)?,
+            Err(why) => {
                 let given = freedoms::as_given(&judge, &samples, drives)?;
                 Ways { candidates: Err(why.to_string()), ..given }
             }

@@ -6,10 +6,8 @@ use std::path::Path;
 use clap::Args;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common::Reaching;
-use stillbase::planning::pose_constant::{PoseConstant, plane_map};
-use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
-use stillbase::planning::reactionless::PlaneMap;
+use stillbase::planning::pose_constant::PoseConstant;
+use stillbase::planning::pose_space::PoseSpace;
 use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario, key_of};
 use stillbase::settings::change;
 use stillbase::settings::key::Key;
@@ -208,53 +206,16 @@ pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failu
     Ok(())
 }
 
-/// What a machine has a b by: the planes of three drives in closed form, or the pose space of any other machine.
-pub enum PoseConstants {
-    /// Three drives with limits of both relative angles.
-    Plane(PlaneMap),
-    /// Any other machine.
-    Space(PoseSpace),
-}
-
-impl PoseConstants {
-    /// Of a machine; says so if b is only nearly constant.
-    ///
-    /// # Errors
-    /// If it has none.
-    pub fn of(machine: &Machine) -> Result<Self, Failure> {
-        let constants = Self::quietly(machine)?;
-        if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
-            say(format!("note: {}: {nearly}", machine.name()));
-        }
-        Ok(constants)
+/// The pose space of a machine; says so if b is only nearly constant.
+///
+/// # Errors
+/// If it has none.
+pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
+    let space = PoseSpace::of(machine)?;
+    if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
+        say(format!("note: {}: {nearly}", machine.name()));
     }
-
-    /// The same without a word.
-    ///
-    /// # Errors
-    /// If it has none.
-    pub fn quietly(machine: &Machine) -> Result<Self, NoPoseSpace> {
-        match plane_map(machine) {
-            Ok(map) => Ok(Self::Plane(map)),
-            Err(_) => PoseSpace::of(machine).map(Self::Space),
-        }
-    }
-
-    /// What reaches points by its b.
-    pub fn reaching(&self) -> &dyn Reaching {
-        match self {
-            Self::Plane(map) => map,
-            Self::Space(space) => space,
-        }
-    }
-
-    /// 2π Σλ, rad.
-    pub fn period(&self) -> f64 {
-        match self {
-            Self::Plane(map) => map.period(),
-            Self::Space(space) => space.period(),
-        }
-    }
+    Ok(space)
 }
 
 /// The command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not taken

@@ -8,7 +8,7 @@ use serde::Serialize;
 use stillbase::files::{text, write_new};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common::{self, Reaching};
+use stillbase::planning::common;
 use stillbase::planning::following::Blocked;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
 use stillbase::planning::off_plane::price::FloatingBase;
@@ -23,7 +23,7 @@ use stillbase::simulation::plant::PlantDifferences;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, laid, no_use, none_idle, point, pose_constant,
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, laid, no_use, none_idle, point, pose_constant, pose_space,
     stated, tell_idle, tell_tolerance,
 };
 use super::output::{Format, Table, check_output};
@@ -279,9 +279,9 @@ impl Plan {
         }
         let mut scenario = self.scenario()?;
         // What a machine without a b can do all the same, its plan says.
-        let common = PoseConstants::of(&scenario.machine).ok();
-        let has_b = common.is_some();
-        let common = common.and_then(|constants| common::common(constants.reaching(), &scenario.task.points()));
+        let space = pose_space(&scenario.machine).ok();
+        let has_b = space.is_some();
+        let common = space.and_then(|space| common::common(&space, &scenario.task.points()));
         let common = common.map_or(Vec::new(), |set: BSet| set.intervals);
         let mut answer = Answer {
             feasible: true,
@@ -483,16 +483,9 @@ impl Plan {
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
             // As far from every end as it gets; what does not serve all points begins in the middle of what serves the
             // first.
-            let space;
-            let constants = PoseConstants::quietly(&scenario.machine).ok();
-            let reaching: Option<&dyn Reaching> = match &constants {
-                Some(constants) => Some(constants.reaching()),
-                None => {
-                    space = PoseSpace::nominal(&scenario.machine).ok();
-                    space.as_ref().map(|space| space as &dyn Reaching)
-                }
-            };
-            let middle = |points: &[Vector]| common::middle(reaching?, points);
+            let machine = &scenario.machine;
+            let space = PoseSpace::of(machine).or_else(|_| PoseSpace::nominal(machine)).ok();
+            let middle = |points: &[Vector]| common::middle(space.as_ref()?, points);
             scenario.task.b = middle(&points).or_else(|| middle(&points[..1])).unwrap_or(0.0);
         }
         Ok(scenario)

@@ -10,7 +10,7 @@ use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, PoseConstants, point, pose_constant};
+use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, Table};
 use stillbase::settings::number::fixed;
 
@@ -119,13 +119,11 @@ impl Pose {
     /// Prints every pose; none is no answer.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = match PoseConstants::of(&machine)? {
-            PoseConstants::Plane(map) => map,
-            PoseConstants::Space(space) => return self.of_space(&machine, &space),
-        };
-        let poses = Row::all(&map, self.point, self.b);
+        let space = pose_space(&machine)?;
+        let Ok(planes) = space.planes() else { return self.of_space(&machine, &space) };
+        let poses = Row::all(planes.map(), self.point, self.b);
         if poses.is_empty() {
-            return Err(self.why_not(&map).into());
+            return Err(self.no_pose(space.reach(self.point)).into());
         }
         self.format.print(&Answer { poses }, |answer| {
             let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
@@ -155,10 +153,6 @@ impl Pose {
             }
             table.to_string()
         })
-    }
-
-    fn why_not(&self, map: &PlaneMap) -> Unreachable {
-        self.no_pose(map.reach(self.point))
     }
 
     fn no_pose(&self, set: Result<BSet, NoReach>) -> Unreachable {

@@ -8,7 +8,7 @@ use stillbase::planning::pose_constant::{Mend, Unreachable};
 use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
-use super::input::{MachineArgument, PoseConstants, point};
+use super::input::{MachineArgument, point, pose_space};
 use super::output::{Format, Table};
 use stillbase::settings::number::fixed;
 
@@ -66,20 +66,20 @@ impl Reach {
     /// Prints the b of each point and of all; none in common is no answer.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = PoseConstants::of(&machine)?;
+        let space = pose_space(&machine)?;
         let mut sets = Vec::with_capacity(self.points.len());
         for p in &self.points {
             let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
-            sets.push(map.reaching().b_of(*p).map_err(none)?);
+            sets.push(space.reach(*p).map_err(none)?);
         }
-        let overlap = common(map.reaching(), &self.points).map_or_else(Vec::new, |set| set.intervals);
+        let overlap = common(&space, &self.points).map_or_else(Vec::new, |set| set.intervals);
         let apart = overlap.is_empty();
-        let why = if apart { no_common(map.reaching(), &self.points) } else { None };
+        let why = if apart { no_common(&space, &self.points) } else { None };
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
         let answer = Answer {
             points: self.points.iter().zip(sets).map(of_point).collect(),
             overlap,
-            period: map.period(),
+            period: space.period(),
             mend: why.and_then(|why| why.mend).as_ref().map(OfMend::from),
         };
         self.format.print(&answer, table)?;

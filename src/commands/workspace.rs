@@ -4,11 +4,11 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::pose_space::{Outline, PoseSpace};
+use stillbase::planning::pose_space::{Outline, Planes, PoseSpace};
 use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, PoseConstants, point, pose_constant};
+use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, Table, yes};
 use super::pose::{OfSpace as PoseOfSpace, Row};
 use stillbase::settings::number::fixed;
@@ -116,11 +116,9 @@ impl Workspace {
     /// Prints area, extent and boundary, what lies inside, and what is asked of points.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = match PoseConstants::of(&machine)? {
-            PoseConstants::Plane(map) => map,
-            PoseConstants::Space(space) => return self.of_space(&machine, &space),
-        };
-        let answer = self.answer(&map);
+        let space = pose_space(&machine)?;
+        let Ok(planes) = space.planes() else { return self.of_space(&machine, &space) };
+        let answer = self.answer(planes);
         self.format.print(&answer, |a| {
             let mut text = format!("{}\n{}", table(a).to_string().trim_start(), remarks(a));
             if !a.points.is_empty() {
@@ -162,8 +160,8 @@ impl Workspace {
         })
     }
 
-    fn answer(&self, map: &PlaneMap) -> Answer {
-        let boundary = Boundary::of(map);
+    fn answer(&self, planes: &Planes) -> Answer {
+        let (map, boundary) = (planes.map(), planes.boundary());
         let extent = boundary.extent(self.b);
         let turn = map.turn(self.b);
         let changes = boundary.change_curves();
@@ -190,7 +188,7 @@ impl Workspace {
             fold_curves: boundary.fold_curves().iter().map(|l| l.turned(turn)).collect(),
             cusps: boundary.cusps().iter().map(|c| cusp(c.at)).collect(),
             inner_limits: boundary.inner_limits().iter().map(|l| l.turned(turn)).collect(),
-            areas_by_side: sides(map, &boundary, &changes),
+            areas_by_side: sides(map, boundary, &changes),
             change_point_curves: changes
                 .iter()
                 .map(|c| OfChange { pair: drives(c.pair), half_turns: c.half_turns, line: c.line.turned(turn) })

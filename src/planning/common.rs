@@ -13,10 +13,10 @@
 //! that some b of S reaches is therefore a search over the distance r' alone. At each r' the least turn Δθ is the
 //! distance of B(r') + θ Σλ from S on the circle of b, divided by Σλ, and the move is r² + r'² − 2 r r' cos Δθ, squared.
 
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::golden::golden;
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::{BSet, Decimal, NoReach, PlaneMap};
+use crate::planning::reactionless::{BSet, Decimal, NoReach};
 use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
 
 /// Distances that are tried between the least and the greatest one.
@@ -24,120 +24,40 @@ const TRIES: usize = 96;
 /// Of the distances that were tried, how many are refined, and by how many golden sections.
 const REFINED: usize = 3;
 const SECTIONS: usize = 40;
-/// Single b of two drives may be off by this share of Σλ, rad: half of what its poses may be off.
-const SINGLE_B: f64 = 0.5e-6;
 
 /// By how much longer moves are tried than the least one, shares of it.
 const BEYOND: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
 
-/// What reaches points by its b.
-pub trait Reaching {
-    /// All b that reach a point, m.
-    ///
-    /// # Errors
-    /// If there is none.
-    fn b_of(&self, p: Vector) -> Result<BSet, NoReach>;
-
-    /// The same, looked for briefly: some may be missing.
-    ///
-    /// # Errors
-    /// If none was found.
-    fn most_b_of(&self, p: Vector) -> Result<BSet, NoReach> {
-        self.b_of(p)
-    }
-
-    /// Whether some pose at b, rad, has the end effector on a point, m.
-    fn is_reached(&self, p: Vector, b: f64) -> bool;
-
-    /// Σλ.
-    fn lambda_sum(&self) -> f64;
-
-    /// The least and the greatest distance from the base pin that the arms allow, m.
-    fn distances(&self) -> [f64; 2];
-
-    /// By how much single b of two points may differ and still be one, rad.
-    fn slack(&self) -> f64 {
-        0.0
-    }
-}
-
-impl Reaching for PlaneMap {
-    fn b_of(&self, p: Vector) -> Result<BSet, NoReach> {
-        self.reach(p)
-    }
-
-    fn is_reached(&self, p: Vector, b: f64) -> bool {
-        !self.poses(p, b).is_empty()
-    }
-
-    fn lambda_sum(&self) -> f64 {
-        PlaneMap::lambda_sum(self)
-    }
-
-    fn distances(&self) -> [f64; 2] {
-        let lengths = self.c().map(f64::abs);
-        let farthest: f64 = lengths.iter().sum();
-        [(2.0 * lengths.into_iter().fold(0.0, f64::max) - farthest).max(0.0), farthest]
-    }
-}
-
-impl Reaching for PoseSpace {
-    fn b_of(&self, p: Vector) -> Result<BSet, NoReach> {
-        self.reach(p)
-    }
-
-    fn most_b_of(&self, p: Vector) -> Result<BSet, NoReach> {
-        self.reach_with(p, false)
-    }
-
-    fn is_reached(&self, p: Vector, b: f64) -> bool {
-        self.reaches(p, b)
-    }
-
-    fn lambda_sum(&self) -> f64 {
-        self.lambda().iter().sum()
-    }
-
-    fn distances(&self) -> [f64; 2] {
-        [self.nearest(), self.farthest()]
-    }
-
-    fn slack(&self) -> f64 {
-        // One and two drives reach a point at single b, which points share up to rounding.
-        if self.drives() < 3 { SINGLE_B * Reaching::lambda_sum(self) } else { 0.0 }
-    }
-}
-
 /// The b that reach a point, single ones with their slack.
-fn set_of(map: &dyn Reaching, p: Vector) -> Result<BSet, NoReach> {
-    Ok(slackened(map, map.b_of(p)?))
+fn set_of(space: &PoseSpace, p: Vector) -> Result<BSet, NoReach> {
+    Ok(slackened(space, space.reach(p)?))
 }
 
-fn slackened(map: &dyn Reaching, mut set: BSet) -> BSet {
-    let slack = map.slack();
+fn slackened(space: &PoseSpace, mut set: BSet) -> BSet {
+    let slack = space.b_slack();
     set.intervals.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - slack, *high + slack));
     set
 }
 
 /// The b that serve all points, m; `None` if none does.
-pub fn common(map: &dyn Reaching, points: &[Vector]) -> Option<BSet> {
+pub fn common(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
     if let [point] = points {
-        return map.b_of(*point).ok();
+        return space.reach(*point).ok();
     }
-    let sets: Option<Vec<BSet>> = points.iter().map(|p| set_of(map, *p).ok()).collect();
+    let sets: Option<Vec<BSet>> = points.iter().map(|p| set_of(space, *p).ok()).collect();
     Some(BSet::overlap(&sets?)).filter(|common| !common.is_empty())
 }
 
 /// The middle of the widest range of b that serve all points, rad: as far from every end as it gets.
-pub fn middle(map: &dyn Reaching, points: &[Vector]) -> Option<f64> {
-    let ranges = common(map, points)?.intervals.into_iter();
+pub fn middle(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
+    let ranges = common(space, points)?.intervals.into_iter();
     let widest = ranges.max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])))?;
     Some(0.5 * (widest[0] + widest[1]))
 }
 
 /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
-pub fn no_common(map: &dyn Reaching, points: &[Vector]) -> Option<NoCommon> {
-    let sets: Vec<BSet> = points.iter().map(|p| set_of(map, *p).ok()).collect::<Option<_>>()?;
+pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
+    let sets: Vec<BSet> = points.iter().map(|p| set_of(space, *p).ok()).collect::<Option<_>>()?;
     if !BSet::overlap(&sets).is_empty() {
         return None;
     }
@@ -147,29 +67,29 @@ pub fn no_common(map: &dyn Reaching, points: &[Vector]) -> Option<NoCommon> {
         let rest: Vec<BSet> = sets.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, s)| s.clone()).collect();
         BSet::overlap(&rest)
     };
-    let mends = (0..points.len()).filter_map(|i| least_move(map, points[i], i, &others(i)));
+    let mends = (0..points.len()).filter_map(|i| least_move(space, points[i], i, &others(i)));
     let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-    Some(NoCommon { pair, mend: least.and_then(|mend| proved(map, points, &others(mend.point), mend)) })
+    Some(NoCommon { pair, mend: least.and_then(|mend| proved(space, points, &others(mend.point), mend)) })
 }
 
 /// Which of some points that are to share a b cannot be reached at it, and why; `None` if all can. A point that no b
 /// reaches comes first, as it says more than one that wants another b.
-pub fn unreached(map: &dyn Reaching, points: &[Vector], b: f64) -> Option<(usize, Unreachable)> {
-    let i = points.iter().position(|p| !map.is_reached(*p, b))?;
-    let i = points.iter().position(|p| map.b_of(*p).is_err()).unwrap_or(i);
-    Some((i, why_not(map, points, i, b)))
+pub fn unreached(space: &PoseSpace, points: &[Vector], b: f64) -> Option<(usize, Unreachable)> {
+    let i = points.iter().position(|p| !space.reaches(*p, b))?;
+    let i = points.iter().position(|p| space.reach(*p).is_err()).unwrap_or(i);
+    Some((i, why_not(space, points, i, b)))
 }
 
 /// Why a point of some that are to share a b cannot be reached at it, and what would do for all of them.
-pub fn why_not(map: &dyn Reaching, points: &[Vector], i: usize, b: f64) -> Unreachable {
+pub fn why_not(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreachable {
     let (x, y) = (points[i].re, points[i].im);
-    let own = match set_of(map, points[i]) {
+    let own = match set_of(space, points[i]) {
         Ok(own) => own,
         Err(reason) => return Unreachable::Anywhere { x, y, reason },
     };
-    match (common(map, points), no_common(map, points)) {
+    match (common(space, points), no_common(space, points)) {
         (Some(common), _) => {
-            let serves = |b: f64| points.iter().all(|p| map.is_reached(*p, b));
+            let serves = |b: f64| points.iter().all(|p| space.reaches(*p, b));
             let nearest = common.nearest(b);
             let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.inwards(b, share)));
             let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
@@ -180,6 +100,125 @@ pub fn why_not(map: &dyn Reaching, points: &[Vector], i: usize, b: f64) -> Unrea
         // Another point is out of every reach.
         (None, None) => Unreachable::OnThisPlane { x, y, b, would_do: own.in_words(), nearest_b: None, shown_b: None },
     }
+}
+
+/// A pose by its relative angles and b, and by its drives, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Posed {
+    /// Relative angles.
+    pub a: PerDrive,
+    /// Pose constant.
+    pub b: f64,
+    /// Drive angles.
+    pub q: DriveAngles,
+}
+
+impl Posed {
+    /// Of drive angles.
+    pub fn of(space: &PoseSpace, q: DriveAngles) -> Self {
+        let (a, b) = space.project(&q);
+        Self { a, b, q }
+    }
+
+    /// Of relative angles and b.
+    pub fn lifted(space: &PoseSpace, a: PerDrive, b: f64) -> Self {
+        Self { a, b, q: space.lift(&a, b) }
+    }
+
+    /// How far the straight line of joint space to another pose goes, rad: on planes in their own coordinates, else as far
+    /// as the drive that turns most.
+    pub fn way(&self, space: &PoseSpace, to: &Self) -> f64 {
+        match space.planes() {
+            Ok(_) => across(&self.a, &to.a),
+            Err(_) => to.q.0.minus(&self.q.0).max_abs(),
+        }
+    }
+}
+
+/// √((Δa_1)² + (Δa_2)²).
+fn across(x: &PerDrive, y: &PerDrive) -> f64 {
+    (x[0] - y[0]).hypot(x[1] - y[1])
+}
+
+/// One pose for each of some points at b: all on one sheet if that is known and possible, else each near the one before.
+///
+/// # Errors
+/// Which point (counted from 0) cannot be reached, and what b would do.
+pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>, (usize, Unreachable)> {
+    if let Some(why) = unreached(space, points, b) {
+        return Err(why);
+    }
+    let Ok(planes) = space.planes() else {
+        let mut near = space.middle();
+        let mut served = Vec::with_capacity(points.len());
+        for (i, p) in points.iter().enumerate() {
+            let q = space.poses(*p, b, &near).first().copied().ok_or_else(|| (i, why_not(space, points, i, b)))?;
+            served.push(Posed::of(space, q));
+            near = served[i].a;
+        }
+        return Ok(served);
+    };
+    let poses: Vec<Vec<PerDrive>> = points.iter().map(|p| space.sheets(*p, b)).collect();
+    let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
+    let det = |a: &PerDrive| planes.map().det([a[0], a[1]]);
+    // The nearest pose to the last one, of those that a filter lets pass.
+    let chain = |start: &PerDrive, one_sheet: bool| {
+        let sheet = det(start);
+        let mut served = vec![*start];
+        for poses in others {
+            let last = served[served.len() - 1];
+            let fit = poses.iter().filter(|y| !one_sheet || det(y) * sheet >= 0.0);
+            served.push(*fit.min_by(|x, y| across(x, &last).total_cmp(&across(y, &last)))?);
+        }
+        Some(served)
+    };
+    let on_one_sheet = first.iter().find_map(|start| chain(start, true));
+    let served = on_one_sheet.or_else(|| first.iter().find_map(|start| chain(start, false))).unwrap_or_default();
+    Ok(served.into_iter().map(|a| Posed::lifted(space, a, b)).collect())
+}
+
+/// Of the poses of two points, m, each at its own b, rad, the two that lie nearest together.
+pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Option<[Posed; 2]> {
+    let pairs: Vec<([Posed; 2], f64)> = match space.planes() {
+        Ok(_) => {
+            let [starts, ends] = [0, 1].map(|i| space.sheets(points[i], b[i]));
+            let pair = |x: PerDrive, y: PerDrive| {
+                ([Posed::lifted(space, x, b[0]), Posed::lifted(space, y, b[1])], across(&x, &y))
+            };
+            starts.iter().flat_map(|x| ends.iter().map(move |y| pair(*x, *y))).collect()
+        }
+        Err(_) => {
+            let starts = space.poses(points[0], b[0], &space.middle()).into_iter().map(|q| Posed::of(space, q));
+            let nearest = |x: Posed| {
+                let far = |y: &Posed| y.a.minus(&x.a).max_abs();
+                let ends = space.poses(points[1], b[1], &x.a).into_iter().map(|q| Posed::of(space, q));
+                ends.min_by(|y, z| far(y).total_cmp(&far(z))).map(|y| ([x, y], far(&y)))
+            };
+            starts.filter_map(nearest).collect()
+        }
+    };
+    pairs.into_iter().min_by(|x, y| x.1.total_cmp(&y.1)).map(|(pair, _)| pair)
+}
+
+/// Where points are taken when b goes from one value to another, rad: they stay while the new one serves all, and else
+/// turn with what is reached; on planes from the nearest b that serves all, with other spaces from the old one.
+pub fn carried(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
+    if points.iter().all(|p| space.reaches(*p, new)) {
+        return points.to_vec();
+    }
+    if space.planes().is_err() {
+        let turn = unit(space.turn(new - old));
+        return points.iter().map(|p| turn * p).collect();
+    }
+    let turned = || {
+        let common = common(space, points)?;
+        // A hair inside, so that rounding does not put the pose outside again.
+        let nearest = common.nearest(new)?;
+        let served =
+            serve(space, points, nearest).or_else(|_| serve(space, points, common.inwards(nearest, 1e-9))).ok()?;
+        Some(served.iter().map(|pose| space.forward(&pose.a, new)).collect())
+    };
+    turned().unwrap_or_else(|| points.to_vec())
 }
 
 /// The shift of a set along the circle, by the shorter way, after which it touches another one, rad.
@@ -195,19 +234,19 @@ fn shift(set: &BSet, onto: &BSet) -> Option<f64> {
 }
 
 /// The nearest place to p that some b of a set reaches, m.
-fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
+fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
     if others.is_empty() {
         return None;
     }
-    let (r, theta, sum) = (p.norm(), p.arg(), map.lambda_sum());
-    let [near, far] = map.distances();
+    let (r, theta, sum) = (p.norm(), p.arg(), space.lambda_sum());
+    let (near, far) = (space.nearest(), space.farthest());
     // How far the move to a distance goes, m, and by what angle, for the b that reach (distance, 0).
     let by = |distance: f64, set: Result<BSet, NoReach>| -> (f64, f64) {
         let turned = |set: BSet| BSet {
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),
             ..set
         };
-        let set = set.ok().map(|set| turned(slackened(map, set)));
+        let set = set.ok().map(|set| turned(slackened(space, set)));
         match set.and_then(|set| shift(&set, others)) {
             Some(shift) => {
                 let half = (0.5 * shift / sum).sin();
@@ -216,7 +255,7 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
             None => (f64::INFINITY, 0.0),
         }
     };
-    let to = |distance: f64| by(distance, map.b_of(Vector::new(distance, 0.0)));
+    let to = |distance: f64| by(distance, space.reach(Vector::new(distance, 0.0)));
     let step = (far - near) / TRIES as f64;
     let mut tries: Vec<f64> = (0..=TRIES).map(|i| near + step * i as f64).chain([r.clamp(near, far)]).collect();
     tries.sort_by(|x, y| (x - r).abs().total_cmp(&(y - r).abs()));
@@ -227,7 +266,7 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
         if (distance - r).abs() > best + step {
             break;
         }
-        let (gap, _) = by(distance, map.most_b_of(Vector::new(distance, 0.0)));
+        let (gap, _) = by(distance, space.reach_with(Vector::new(distance, 0.0), false));
         tried.push((gap, distance));
         best = best.min(gap);
     }
@@ -249,8 +288,8 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
     let mut touching = beside.filter_map(|beside| {
         let distance = (distance + beside).clamp(near, far);
         let (_, turn) = to(distance);
-        let at = unit(theta + turn + turn.signum() * 0.25 * map.slack() / sum) * distance;
-        let shared = BSet::overlap(&[others.clone(), set_of(map, at).ok()?]);
+        let at = unit(theta + turn + turn.signum() * 0.25 * space.b_slack() / sum) * distance;
+        let shared = BSet::overlap(&[others.clone(), set_of(space, at).ok()?]);
         let [low, high] = shared.intervals.first()?;
         Some((at, 0.5 * (low + high)))
     });
@@ -258,7 +297,7 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
         Some(found) => found,
         None => {
             let at = unit(theta + to(distance).1) * distance;
-            (at, others.nearest(set_of(map, at).ok()?.intervals.first()?[0])?)
+            (at, others.nearest(set_of(space, at).ok()?.intervals.first()?[0])?)
         }
     };
     Some(Mend { point, to: at, distance: (at - p).norm(), b, shown: None })
@@ -266,16 +305,16 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
 
 /// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed; `None`
 /// if no pose was found there.
-fn proved(map: &dyn Reaching, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
+fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
     let from = points[mend.point];
     let shared = |to: Vector| {
-        let set = BSet::overlap(&[others.clone(), set_of(map, to).ok()?]).near(mend.b);
+        let set = BSet::overlap(&[others.clone(), set_of(space, to).ok()?]).near(mend.b);
         let gap = |[low, high]: &[f64; 2]| (mend.b - 0.5 * (low + high)).abs();
         set.intervals.into_iter().min_by(|x, y| gap(x).total_cmp(&gap(y)))
     };
     let serves = |to: Vector, b: f64| {
         let at = |(i, p): (usize, &Vector)| if i == mend.point { to } else { *p };
-        points.iter().enumerate().map(at).all(|p| map.is_reached(p, b))
+        points.iter().enumerate().map(at).all(|p| space.reaches(p, b))
     };
     let exact = BEYOND.into_iter().find_map(|share| {
         let to = from + (1.0 + share) * (mend.to - from);

@@ -3,10 +3,9 @@
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
-use crate::mechanics::planar::{Vector, unit};
-use crate::planning::pose_constant::{Planes, PlanesOf};
+use crate::planning::common::carried;
+use crate::planning::pose_constant::SpaceOf;
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::PlanePoint;
 use crate::query::{Queries, Whole};
 use crate::settings::range::shortened;
 
@@ -44,53 +43,23 @@ pub(super) fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
 pub(super) fn amended(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
-    match &*queries.ask::<Whole<PlanesOf>>(&scenario.machine) {
-        Some(planes) => Ok(posed(scenario, planes, *b)),
-        None => {
-            let posed = scenario.task.posed(&scenario.machine, *b);
-            let task = posed.unwrap_or_else(|| turned(scenario, *b));
-            Ok(Scenario { task, ..scenario.clone() })
-        }
-    }
+    let space = queries.ask::<Whole<SpaceOf>>(&scenario.machine);
+    Ok(Scenario { task: posed(scenario, Result::as_deref(&space).ok(), *b), ..scenario.clone() })
 }
 
-/// The task of other than three drives at another b: where that does not reach all its points, they turn with what it
-/// reaches.
-fn turned(scenario: &Scenario, b: f64) -> Task {
-    let task = Task { b, ..scenario.task.clone() };
-    let Ok(space) = PoseSpace::of(&scenario.machine) else { return task };
-    if task.points().iter().all(|p| space.reaches(*p, b)) {
+/// The task at another b: where that does not reach all its points, they turn with what is reached.
+pub(super) fn posed(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) -> Task {
+    if let Some(task) = scenario.task.posed(&scenario.machine, b) {
         return task;
     }
-    let turn = unit(space.turn(b - scenario.task.b));
-    let place = |[x, y]: [f64; 2]| {
-        let p = turn * Vector::new(x, y);
-        [p.re, p.im]
-    };
-    let via = task.via.iter().copied().map(place).collect();
-    Task { from: place(task.from), to: place(task.to), via, ..task }
-}
-
-/// The task on another plane: its points keep their places while one plane serves all; beyond that they turn with the
-/// workspace.
-pub(super) fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
-    let mut scenario = scenario.clone();
-    if let Some(task) = scenario.task.posed(&scenario.machine, b) {
-        return Scenario { task, ..scenario };
+    let mut task = Task { b, ..scenario.task.clone() };
+    let places = space.map(|space| carried(space, &task.points(), [scenario.task.b, b]));
+    if let Some([from, via @ .., to]) = places.as_deref() {
+        let place = |p: &crate::mechanics::planar::Vector| [p.re, p.im];
+        (task.from, task.to) = (place(from), place(to));
+        task.via = via.iter().map(place).collect();
     }
-    scenario.task.b = b;
-    let points = scenario.task.points();
-    if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {
-        let place = |at: &PlanePoint| {
-            let p = planes.map().forward(at.a, at.b);
-            [p.re, p.im]
-        };
-        if let [from, via @ .., to] = &turned[..] {
-            (scenario.task.from, scenario.task.to) = (place(from), place(to));
-            scenario.task.via = via.iter().map(place).collect();
-        }
-    }
-    scenario
+    task
 }
 
 /// How many edits come before the first step, up to the first that leads the machine.

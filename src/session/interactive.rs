@@ -227,8 +227,8 @@ impl Session {
             // Samples of the drives have a b of their own.
             return Some(task.b);
         }
-        // Two drives reach a point at one b alone: their points turn with it.
-        let several = self.run.pose_map().is_ok_and(|map| map.angles() > 1);
+        // Where a point is reached at one b alone, points turn with it.
+        let several = self.run.pose_space().is_ok_and(|space| space.reaches_area());
         let common = if several { self.run.bands()? } else { return None };
         let nearest = common.nearest(b)?;
         Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
@@ -256,7 +256,7 @@ impl Session {
 
     /// Whether a hand can lead the machine: it has a b to hold, and the run does not wait.
     pub fn follows_hands(&self) -> bool {
-        self.run.waiting().is_none() && self.run.pose_map().is_ok()
+        self.run.waiting().is_none() && self.run.pose_space().is_ok()
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.

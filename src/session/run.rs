@@ -9,12 +9,11 @@ use super::refusal::Refusal;
 use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
-use crate::planning::common::Reaching;
 use crate::planning::following::follow::Bounds;
 use crate::planning::following::{Follower, Pull};
-use crate::planning::pose_constant::{KeepingOff, Planes, PlanesOf};
-use crate::planning::pose_map::{BOfPoints, MapOf, PoseMap};
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::pose_constant::{BOfPoints, SpaceOf};
+use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
+use crate::planning::posture::Led;
 use crate::planning::reactionless::{BSet, Decimal};
 use crate::query::{Queries, Same, Shared, Whole};
 use crate::session::changes::{amended, changed, checked};
@@ -33,20 +32,15 @@ pub struct Waiting {
 }
 
 impl Waiting {
-    fn of(scenario: &Scenario, planes: Option<&Planes>, why: Refusal) -> Self {
+    fn of(scenario: &Scenario, space: Option<&PoseSpace>, why: Refusal) -> Self {
         let task = &scenario.task;
-        let space = if planes.is_some() { None } else { PoseSpace::of(&scenario.machine).ok() };
-        let map: &dyn Reaching = match (planes, &space) {
-            (Some(planes), _) => planes.map(),
-            (None, Some(space)) => space,
-            (None, None) => return Self { why, points: Vec::new() },
-        };
+        let Some(space) = space else { return Self { why, points: Vec::new() } };
         let unserved = |(i, p): (usize, Vector)| {
             let would_do = || {
-                let set = map.b_of(p).ok()?;
+                let set = space.reach(p).ok()?;
                 set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
             };
-            (!map.is_reached(p, task.b)).then(|| (i, would_do()))
+            (!space.reaches(p, task.b)).then(|| (i, would_do()))
         };
         Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
     }
@@ -56,7 +50,8 @@ impl Waiting {
 #[derive(Clone, Debug)]
 pub struct Run {
     scenario: Arc<Scenario>,
-    planes: Option<Arc<Planes>>,
+    /// The coordinates in which a hand can lead the machine while b is held, or why it has none.
+    space: Result<Arc<PoseSpace>, NoPoseSpace>,
     plan: Arc<Plan>,
     /// Set where the task cannot be planned; the plan is then to rest.
     waiting: Option<Waiting>,
@@ -99,16 +94,16 @@ impl Run {
 
     /// At rest at the start of the task; where that cannot be planned, waiting.
     fn patient(scenario: &Scenario, queries: &Queries) -> Result<Self, Refusal> {
-        let planes = planes_of(scenario, queries);
-        let known = planes.as_deref();
+        let space = space_of(scenario, queries);
+        let known = space.as_deref();
         let (plan, waiting) = match plan(scenario, known) {
             Ok(plan) => (plan, None),
-            Err(why) => (Plan::rest(scenario, known), Some(Waiting::of(scenario, known, why))),
+            Err(why) => (Plan::rest(scenario, known.ok()), Some(Waiting::of(scenario, known.ok(), why))),
         };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let (scenario, plan) = (Arc::new(scenario.clone()), Arc::new(plan));
-        Ok(Self { scenario, planes, plan, waiting, simulation, queries: queries.clone() })
+        Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -131,28 +126,23 @@ impl Run {
         &self.queries
     }
 
-    /// The machine's reactionless planes.
+    /// The machine's reactionless planes, if it has some.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
-        self.planes.as_ref()
+        self.space.as_ref().ok()?.planes().ok()
     }
 
     /// The coordinates in which a hand can lead the machine while b is held.
     ///
     /// # Errors
     /// Why it has none.
-    pub fn pose_map(&self) -> Result<PoseMap, NoPoseSpace> {
-        Result::clone(&self.shared_pose_map().0)
-    }
-
-    /// The same, to be kept.
-    pub fn shared_pose_map(&self) -> Same<Result<PoseMap, NoPoseSpace>> {
-        let planes = self.planes.clone().map(Same);
-        Same(self.queries.ask::<Whole<MapOf>>(&(self.scenario.machine.clone(), planes, self.scenario.task.posture)))
+    pub fn pose_space(&self) -> Result<&Arc<PoseSpace>, &NoPoseSpace> {
+        self.space.as_ref()
     }
 
     /// The b that serve all points of the task, if any do.
     pub fn bands(&self) -> Option<BSet> {
-        self.queries.ask::<Whole<BOfPoints>>(&(self.shared_pose_map(), self.scenario.task.points())).all.clone()
+        let space = Same(self.space.clone().ok()?);
+        self.queries.ask::<Whole<BOfPoints>>(&(space, self.scenario.task.points())).all.clone()
     }
 
     /// The simulation.
@@ -243,7 +233,7 @@ impl Run {
             Edit::PullLink { link, along, x, y } => {
                 let chain = self.point_of(link, *along)?;
                 let mut follower = self.follower()?;
-                if !follower.map().holds() {
+                if !follower.map().leaves_freedoms() {
                     return Err(Refusal::Task(NOTHING_LEFT.into()));
                 }
                 follower.set_pull(Pull { chain, at: Vector::new(*x, *y) });
@@ -284,20 +274,20 @@ impl Run {
         simulation.change(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
         if scenario.machine != self.scenario.machine || bound {
-            let planes = planes_of(&scenario, &self.queries);
+            let space = space_of(&scenario, &self.queries);
             if let Guide::Follow(old) = self.simulation.guide() {
-                let map = PoseMap::of(&scenario.machine, planes.as_ref(), scenario.task.posture)?;
+                let map = space.clone()?;
                 let bounds = bounds(&scenario, &map);
-                let lambda = map.lambda();
+                let lambda = *map.lambda();
                 let mut follower = Follower::new(map, bounds, scenario.step, self.simulation.reference());
                 follower.set_target(old.target().at);
                 // Another λ makes b another quantity.
-                if lambda == old.map().lambda() {
+                if lambda == *old.map().lambda() {
                     follower.set_b(old.b_aim());
                 }
                 simulation.lead(Guide::Follow(follower));
             }
-            self.planes = planes;
+            self.space = space;
         }
         self.simulation = simulation;
         self.scenario = Arc::new(scenario);
@@ -334,7 +324,7 @@ impl Run {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
             Guide::Motion { .. } => {
-                let map = self.pose_map()?;
+                let map = self.space.clone()?;
                 let bounds = bounds(&self.scenario, &map);
                 Ok(Follower::new(map, bounds, self.scenario.step, self.simulation.reference()))
             }
@@ -354,10 +344,10 @@ impl Run {
         Some(match edit {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
             Edit::DragAngles { .. } => {
-                self.planes.as_ref()?;
+                let planes = self.planes()?;
                 let [a1, a2] = match self.simulation.guide() {
                     Guide::Follow(follower) => [follower.aim()[0], follower.aim()[1]],
-                    Guide::Motion { .. } => self.planes.as_ref()?.map().project(&self.simulation.reference().q).a,
+                    Guide::Motion { .. } => planes.map().project(&self.simulation.reference().q).a,
                 };
                 Edit::DragAngles { a1, a2 }
             }
@@ -383,7 +373,7 @@ const NOTHING_LEFT: &str =
     "with the end effector and b held, fewer than four drives cannot move: want the target dragged instead";
 
 /// Bounds of the follower: no torque limit of any drive is passed in any direction of ä, also while b is slid.
-fn bounds(scenario: &Scenario, map: &PoseMap) -> Bounds {
+fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
     const UNLIMITED: f64 = 30.0;
     // The most of a limit that sliding b takes from the arm's own motion.
     const SHARE: f64 = 0.5;
@@ -396,9 +386,9 @@ fn bounds(scenario: &Scenario, map: &PoseMap) -> Bounds {
         let h = PerDrive::from_fn(n, |k| (0..n).map(|l| inertia.constant(k, l) * u[l]).sum());
         inertia.motors().torques(&h)
     };
-    let one = |of: usize| PerDrive::from_fn(map.angles(), |i| f64::from(u8::from(i == of)));
-    let all: Vec<PerDrive> = (0..map.angles()).map(|of| asked(&one(of), 0.0)).collect();
-    let sliding = asked(&PerDrive::zeros(map.angles()), 1.0);
+    let one = |of: usize| PerDrive::from_fn(map.joints().len(), |i| f64::from(u8::from(i == of)));
+    let all: Vec<PerDrive> = (0..map.joints().len()).map(|of| asked(&one(of), 0.0)).collect();
+    let sliding = asked(&PerDrive::zeros(map.joints().len()), 1.0);
     let limits = || machine.spec().drives.iter().enumerate().filter_map(|(k, drive)| Some((k, drive.torque_limit?)));
     let pose = limits().map(|(k, limit)| SHARE * limit / sliding[k].abs()).fold(scenario.pose_acceleration, f64::min);
     let most = |k: usize| all.iter().fold(0.0, |sum: f64, torque| sum.hypot(torque[k]));
@@ -437,12 +427,10 @@ impl Run {
     }
 }
 
-/// The planes of a scenario's machine, with its word on change points. A machine that lacks them goes another way; the tasks
-/// that want them say so.
-fn planes_of(scenario: &Scenario, queries: &Queries) -> Option<Arc<Planes>> {
-    let planes = Option::clone(&queries.ask::<Whole<PlanesOf>>(&scenario.machine))?;
-    Some(match scenario.task.keep_off_change_points {
-        true => queries.ask::<Whole<KeepingOff>>(&Same(planes)),
-        false => planes,
-    })
+/// The pose space of a scenario's machine, led by its posture, with its word on change points.
+fn space_of(scenario: &Scenario, queries: &Queries) -> Result<Arc<PoseSpace>, NoPoseSpace> {
+    let task = &scenario.task;
+    let space = Result::clone(&queries.ask::<Whole<SpaceOf>>(&scenario.machine))?;
+    let led = (Same(space), scenario.machine.clone(), task.posture, task.keep_off_change_points);
+    Ok(Arc::clone(&queries.ask::<Whole<Led>>(&led)))
 }

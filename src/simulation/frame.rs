@@ -9,7 +9,7 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use crate::simulation::plant::WheelState;
 
 pub use crate::planning::following::follow::Target;
-pub use crate::planning::pose_constant::Reach;
+pub use crate::planning::pose_space::Reach;
 pub use crate::planning::reactionless::Dexterity;
 pub use crate::simulation::audit::Audit;
 pub use crate::simulation::peaks::{Peaks, REACTIONLESS};

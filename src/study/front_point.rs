@@ -7,7 +7,7 @@ use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::planning::Motion;
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::plane_area;
 
 use super::measures::instants;
 
@@ -72,7 +72,7 @@ impl FrontPoint {
             added_mass: placed.added_mass,
             inertia: Inertia::of(machine).total_momentum(),
             torque: motion.map(|motion| greatest_torque(machine, motion)),
-            workspace: workspace.then(|| Planes::of(machine).ok()).flatten().map(|planes| planes.boundary().area()),
+            workspace: workspace.then(|| plane_area(machine)).flatten(),
             off_by: off_by(machine, &Tolerance::USUAL).force,
         }
     }

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::mechanics::counterweights::{NoWeights, Placed, Sites, Weighing, place};
 use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::plane_area;
 
 /// A length that is sought: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]
@@ -246,7 +246,7 @@ impl LengthSearch {
         };
         let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
         if let Some(least) = self.least_workspace {
-            let area = Planes::of(&placed.machine).map_or(0.0, |planes| planes.boundary().area());
+            let area = plane_area(&placed.machine).unwrap_or(0.0);
             misses += (least - area).max(0.0);
         }
         Ok((lengths, placed, misses))

@@ -60,7 +60,7 @@ fn the_ring_turns_and_another_b_is_compared() {
         }
         drag(&mut h, from, to);
         h.run_steps(4);
-        let sum = session(&h).run().pose_map().expect("it has a b").period() / std::f64::consts::TAU;
+        let sum = session(&h).run().pose_space().expect("it has a b").period() / std::f64::consts::TAU;
         let turned = (session(&h).b_aim() - frame.b_reference) / sum;
         assert!((turned - 0.4).abs() < 0.03, "{case}: by {turned} rad");
         let lines = |h: &Window| {

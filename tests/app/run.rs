@@ -6,6 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::Command;
 use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
+use stillbase::planning::common::common;
 use stillbase::session::Edit;
 
 use super::{Window, hold, pull, session, type_into, window};
@@ -139,7 +140,7 @@ fn the_knob_of_b_stops_where_b_does() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let points = session(&h).scenario().task.points();
-    let ends = session(&h).run().pose_map().expect("planes").common(&points).expect("a band").intervals[0];
+    let ends = common(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
     let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
     let shown = |h: &Window| h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
     let period = session(&h).run().planes().expect("planes").map().period();
@@ -161,7 +162,7 @@ fn b_leaves_the_task_as_it_is() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let points = session(&h).scenario().task.points();
-    let ends = session(&h).run().pose_map().expect("planes").common(&points).expect("a band").intervals[0];
+    let ends = common(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
     for (asked, stops) in [(3.6, ends[1]), (0.9, ends[0])] {
         h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(asked);
         h.run_steps(2);

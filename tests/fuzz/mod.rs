@@ -21,7 +21,7 @@ use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::machine::{self, Inertia};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::{Planes, plane_map};
+use stillbase::planning::pose_space::{PoseSpace, plane_map};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 
@@ -327,7 +327,7 @@ fn machines() {
                     is_short(&why.to_string())?;
                 }
                 if dice.one_in(16)
-                    && let Err(why) = Planes::of(&machine)
+                    && let Err(why) = PoseSpace::of(&machine)
                 {
                     is_short(&why.to_string())?;
                 }

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
-use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{
     AngleDefinition, AngleLimit, Boundary, BoundaryCurve, BoundaryLine, PlaneMap, Vertex,
 };

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::common::{Reaching, common, middle, no_common};
-use stillbase::planning::pose_constant::{Planes, PoseConstant};
+use stillbase::planning::common::{common, middle, no_common};
+use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
 
 use crate::support::Noise;
@@ -23,15 +23,14 @@ fn points(noise: &mut Noise, space: &PoseSpace, count: usize) -> Vec<Vector> {
 }
 
 /// Moves of points without a common b, checked against `poses` random poses each; how many there were.
-fn checked(noise: &mut Noise, space: &PoseSpace, planes: Option<&Planes>, poses: usize) -> usize {
+fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) -> usize {
     let count = 2 + usize::from(noise.between(0.0, 1.0) < 0.3);
     let points = points(noise, space, count);
-    let map: &dyn Reaching = planes.map_or(space as &dyn Reaching, |planes| planes.map());
     let n = space.drives();
     let Some(why) = no_common(map, &points) else {
         assert!(common(map, &points).is_some(), "{n} drives: {points:?}");
         let b = middle(map, &points).expect("some");
-        assert!(points.iter().all(|p| map.b_of(*p).expect("within reach").near(b).nearest(b).is_some()), "{n} drives");
+        assert!(points.iter().all(|p| map.reach(*p).expect("within reach").near(b).nearest(b).is_some()), "{n} drives");
         return 0;
     };
     let Some(mend) = why.mend else {
@@ -71,10 +70,10 @@ fn checked_on(drives: impl Iterator<Item = usize>, sets: usize, poses: usize, se
     for n in drives {
         let clock = Instant::now();
         let (machine, space) = a_space(&mut noise, n);
-        let planes = Planes::of(&machine).ok();
-        assert_eq!(planes.is_some(), n == 3, "{n} drives");
+        let own = PoseSpace::of(&machine).expect("it has a b");
+        assert_eq!(own.planes().is_ok(), n == 3, "{n} drives");
         for _ in 0..sets {
-            mended[n] += checked(&mut noise, &space, planes.as_ref(), poses);
+            mended[n] += checked(&mut noise, &space, &own, poses);
         }
         println!("{n} drives: {:.2} s, {mended:?}", clock.elapsed().as_secs_f64());
     }
@@ -99,13 +98,12 @@ fn the_least_move_is_least_often() {
 #[test]
 fn planes_and_spaces_move_alike() {
     let machine = builtin("nine-link").expect("built in");
-    let (planes, space) = (Planes::of(machine).expect("planes"), PoseSpace::of(machine).expect("a b"));
+    let spaces = [PoseSpace::of(machine), PoseSpace::general(machine)].map(|space| space.expect("a b"));
     let mut noise = Noise::of(227);
     let mut seen = 0;
     while seen < 6 {
         let points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
-        let maps: [&dyn Reaching; 2] = [planes.map(), &space];
-        let [Some(one), Some(other)] = maps.map(|map| no_common(map, &points)) else { continue };
+        let [Some(one), Some(other)] = spaces.each_ref().map(|space| no_common(space, &points)) else { continue };
         let [one, other] = [one, other].map(|why| why.mend.expect("two can be brought together"));
         assert!((one.distance - other.distance).abs() < 1e-7, "{one:?} {other:?}");
         seen += 1;
@@ -115,17 +113,17 @@ fn planes_and_spaces_move_alike() {
 /// The move as it is printed is hardly longer than the least one, however short that is.
 #[test]
 fn a_printed_move_is_hardly_longer() {
-    let planes = Planes::of(builtin("nine-link").expect("built in")).expect("planes");
+    let space = PoseSpace::of(builtin("nine-link").expect("built in")).expect("a b");
     let mut noise = Noise::of(233);
     let mut seen = 0;
     while seen < 12 {
         let mut points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
-        let Some(mend) = no_common(planes.map(), &points).and_then(|why| why.mend) else { continue };
+        let Some(mend) = no_common(&space, &points).and_then(|why| why.mend) else { continue };
         // Most of the way is gone already: from a hundredth to a millionth of it is left.
         let left = 10.0_f64.powf(noise.between(-6.0, -2.0));
         let was = points[mend.point];
         points[mend.point] = was + (1.0 - left) * (mend.to - was);
-        let Some(mend) = no_common(planes.map(), &points).and_then(|why| why.mend) else { continue };
+        let Some(mend) = no_common(&space, &points).and_then(|why| why.mend) else { continue };
         let Some(shown) = mend.shown else { continue };
         if shown.to.iter().all(|x| x.decimals() <= 8) {
             assert!(shown.far <= 1.1001 * mend.distance, "{points:?} {mend:?}");

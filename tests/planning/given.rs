@@ -12,7 +12,6 @@ use stillbase::planning::curves::spline::{Knots, NOISE_GAIN};
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::Rule;
 use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned};
-use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::timing::Profile;
 use stillbase::planning::{Motion, Reference};
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
@@ -421,7 +420,7 @@ proptest! {
 #[test]
 fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     let (machine, model) = (machine(), Inertia::of(machine()));
-    let planes = Planes::of(machine).expect("three drives");
+    let planes = crate::support::planes(machine);
     let (map, given) = (planes.map(), swinging(150));
     let as_given = motion(&given);
     let moved = |b: f64| same_tip(map, machine.end_effector(), &given, b, Rule::default()).ok().flatten();

@@ -10,7 +10,7 @@ use stillbase::planning::off_plane::corridor::CorridorError;
 use stillbase::planning::off_plane::inverse::pose_along;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Goal, LeastReactionError};
 use stillbase::planning::off_plane::{Corridor, LeastReaction};
-use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{AngleLimit, NoReach, PlaneMap, PlanePoint};
 use stillbase::planning::timing::TimeLaw;
 

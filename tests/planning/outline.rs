@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::pose_space::{Outline, PoseSpace};
 use stillbase::planning::reactionless::Boundary;
 
@@ -17,7 +17,7 @@ fn four() -> &'static Machine {
 }
 
 fn space(machine: &Machine) -> PoseSpace {
-    PoseSpace::of(machine).expect("D is constant")
+    PoseSpace::general(machine).expect("D is constant")
 }
 
 /// Within a tolerance that is not relative: m, m².

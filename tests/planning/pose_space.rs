@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::planning::pose_constant::{Planes, PoseConstant, plane_map};
-use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase::planning::pose_constant::PoseConstant;
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace, plane_map};
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;
 
@@ -15,7 +15,7 @@ use crate::support::random::a_chain;
 use crate::support::{Noise, close, family_machine};
 
 fn space(machine: &Machine) -> PoseSpace {
-    PoseSpace::of(machine).expect("D is constant")
+    PoseSpace::general(machine).expect("D is constant")
 }
 
 /// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0.
@@ -23,7 +23,7 @@ fn any_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
     loop {
         let chain = a_chain(noise, n);
         let machine = design(&chain, &vec![1.0; n]).expect("a chain can be balanced");
-        match PoseSpace::of(&machine) {
+        match PoseSpace::general(&machine) {
             Ok(space) => return (machine, space),
             Err(NoPoseSpace::Sum { .. }) => {}
             Err(why) => panic!("{why}"),
@@ -80,6 +80,66 @@ fn with_three_drives_it_is_the_plane() {
         several += usize::from(own.intervals.len() > 1);
     }
     assert!(same > 350 && several > 20, "{same}, {several}");
+}
+
+/// A space answers by its closed forms where it has them, and by the way of any number of drives where these are left out:
+/// the same coordinates, poses, sets and workspaces, however the machine's file orders its angles.
+#[test]
+fn closed_forms_and_the_general_way_agree() {
+    let mut noise = Noise::of(37);
+    let (mut machines, mut several, mut none) = (0, 0, 0);
+    while machines < 40 {
+        let (machine, general) = any_space(&mut noise, 3);
+        let own = PoseSpace::of(&machine).expect("it has a b");
+        if own.planes().is_err() {
+            continue;
+        }
+        machines += 1;
+        assert!(general.planes().is_err());
+        // Where a space has planes its angles are in the order of the machine's.
+        let place = |space: &PoseSpace| space.joints().iter().map(|joint| joint.angle()).collect::<Vec<_>>();
+        assert_eq!(place(&own), [Some(0), Some(1)]);
+        assert_eq!((own.lambda(), own.tip(), own.period()), (general.lambda(), general.tip(), general.period()));
+        let order: Vec<usize> = place(&general).into_iter().map(|i| i.expect("an angle")).collect();
+        let ordered = |a: &PerDrive| PerDrive::from_fn(2, |i| a[order[i]]);
+        let outlines = [&own, &general].map(|space| space.outline(0.7));
+        let size = own.farthest() * own.farthest();
+        close("area", &[outlines[0].area / size], &[outlines[1].area / size], 1e-5);
+        for _ in 0..12 {
+            let (a, b) = (any_pose(&mut noise, &own), noise.between(-4.0, 4.0));
+            let (q, p) = (own.lift(&a, b), own.forward(&a, b));
+            close("lifted", &q, &general.lift(&ordered(&a), b), 1e-12);
+            close("placed", &[p.re, p.im], &[general.place(&q).re, general.place(&q).im], 1e-12);
+            close("b", &[own.project(&q).1], &[general.project(&q).1], 1e-12);
+            close("angles", &ordered(&own.angles(&q)), &general.angles(&q), 1e-12);
+            let rates = [&own, &general].map(|space| space.lift_rates(&space.angle_rates(&q), space.b(&q)));
+            close("rates", &rates[0], &rates[1], 1e-12);
+            // A pose is found at every b of its point, by both.
+            let (b, at) = (b + noise.between(-0.6, 0.6), p);
+            let found = [&own, &general].map(|space| space.sheets(at, b));
+            let sets = [&own, &general].map(|space| space.reach(at).expect("a pose is there"));
+            let (inside, edge) = (
+                sets[0].contains(b),
+                sets[0].intervals.iter().flatten().any(|end| {
+                    let off = (end - b).rem_euclid(own.period());
+                    off.min(own.period() - off) < 1e-6
+                }),
+            );
+            if edge {
+                continue;
+            }
+            assert_eq!(sets[1].contains(b), inside, "{at} at {b}: {sets:?}");
+            assert_eq!([&own, &general].map(|space| space.reaches(at, b)), [inside; 2]);
+            assert_eq!(found[0].len(), found[1].len(), "{at} at {b}: {found:?}");
+            for a in &found[0] {
+                let twin = found[1].iter().map(|other| other.minus(&ordered(a)).max_abs()).fold(1.0, f64::min);
+                assert!(twin < 1e-6, "{at} at {b}: {found:?}");
+            }
+            several += usize::from(found[0].len() > 1);
+            none += usize::from(found[0].is_empty());
+        }
+    }
+    assert!(several > 5 && none > 50, "{several} {none}");
 }
 
 /// b of any pose lies in the set of its point, and a pose is found at every b well within it.
@@ -307,7 +367,7 @@ fn without_b_it_says_why() {
     let two = PoseSpace::of(builtin("scara")).expect_err("not balanced").to_string();
     assert!(two.contains("integral over q₂ − q₁") && two.contains("not offered as b, because"), "{two}");
     // Three drives are no exception: they run, without planes.
-    let planes = Planes::of(builtin("space-arm")).expect_err("not balanced");
+    let planes = plane_map(builtin("space-arm")).expect_err("not balanced");
     assert_eq!(planes.to_string(), why.to_string());
     let run = Run::new(&Scenario::builtin("space-arm").expect("built in")).expect("it runs");
     assert!(run.planes().is_none() && run.waiting().is_none());
@@ -318,7 +378,7 @@ fn what_is_nearly_balanced_has_a_b_and_is_not_called_reactionless() {
     let exact = stillbase::mechanics::machine::builtin("nine-link").expect("built in");
     let heavier = exact.set("link.9.mass", "0.5").expect("a machine");
     let rounded = stillbase::mechanics::machine::builtin("nine-link-table-1").expect("built in");
-    let is_reactionless = |machine| Planes::of(machine).expect("it has a b").is_reactionless();
+    let is_reactionless = |machine| crate::support::planes(machine).is_reactionless();
     assert!(is_reactionless(exact) && !is_reactionless(rounded) && !is_reactionless(&heavier));
     let bare = family_machine("four-drive");
     let four = PoseSpace::of(&bare).expect("it has a b");

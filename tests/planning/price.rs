@@ -5,12 +5,13 @@ use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
+use stillbase::planning::common::Posed;
 use stillbase::planning::off_plane::Price;
 use stillbase::planning::off_plane::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, nearest_planes,
 };
-use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{BSet, PlaneMap, PlanePoint};
+use stillbase::planning::pose_space::{PoseSpace, plane_map};
+use stillbase::planning::reactionless::{BSet, PlaneMap};
 use stillbase::planning::timing::TimeLaw;
 
 use crate::support::{array, close, machine_of, planning};
@@ -18,6 +19,14 @@ use crate::support::{array, close, machine_of, planning};
 fn nine_link() -> (PlaneMap, Inertia) {
     let machine = builtin("nine-link").expect("built in");
     (plane_map(machine).expect("three drives"), Inertia::of(machine))
+}
+
+fn space() -> PoseSpace {
+    PoseSpace::of(builtin("nine-link").expect("built in")).expect("a b")
+}
+
+fn lifted(space: &PoseSpace, a: [f64; 2], b: f64) -> Posed {
+    Posed::lifted(space, PerDrive::from(a), b)
 }
 
 /// n_B of the dynamics, N m, without gravity.
@@ -62,9 +71,8 @@ proptest! {
     fn joint_lines_cost_what_was_said(
         a in [0.3..2.8f64, 0.3..2.8], to in [0.3..2.8f64, 0.3..2.8], b in -4.0..4.0f64, delta in -2.0..2.0f64, duration in 0.3..4.0f64,
     ) {
-        let (map, model) = nine_link();
-        let ends = [PlanePoint { a, b }, PlanePoint { a: to, b: b + delta }];
-        let path = joint_line(&map, ends);
+        let (space, model) = (space(), nine_link().1);
+        let path = joint_line(&[lifted(&space, a, b), lifted(&space, to, b + delta)]);
         let (from, end) = (path.at(0.0).q, path.at(1.0).q);
         let price = Price::between(&model, &from, &end).expect("invariant");
         prop_assert!((price.delta_b() - delta).abs() < 1e-13 && (price.inertia() - model.diagonal(0)).abs() < 1e-15);
@@ -91,8 +99,9 @@ proptest! {
         a in [0.3..2.8f64, 0.3..2.8], to in [0.3..2.8f64, 0.3..2.8], b in -4.0..4.0f64, delta in -2.0..2.0f64, u in 0.0..1.0f64,
     ) {
         let (map, model) = nine_link();
-        let ends = [PlanePoint { a, b }, PlanePoint { a: to, b: b + delta }];
-        let table = bang_bang_in_b(&map, ends).expect("nodes");
+        let space = space();
+        let ends = [lifted(&space, a, b), lifted(&space, to, b + delta)];
+        let table = bang_bang_in_b(&space, &ends).expect("nodes");
         let at = table.at(u);
         let n_b = moment(&model, &at.q, &at.first, &at.second);
         let price = Price::of(&model, delta).expect("invariant");
@@ -169,7 +178,7 @@ proptest! {
 /// Turned about the base a point takes its b along: far enough round, it shares none with A.
 #[test]
 fn points_without_a_common_plane_have_a_least_price() {
-    let (map, _) = nine_link();
+    let ((map, _), space) = (nine_link(), space());
     let a = Vector::new(0.5, 0.5);
     for turn in [-2.6, -1.5, -1.2, 0.1, 1.2, 1.5, 2.0, 3.0] {
         let points = [a, Vector::new(0.55, 0.9) * unit(turn)];
@@ -191,7 +200,7 @@ fn points_without_a_common_plane_have_a_least_price() {
         // On a shared plane the line between them is reactionless.
         if delta == 0.0 {
             let pair = points.map(|p| map.poses(p, first).iter().next().copied().expect("a pose"));
-            let path = joint_line(&map, pair);
+            let path = joint_line(&pair.map(|x| lifted(&space, x.a, x.b)));
             assert!((0..=10).all(|i| (map.project(&path.at(f64::from(i) / 10.0).q).b - first).abs() < 1e-13));
         }
     }

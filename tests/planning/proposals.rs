@@ -1,6 +1,6 @@
 //! What a refusal proposes works as printed: typed back, it is accepted.
 
-use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::pose_space::Planes;
 use stillbase::session::scenario::{Change, Scenario};
 use stillbase::session::{Refusal, Run};
 

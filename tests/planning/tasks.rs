@@ -101,10 +101,10 @@ fn what_cannot_be_followed_is_refused_before_it_moves() {
 #[test]
 fn the_least_move_mends() {
     let run = Run::new(&scenario()).expect("it starts");
-    let planes = run.planes().expect("it has planes");
+    let space = run.pose_space().expect("it has a b");
     let points = [Vector::new(0.5, 0.5), Vector::new(-0.6, -0.2), Vector::new(0.1, 1.0)];
     for points in [&points[..2], &points[..]] {
-        let why = common::no_common(planes.map(), points).expect("nothing in common");
+        let why = common::no_common(space, points).expect("nothing in common");
         assert_eq!(why.pair, Some([0, 1]));
         let Some(mend) = why.mend else {
             assert_eq!(points.len(), 3, "two can always be brought together");
@@ -114,7 +114,7 @@ fn the_least_move_mends() {
             let mut points = points.to_vec();
             let was = points[mend.point];
             points[mend.point] = was + share * (mend.to - was);
-            common::common(planes.map(), &points)
+            common::common(space, &points)
         };
         assert!(moved(1.0 + 1e-6).is_some(), "{mend:?}");
         assert!(moved(0.999).is_none(), "{mend:?}");

@@ -8,9 +8,10 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::path::SameTip;
 
+use stillbase::planning::common::serve;
 use stillbase::planning::curves::{Curve, Path, PathPoint, PathTable};
 use stillbase::planning::following::{Rule, trace};
-use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::timing::fastest::{fastest_at, stations};
 use stillbase::planning::timing::limits::{DriveLimit, LimitedQuantity};
 use stillbase::planning::timing::profile::Span;
@@ -737,14 +738,15 @@ proptest! {
 
 /// A path through random points on the plane b = 2.4: straight lines with rounded or sharp corners, an arc, a spline.
 fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
-    let planes = Planes::of(nine_link()).expect("three drives");
-    let start = planes.serve(points, 2.4).ok()?[0].a;
+    let space = PoseSpace::of(nine_link()).expect("three drives");
+    let start = serve(&space, points, 2.4).ok()?[0].a;
     let curves = match shape {
         0 => Curve::polyline(points, false, blend).ok()?,
         1 => vec![Curve::arc([points[0], points[1], points[2]], false).ok()?],
         _ => vec![Curve::spline(points, false).ok()?],
     };
-    let tables = trace::follow(planes.map(), &curves, 2.4, Some(start), Rule::default()).ok()?;
+    let tables =
+        trace::follow(space.planes().ok()?.map(), &curves, 2.4, Some([start[0], start[1]]), Rule::default()).ok()?;
     Some(tables.into_iter().map(Path::Table).collect())
 }
 

@@ -1,12 +1,14 @@
 //! Curves followed on a plane: exactly, on one sheet, and refused with the truth about where and why.
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector};
 use stillbase::planning::curves::{Curve, PathTable};
 use stillbase::planning::following::{Blocked, Rule, Stop, trace};
-use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::pose_space::Planes;
 
 const B: f64 = 2.4;
 
@@ -14,13 +16,13 @@ fn machine() -> &'static Machine {
     builtin("nine-link").expect("built in")
 }
 
-fn planes() -> Planes {
-    Planes::of(machine()).expect("three drives")
+fn planes() -> Arc<Planes> {
+    crate::support::planes(machine())
 }
 
-fn wide() -> Planes {
+fn wide() -> Arc<Planes> {
     let settings = [("limits.a1", "-3.1,3.1"), ("limits.a2", "-3.1,3.1")];
-    Planes::of(&machine().set_all(settings).expect("valid")).expect("three drives")
+    crate::support::planes(&machine().set_all(settings).expect("valid"))
 }
 
 fn v(x: f64, y: f64) -> Vector {

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap, WIDEST};
 
 use crate::support::Noise;

@@ -37,7 +37,7 @@ fn what_runs_inside_a_workspace_turns_with_it() {
     let (plain, scenario) = (short("case-2"), folded());
     record_in(&folder, "two.rrd", &[plain, scenario.clone()]).expect("two cases");
     let contents = Contents::of(&folder.path("two.rrd"));
-    let planes = stillbase::planning::pose_constant::Planes::of(&scenario.machine).expect("planes");
+    let planes = crate::support::planes(&scenario.machine);
     let boundary = planes.boundary();
     let height = 0.0;
     // Before they are turned and shifted: their transform is the workspace's.

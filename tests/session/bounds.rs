@@ -189,8 +189,7 @@ fn what_would_take_too_long_is_refused_at_once() {
 /// Turns that a pose constant is off by cost nothing, however many: a sum of them stood still beyond 2⁵³.
 #[test]
 fn poses_of_a_huge_pose_constant_end() {
-    let planes =
-        stillbase::planning::pose_constant::Planes::of(builtin("nine-link").expect("built in")).expect("planes");
+    let planes = crate::support::planes(builtin("nine-link").expect("built in"));
     let period = planes.map().period();
     let p = stillbase::mechanics::planar::Vector::new(0.5, 0.5);
     for b in [-2.3e18, 2.3e18, 1e300, -9.1e15] {

@@ -106,7 +106,7 @@ fn a_workspace_is_kept() {
             ..asked(&bare, &[("l5", [0.3, 0.6]), ("l9", [0.2, 0.5])])
         };
         let found = search(&bare, &asked, &mut |_| true).expect("there is one");
-        let planes = stillbase::planning::pose_constant::Planes::of(&found.placed.machine).expect("it has a b");
+        let planes = crate::support::planes(&found.placed.machine);
         (planes.boundary().area(), found.placed.value)
     };
     let ((free, least), (kept, value)) = (area(None), area(Some(0.8)));

@@ -118,11 +118,12 @@ pub fn a_chain(noise: &mut Noise, n: usize) -> Machine {
     parse(&text, "chain").unwrap_or_else(|why| panic!("{why}\n{text}"))
 }
 
-/// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0, and its poses.
+/// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0, and its poses by the way of any
+/// number of drives.
 pub fn a_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
     loop {
         let machine = design(&a_chain(noise, n), &vec![1.0; n]).expect("a chain can be balanced");
-        match PoseSpace::of(&machine) {
+        match PoseSpace::general(&machine) {
             Ok(space) => return (machine, space),
             Err(NoPoseSpace::Sum { .. }) => {}
             Err(why) => panic!("{why}"),

@@ -1,17 +1,20 @@
-//! Which b reach the points of the task, or the target, of a machine of other than three drives.
+//! Which b reach the points of the task, or the target, where no planes say with which pose.
+
+use std::sync::Arc;
 
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
-use super::which_b::{base_plot, marks, small_axes, spaced};
-use crate::app::theme::{bold, colour, plain};
+use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use crate::app::theme::{colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
-use crate::planning::pose_map::{BOfPoints, PoseMap};
-use crate::query::{Queries, Whole};
+use crate::planning::pose_constant::BOfPoints;
+use crate::planning::pose_space::PoseSpace;
+use crate::query::{Queries, Same, Whole};
 use crate::session::Session;
 
 /// The most points that have a bar.
@@ -20,38 +23,26 @@ const MOST: usize = 8;
 const DOT: f64 = 1e-3;
 
 /// A bar for each point, with b across; a click chooses b.
-pub fn show(
+pub fn bars(
     ui: &mut Ui,
     p: &Palette,
     (session, queries): (&Session, &Queries),
-    view_state: &ViewState,
-    height: f32,
+    space: &Arc<PoseSpace>,
+    mut points: Vec<(String, Vector)>,
+    (view_state, height): (&ViewState, f32),
     commands: &mut Vec<Command>,
 ) {
-    let Ok(map) = session.run().pose_map() else { return };
-    if map.angles() == 0 || matches!(map, PoseMap::Planes(_)) {
-        return;
-    }
-    let (task, now) = (&session.scenario().task, session.frame());
-    let mut points: Vec<(String, Vector)> = match session.is_led() {
-        true => vec![("target".to_owned(), now.target.at)],
-        false => task.points().into_iter().enumerate().map(|(i, at)| (task.name_of(i), at)).collect(),
-    };
+    let now = session.frame();
     if points.len() > MOST {
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let serving = queries.ask_beside::<Whole<BOfPoints>>(&(session.run().shared_pose_map(), places)).last;
+    let serving = queries.ask_beside::<Whole<BOfPoints>>(&(Same(space.clone()), places)).last;
     // While they are being found, those of other points do not stand for these.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
-    ui.horizontal(|ui| {
-        ui.set_height(16.0);
-        ui.label(RichText::new("Which b?").font(bold(12.5)));
-        let words = "of each point, rad; click to choose";
-        ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
-    });
+    which_b_title(ui, p, "of each point, rad; click to choose");
     let b_now = now.b_reference;
-    let half = 0.5 * map.period();
+    let half = 0.5 * space.period();
     let count = points.len() as f64;
     small_axes(ui);
     let response = base_plot("which b of points", p, height - 16.0)

@@ -8,6 +8,7 @@ mod menu;
 mod prepared;
 mod search;
 mod shown;
+mod small;
 mod values;
 mod which_b;
 mod written;
@@ -21,7 +22,7 @@ use crate::picture::charts::figure::{BELOW, LEFT, Look};
 pub use prepared::{Prepared, extent};
 pub use search::is_looking;
 pub use shown::Shown;
-pub use which_b::{base_plot, marks, small_axes, spaced};
+pub use small::{base_plot, marks, small_axes, spaced};
 pub use written::written;
 
 /// How wide the panel is made by itself, points: a share of the window, between these.
@@ -87,8 +88,7 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
                 ui.add_space(4.0);
             }
             hover::remember(ui, over);
-            bands::show(ui, &p, (session, queries), view_state, height + BELOW, commands);
-            which_b::show(ui, &p, (session, queries), view_state, height * 1.6 + BELOW, commands);
+            which_b::show(ui, &p, (session, queries), view_state, height, commands);
         });
     });
     view_state.plots.made(made.response.rect.width(), usual)

@@ -1,22 +1,24 @@
 //! Which b serves a target, or the points of the task.
 
-use egui::{RichText, TextStyle, Ui};
-use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
+use std::sync::Arc;
 
-use crate::app::theme::{bold, colour, plain};
+use egui::{RichText, Ui};
+use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Points, Span, VLine};
+
+use super::bands::bars;
+use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use crate::app::theme::{colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState, set_b};
 use crate::mechanics::planar::Vector;
-use crate::picture::numbers::{round_up, signed};
+use crate::picture::charts::figure::BELOW;
+use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::planning::pose_constant::Planes;
-use crate::planning::pose_map::BOfPoints;
+use crate::planning::pose_constant::BOfPoints;
+use crate::planning::pose_space::{Planes, PoseSpace};
 use crate::planning::reactionless::PlanePoint;
 use crate::query::{Queries, Quick, Same, Whole};
 use crate::session::Session;
-
-/// Size of the figures at axes.
-const FIGURES: f32 = 10.5;
 
 /// The branches of the self-motion of each of some points on planes.
 pub struct Branches;
@@ -30,7 +32,7 @@ impl Quick for Branches {
     }
 }
 
-/// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
+/// Which b: q_1 against b of each point where there are planes, else a bar of its b; a click chooses b.
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
@@ -39,29 +41,44 @@ pub fn show(
     height: f32,
     commands: &mut Vec<Command>,
 ) {
-    let Some(planes) = session.run().planes() else { return };
-    let (task, now) = (&session.scenario().task, session.frame());
-    let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();
-    let points: Vec<(&str, Vector)> = match session.is_led() {
-        true => vec![("target", now.target.at)],
-        false => named.iter().map(String::as_str).zip(task.points()).collect(),
+    let Ok(space) = session.run().pose_space() else { return };
+    let (task, at) = (&session.scenario().task, session.frame().target.at);
+    let points: Vec<(String, Vector)> = match session.is_led() {
+        true => vec![("target".to_owned(), at)],
+        false => task.points().into_iter().enumerate().map(|(i, at)| (task.name_of(i), at)).collect(),
     };
+    match space.planes() {
+        Ok(planes) => {
+            let height = height * 1.6 + BELOW;
+            lines(ui, p, (session, queries), (space, planes), &points, (view_state, height), commands);
+        }
+        Err(_) if space.joints().is_empty() => {}
+        Err(_) => bars(ui, p, (session, queries), space, points, (view_state, height + BELOW), commands),
+    }
+}
+
+/// Fig. 3: q_1 against b for A and B, or for the target.
+fn lines(
+    ui: &mut Ui,
+    p: &Palette,
+    (session, queries): (&Session, &Queries),
+    (space, planes): (&Arc<PoseSpace>, &Arc<Planes>),
+    points: &[(String, Vector)],
+    (view_state, height): (&ViewState, f32),
+    commands: &mut Vec<Command>,
+) {
+    let now = session.frame();
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
     let branches = queries.ask::<Whole<Branches>>(&(Same(planes.clone()), places.clone()));
-    let serving = queries.ask::<Whole<BOfPoints>>(&(session.run().shared_pose_map(), places));
-    ui.horizontal(|ui| {
-        ui.set_height(16.0);
-        ui.label(RichText::new("Which b?").font(bold(12.5)));
-        let words = "q₁ against b, rad; click to choose";
-        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
-    });
+    let serving = queries.ask::<Whole<BOfPoints>>(&(Same(space.clone()), places));
+    which_b_title(ui, p, "q₁ against b, rad; click to choose");
     let map = planes.map();
     let common = serving.all.as_ref().map(|common| common.near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()
         .zip(&*branches)
-        .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (*name, branch)))
+        .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (name.as_str(), branch)))
         .map(|(name, branch)| {
             // The whole turn nearest to the present b.
             let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
@@ -119,7 +136,7 @@ pub fn show(
                 plot.text(egui_plot::Text::new("none", place, text).color(colour(p.dim)).allow_hover(false));
             }
             plot.vline(VLine::new("b", b_now).color(colour(p.amber)).width(1.6).allow_hover(false));
-            for (_, x) in &points {
+            for (_, x) in points {
                 for pose in map.poses(*x, b_now).iter() {
                     let dot = vec![[b_now, map.lift(*pose)[0]]];
                     plot.points(Points::new("pose", dot).radius(4.0).color(colour(p.amber)).allow_hover(false));
@@ -139,42 +156,4 @@ pub fn show(
     if response.response.drag_stopped() || response.response.clicked() {
         commands.push(Command::EndGesture);
     }
-}
-
-/// A plot as the panels have it: without grid across, and without hands.
-pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
-    Plot::new(id.to_owned())
-        .height(height)
-        .show_background(false)
-        .show_axes([false, true])
-        .show_grid([false, true])
-        .grid_color(colour(faded(p.line, 0.9)))
-        .grid_fade(0.0)
-        .show_x(false)
-        .show_y(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .sense(egui::Sense::click_and_drag())
-        .y_axis_min_width(46.0)
-        .set_margin_fraction(egui::Vec2::ZERO)
-}
-
-/// The axes of the plots that follow have figures as small as those of the signals.
-pub fn small_axes(ui: &mut Ui) {
-    ui.style_mut().text_styles.insert(TextStyle::Body, plain(FIGURES));
-}
-
-/// Values to mark on an axis.
-pub fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
-    values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
-}
-
-/// Some three to five round values between bounds.
-pub fn spaced(low: f64, high: f64) -> Vec<f64> {
-    let step = round_up((high - low) / 5.0);
-    let first = (low / step).ceil() as i64;
-    (first..first + 12).map(|i| i as f64 * step).take_while(|v| *v <= high).collect()
 }

@@ -38,7 +38,7 @@ pub fn of_drives(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samp
     let mut candidates = Vec::new();
     let mut lost = None;
     if asked.keep != Some(Keep::Joints) {
-        if space.drives() < 3 {
+        if !space.reaches_area() {
             lost = Some(format!(
                 "{} held to a b move the end effector along one curve of their own",
                 counted(space.drives(), "drive")
@@ -80,7 +80,7 @@ pub fn of_tip(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samples
         let table = minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok()?;
         Some(running(table, samples))
     };
-    if space.drives() < 3 {
+    if !space.reaches_area() {
         let given = usual(asked.b.unwrap_or(0.0));
         let candidates = on_curve(judge, space, samples, given.as_ref());
         return Ok(Ways { given, candidates });

@@ -6,7 +6,6 @@ use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::Motion;
 use stillbase::planning::following::nearest::Deviation;
 use stillbase::planning::forecast::Forecast;
-use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase::planning::timing::Limits;
 use stillbase::session::scenario::{Scenario, Task};
@@ -68,32 +67,8 @@ pub struct Judge {
     pub machine: Machine,
     pub model: Inertia,
     pub around: Surroundings,
-    pub poses: Poses,
+    pub space: Result<PoseSpace, NoPoseSpace>,
     pub instants: usize,
-}
-
-/// What the machine can hold.
-pub enum Poses {
-    /// Three drives with planes.
-    Planes(Box<Planes>),
-    /// Any other machine with a b.
-    Space(PoseSpace),
-    /// Every motion is reactionless.
-    Free,
-    /// Nothing: motions are assessed, none is proposed.
-    None(NoPoseSpace),
-}
-
-impl Poses {
-    /// Of a machine.
-    pub fn of(machine: &Machine) -> Self {
-        match (Planes::of(machine), PoseSpace::of(machine)) {
-            (Ok(planes), _) => Self::Planes(Box::new(planes)),
-            (_, Ok(space)) => Self::Space(space),
-            (_, Err(NoPoseSpace::Free)) => Self::Free,
-            (_, Err(why)) => Self::None(why),
-        }
-    }
 }
 
 impl Judge {

@@ -1,13 +1,13 @@
 //! The ways in which a given motion might be made reactionless, the best first.
 
 use clap::ValueEnum;
-use stillbase::mechanics::planar::DriveAngles;
 use stillbase::planning::Motion;
+use stillbase::planning::common::serve;
 use stillbase::planning::curves::path::minimum_norm_curve;
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::nearest::{nearest_b, same_tip, turned};
 use stillbase::planning::following::{Rule, trace};
-use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::pose_space::{Planes, PoseSpace};
 use stillbase::planning::reactionless::{BSet, between};
 use stillbase::planning::timing::Profile;
 use stillbase::session::scenario::{Task, TaskKind};
@@ -95,7 +95,12 @@ pub fn of_drives(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Sample
 }
 
 /// The usual inverse of a motion given by the end effector, and the one on a plane.
-pub fn of_tip(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Samples) -> Result<Ways, Failure> {
+pub fn of_tip(
+    asked: &Asked,
+    judge: &Judge,
+    (space, planes): (&PoseSpace, &Planes),
+    samples: &Samples,
+) -> Result<Ways, Failure> {
     let map = planes.map();
     let curve = samples.curve().ok_or_else(|| Failure::wrong_input("want times further apart"))?;
     let curves = [curve];
@@ -119,10 +124,9 @@ pub fn of_tip(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Samples) 
         _ => Err(stop),
     });
     let b = followed.as_ref().map_or(b, |(b, _)| *b);
-    let starts = planes.serve(&[samples.point(0)], b).ok().and_then(|poses| poses.first().copied());
+    let starts = serve(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().copied());
     let usual = starts.and_then(|pose| {
-        let q = DriveAngles::from(map.lift(pose));
-        let table = minimum_norm_curve(judge.machine.end_effector(), q, &curves[0]).ok()?;
+        let table = minimum_norm_curve(judge.machine.end_effector(), pose.q, &curves[0]).ok()?;
         Some(Motion { path: Path::Table(table), profile: Profile::running(samples.duration()) })
     });
     let candidates = followed.map_err(|stop| stop.to_string()).map(|(b, why)| {

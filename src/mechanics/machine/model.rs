@@ -109,6 +109,16 @@ impl Machine {
         self.0.spec.drives.len()
     }
 
+    /// Whether a place of the end effector leaves the drives freedoms.
+    pub fn is_redundant(&self) -> bool {
+        self.redundancy() > 0
+    }
+
+    /// How many freedoms of the drives a place of the end effector leaves; holding b takes one of them.
+    pub fn redundancy(&self) -> usize {
+        self.drives().saturating_sub(2)
+    }
+
     /// Its links, each with the counterweights that it carries as one body; as described where it carries none.
     pub fn links(&self) -> &[Link] {
         &self.0.bodies

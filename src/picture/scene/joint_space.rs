@@ -17,7 +17,7 @@ use super::pick::{Aim, NEAR, Pick};
 use super::pointer::{Pointer, dot};
 use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips};
 use crate::picture::numbers::degrees;
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::Planes;
 use crate::planning::reactionless::PlanePoint;
 use crate::session::Run;
 use crate::simulation::frame::Frame;

@@ -7,7 +7,6 @@ use super::options::ViewOptions;
 use super::pick::{Aim, Pick};
 use super::pointer::Pointer;
 use super::section::Section;
-use crate::planning::pose_map::PoseMap;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
@@ -24,18 +23,20 @@ impl Joints {
     /// Prepares a run for drawing; to be made again when its machine or plan changes. `None` without a b, or with one
     /// drive alone.
     pub fn of(run: &Run) -> Option<Self> {
-        match run.pose_map().ok()? {
-            PoseMap::Planes(_) => JointSpace::of(run).map(|space| Self::Planes(Box::new(space))),
-            PoseMap::Space(space) => Section::of(run, &space).map(|section| Self::Section(Box::new(section))),
+        let space = run.pose_space().ok()?;
+        match JointSpace::of(run) {
+            Some(planes) => Some(Self::Planes(Box::new(planes))),
+            None => Section::of(run, space).map(|section| Self::Section(Box::new(section))),
         }
     }
 
     /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
     /// coordinates.
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
-        match run.pose_map().ok()? {
-            PoseMap::Planes(_) => JointSpace::over(run, b).map(|space| Self::Planes(Box::new(space))),
-            PoseMap::Space(space) => Section::over(run, &space, b).map(|section| Self::Section(Box::new(section))),
+        let space = run.pose_space().ok()?;
+        match JointSpace::over(run, b) {
+            Some(planes) => Some(Self::Planes(Box::new(planes))),
+            None => Section::over(run, space, b).map(|section| Self::Section(Box::new(section))),
         }
     }
 

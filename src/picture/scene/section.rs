@@ -67,7 +67,7 @@ impl Section {
     /// Puts other drives along the axes, counted from 0; those that the machine lacks change nothing.
     pub fn show(&mut self, drives: [usize; 3]) {
         let fits = drives.iter().all(|k| *k < self.space.drives());
-        if self.space.drives() > 2 && fits && self.shown != drives {
+        if !self.is_flat() && fits && self.shown != drives {
             self.shown = drives.to_vec();
             *self = self.clone().bounded();
         }

@@ -29,7 +29,6 @@ use super::pick::{Aim, Hold, Hook, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
-use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::query::{Queries, Shared};
 use crate::session::Run;
@@ -107,21 +106,21 @@ impl Stage {
         // A machine with other lengths is drawn as it is.
         let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
         let linkage = Linkage::of(&plant);
-        let compared = run.scenario().compare_b;
+        let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
         Self {
             base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared)),
             compared,
-            ring: run.pose_map().ok().filter(|map| map.angles() > 0).map(|map| Ring::of(&map, ring_radius(&linkage))),
-            outline: match run.pose_map() {
-                Ok(PoseMap::Space(space)) => Outline::Wanted(space),
+            ring: space.filter(|space| !space.joints().is_empty()).map(|space| Ring::of(space, ring_radius(&linkage))),
+            outline: match space {
+                Some(space) if space.planes().is_err() => Outline::Wanted(space.clone()),
                 _ => Outline::None,
             },
             fill: None,
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
-            follows: run.waiting().is_none() && run.pose_map().is_ok(),
-            holds: run.waiting().is_none() && run.pose_map().is_ok_and(|map| map.holds()),
+            follows: run.waiting().is_none() && space.is_some(),
+            holds: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: Grid::of(&linkage),

@@ -20,7 +20,7 @@ use super::{Anchor, Changes, Label, Line, Marker, Mesh, Model, Scene, Solid, Str
 use crate::mechanics::machine::place_of;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_up;
-use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{AngleLimit, BSet, PlaneMap};
 use crate::session::Run;
 use crate::simulation::frame::{Frame, Reach};
@@ -49,7 +49,7 @@ const NEAR_BAR: f64 = 9.0;
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Tower {
-    map: PoseMap,
+    space: Arc<PoseSpace>,
     /// The boundary of the workspace.
     outline: Strips,
     wall: Wall,
@@ -90,50 +90,49 @@ impl Tower {
         let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
         let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN));
         match outline {
-            Some(outline) => Self::rising(run, run.pose_map().ok()?, outline.shape(), span, fixed),
+            Some(outline) => Self::rising(run, outline.shape(), span, fixed),
             None => Self::showing(run, span, fixed),
         }
     }
 
     /// Of a machine of other than three drives, whose workspace is outlined, over [`SPAN`].
     pub fn outlined(run: &Run, outline: &Outlined) -> Option<Self> {
-        let map = run.pose_map().ok()?;
-        Self::rising(run, map, outline.shape(), SPAN, None)
+        Self::rising(run, outline.shape(), SPAN, None)
     }
 
     fn showing(run: &Run, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
-        let planes = run.planes()?.clone();
-        let loops = planes.boundary().turned(0.0);
+        let loops = run.planes()?.boundary().turned(0.0);
         let outlines = loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect();
-        Self::rising(run, PoseMap::Planes(planes), outlines, span, fixed)
+        Self::rising(run, outlines, span, fixed)
     }
 
     /// Above outlines at b = 0: closed ones, with the inside on their left.
-    fn rising(run: &Run, map: PoseMap, outlines: Vec<Vec<Vector>>, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
+    fn rising(run: &Run, outlines: Vec<Vec<Vector>>, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
+        let space = run.pose_space().ok()?.clone();
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         if !(radius > 0.0 && span.is_finite() && span > 0.0) {
             return None;
         }
         let rise = HEIGHT * radius / span;
         let grain = if fixed.is_some() { GRAIN } else { 1.0 };
-        let wall = Wall::with_grain(&outlines, map.turn(1.0) / rise, grain);
+        let wall = Wall::with_grain(&outlines, space.turn(1.0) / rise, grain);
         // The fill of a slice is known of planes alone.
-        let slice = match &map {
-            PoseMap::Planes(planes) => sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),
-            PoseMap::Space(_) => Mesh { shell: true, ..Mesh::default() },
+        let slice = match space.planes() {
+            Ok(planes) => sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),
+            Err(_) => Mesh { shell: true, ..Mesh::default() },
         };
         let model = Arc::new(Model { meshes: vec![slice, wall.mesh(HEIGHT * radius)] });
         let tip = *run.scenario().machine.end_effector();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |s: f64| motion.path.at(s).q;
-            stations(motion).map(at).map(|q| (place_of(&tip, &q.units()), map.project(&q).1)).collect()
+            stations(motion).map(at).map(|q| (place_of(&tip, &q.units()), space.b(&q))).collect()
         });
         let ends = run.motion().map(|_| {
             let mut points = waypoints(run);
             if points.len() > POSTS {
                 points.drain(1..points.len() - 1);
             }
-            points.into_iter().map(|(_, name, at)| Post { name, at, reach: map.b_of(at) }).collect()
+            points.into_iter().map(|(_, name, at)| Post { name, at, reach: space.reach(at).ok() }).collect()
         });
         let closed = |outline: &Vec<Vector>| {
             let mut points: Vec<_> = outline.iter().map(|p| point(*p, 0.0)).collect();
@@ -141,11 +140,11 @@ impl Tower {
             points
         };
         let outline = outlines.iter().map(closed).collect();
-        let mut tower = Self { map, outline, wall, model, ends, course, radius, span, fixed, contours: [].into() };
+        let mut tower = Self { space, outline, wall, model, ends, course, radius, span, fixed, contours: [].into() };
         if let Some([low, high]) = fixed {
             let level = |b: f64| {
                 let z = (b - low) * tower.rise();
-                let pieces = tower.wall.level(tower.map.turn(b));
+                let pieces = tower.wall.level(tower.space.turn(b));
                 pieces.into_iter().map(move |piece| piece.into_iter().map(|p| point(p, z)).collect::<Vec<_>>())
             };
             tower.contours = contours([low, high]).flat_map(level).collect();
@@ -187,7 +186,7 @@ impl Tower {
             return ends.iter().map(|post| barred(post, window)).collect();
         }
         let at = frame.target.at;
-        vec![barred(&Post { name: "target".into(), at, reach: self.map.b_of(at) }, window)]
+        vec![barred(&Post { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
     }
 
     /// What the pointer can take hold of: the end effector's dot, a bar, the slice.
@@ -210,17 +209,16 @@ impl Tower {
         }
         let [x, y] = ray.at_height(dot[2])?;
         let at = Vector::new(x, y);
-        let inside = match &self.map {
-            PoseMap::Planes(planes) => planes.boundary().contains(at, frame.b_reference),
-            PoseMap::Space(space) if space.drives() == 2 => self.is_on_curve(frame, pointer, dot[2]),
-            PoseMap::Space(space) => space.reach(at).is_ok_and(|set| set.contains(frame.b_reference)),
+        let inside = match self.space.reaches_area() {
+            true => self.space.contains(at, frame.b_reference),
+            false => self.is_on_curve(frame, pointer, dot[2]),
         };
         inside.then_some(Pick::of(Handle::Plane, [x, y, dot[2]]))
     }
 
     /// Whether the pointer is on the present slice, which is a curve at a height.
     fn is_on_curve(&self, frame: &Frame, pointer: &Pointer, height: f64) -> bool {
-        let pose = posed(Vector::default(), unit(self.map.turn(frame.b_reference)), height);
+        let pose = posed(Vector::default(), unit(self.space.turn(frame.b_reference)), height);
         let seen = |p: &[f32; 3]| super::place(&pose, *p).map(f64::from);
         let near =
             |w: &[[f32; 3]]| pointer.distance_to_segment([seen(&w[0]), seen(&w[1])]).is_some_and(|d| d < NEAR_BAR);
@@ -258,7 +256,7 @@ impl Tower {
         let [low, high] = self.window(b);
         let z = |b: f64| (b - low) * self.rise();
         let hot = options.hot == Some(Handle::Plane);
-        let turned = |b: f64| posed(Vector::default(), unit(self.map.turn(b)), z(b));
+        let turned = |b: f64| posed(Vector::default(), unit(self.space.turn(b)), z(b));
         let stands = if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape };
         let solid = |name: &'static str, mesh, b, colour, changes| Solid {
             name: name.into(),
@@ -322,7 +320,7 @@ impl Tower {
         let (mut near_ones, mut far_ones) = (Vec::new(), Vec::new());
         for b in contours([low, high]) {
             let z = (b - low) * self.rise();
-            for (piece, near) in self.wall.contour(self.map.turn(b), eye) {
+            for (piece, near) in self.wall.contour(self.space.turn(b), eye) {
                 let side = if near { &mut near_ones } else { &mut far_ones };
                 side.push(piece.into_iter().map(|p| point(p, z)).collect());
             }

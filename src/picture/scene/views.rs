@@ -205,8 +205,8 @@ impl Views {
         if kind.shows_machine() || kind == ViewKind::Design {
             return Ok(());
         }
-        match run.pose_map() {
-            Ok(map) if map.angles() == 0 => Err("one drive alone has no freedom left while b is held".into()),
+        match run.pose_space() {
+            Ok(space) if space.joints().is_empty() => Err("one drive alone has no freedom left while b is held".into()),
             Ok(_) => Ok(()),
             Err(why) => Err(why.to_string()),
         }

@@ -1,15 +1,16 @@
 //! Following the pointer and the slider: a smooth reference that stays on its plane.
 //!
-//! The reference moves in the coordinates (a, b) of a [`PoseMap`]. Acceleration is constant over a step and bounded: the
+//! The reference moves in the coordinates (a, b) of a [`PoseSpace`]. Acceleration is constant over a step and bounded: the
 //! vector ä as a whole, never component by component, and b̈ on its own. While b is not slid it is not
 //! touched at all, so the motion is reactionless to the last bit of b.
+
+use std::sync::Arc;
 
 use super::braking::{LAG, approach, last_open, norm};
 use super::held::{Held, Pull};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Reference;
-use crate::planning::pose_constant::Reach;
-use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_space::{PoseSpace, Reach};
 
 /// Where the end effector is sent, and whether it can go there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +36,7 @@ const ARRIVED: f64 = 1e-11;
 /// A reference that runs after a target on the plane of a pose constant.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    map: PoseMap,
+    map: Arc<PoseSpace>,
     bounds: Bounds,
     step: f64,
     a: Courses,
@@ -87,7 +88,7 @@ impl Courses {
 impl Follower {
     /// Takes over from a reference: keeps its pose and rates, then slows to rest at the b it is on. `step` is the time
     /// between calls of [`advance`](Self::advance), s.
-    pub fn new(map: PoseMap, bounds: Bounds, step: f64, from: &Reference) -> Self {
+    pub fn new(map: Arc<PoseSpace>, bounds: Bounds, step: f64, from: &Reference) -> Self {
         let (x, b) = map.project(&from.q);
         let (v, bd) = map.project_rates(&from.qd);
         let mut follower = Self {
@@ -118,7 +119,7 @@ impl Follower {
     }
 
     /// Pulls a point of a link while the end effector stays where it is, or where it comes to rest. Nothing moves on
-    /// machines of less than [four drives](PoseMap::holds).
+    /// machines of less than [four drives](PoseSpace::leaves_freedoms).
     pub fn set_pull(&mut self, pull: Pull) {
         if let Some(held) = &mut self.held {
             held.pull(pull);
@@ -136,9 +137,9 @@ impl Follower {
 
     /// Begins to pull, once it is at rest.
     fn hold(&mut self) {
-        if let (Some(pull), true, PoseMap::Space(space)) = (self.pull, self.is_at_rest(), &self.map) {
+        if let Some(pull) = self.pull.filter(|_| self.map.leaves_freedoms() && self.is_at_rest()) {
             let bounds = (self.bounds.joint, self.step);
-            self.held = Some(Held::new(space.clone(), self.a.x, self.b.x, bounds, pull));
+            self.held = Some(Held::new(self.map.clone(), self.a.x, self.b.x, bounds, pull));
             self.pull = None;
             self.b_aim = self.b.x;
             self.target = Target { at: self.map.forward(&self.a.x, self.b.x), reach: Reach::Inside };
@@ -202,7 +203,7 @@ impl Follower {
     }
 
     /// What it moves in.
-    pub fn map(&self) -> &PoseMap {
+    pub fn map(&self) -> &PoseSpace {
         &self.map
     }
 
@@ -275,7 +276,7 @@ impl Follower {
             Reach::Carried => self.target.at = self.aim_point(),
             // From where it was going, so that it does not depend on how far behind the reference is.
             Reach::Outside { .. } => {
-                let (aim, reach) = self.map.reach_beside(self.target.at, self.b.x, &self.aim, self.target.reach);
+                let (aim, reach) = self.map.pose_beside(self.target.at, self.b.x, &self.aim, self.target.reach);
                 (self.aim, self.target.reach) = (self.as_far_as_open(aim), reach);
             }
         }
@@ -308,7 +309,7 @@ impl Follower {
     /// Finds the pose for the target at the present b and on the present sheet, or the nearest one.
     fn aim_at_target(&mut self) {
         // From where it is, not from where it was going: what it can go to straight.
-        (self.aim, self.target.reach) = self.map.reach(self.target.at, self.b.x, &self.a.x);
+        (self.aim, self.target.reach) = self.map.pose_for(self.target.at, self.b.x, &self.a.x);
     }
 
     /// The accelerations nearest to the wanted ones after which each angle can still stop before its limit, with an

@@ -12,7 +12,9 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::path::by_pieces;
 use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::null_space::{least, lines, momentum_row_rate, rates, solve, turns_nothing};
+use crate::planning::off_plane::null_space::{
+    determines, least, lines, momentum_row_rate, rates, solve, turns_nothing,
+};
 use crate::settings::number::counted;
 
 /// Why a motion of zero momentum does not follow a curve.
@@ -153,7 +155,7 @@ fn round(
 
 /// q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
 fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
-    if model.drives() != 3 || turns_nothing(model) {
+    if !determines(model) {
         let (first, second) = least(model, q, point.first, point.second, 0.0)?;
         return Some(PathPoint { q: *q, first, second });
     }

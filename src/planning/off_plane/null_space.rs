@@ -146,6 +146,33 @@ pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerD
     solve(&lines, v, h / scale)
 }
 
+/// Along what a machine's end effector moves at zero momentum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MomentumFreedom {
+    /// Nothing: one drive has momentum as soon as it turns.
+    None,
+    /// One curve through each pose: two drives.
+    OneCurve,
+    /// Any curve within reach.
+    AnyCurve,
+}
+
+impl MomentumFreedom {
+    /// Of a machine.
+    pub fn of(model: &Inertia) -> Self {
+        match model.drives() {
+            1 => Self::None,
+            2 if !turns_nothing(model) => Self::OneCurve,
+            _ => Self::AnyCurve,
+        }
+    }
+}
+
+/// Whether the rates of the end effector and the momentum determine those of the drives: three that have some.
+pub(super) fn determines(model: &Inertia) -> bool {
+    model.drives() == 3 && !turns_nothing(model)
+}
+
 /// Whether no motion has any angular momentum.
 pub fn turns_nothing(model: &Inertia) -> bool {
     let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());

@@ -21,11 +21,13 @@
 use thiserror::Error;
 
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::common::Posed;
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::curves::table::PathTable;
-use crate::planning::reactionless::{BSet, PlaneMap, PlanePoint};
+use crate::planning::pose_space::PoseSpace;
+use crate::planning::reactionless::BSet;
 use crate::planning::timing::law::TimeLaw;
 use crate::settings::number::counted;
 
@@ -227,41 +229,23 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
 /// Shares of the way to the middle of an interval of b, for an end of it that misses its pose by rounding.
 pub const INWARDS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
-/// Of the poses of two points, m, each on the plane of its own b, rad, the two that lie nearest together.
-pub fn nearest_poses(map: &PlaneMap, points: [Vector; 2], b: [f64; 2]) -> Option<[PlanePoint; 2]> {
-    let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
-    let apart = |[x, y]: &[PlanePoint; 2]| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
-    let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
-    pairs.min_by(|p, q| apart(p).total_cmp(&apart(q)))
+/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits of relative
+/// angles form a box, so that the line keeps those that its ends keep.
+pub fn joint_line([from, to]: &[Posed; 2]) -> Path {
+    Path::JointLine { from: from.q, to: to.q }
 }
 
-/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits on (a_1,
-/// a_2) form a box, so that the line keeps those that its ends keep.
-pub fn joint_line(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Path {
-    Path::JointLine { from: DriveAngles::from(map.lift(from)), to: DriveAngles::from(map.lift(to)) }
-}
-
-/// A move in which only b is bang-bang over the whole of T, while (a_1, a_2) go by the quintic law: the least peak of
-/// n_B with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations q″/T².
+/// A move in which only b is bang-bang over the whole of T, while the relative angles go by the quintic law: the least
+/// peak of n_B with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations
+/// q″/T².
 ///
 /// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
-pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<PathTable> {
-    let lift = |a: &PerDrive, b: f64| DriveAngles::from(map.lift(PlanePoint { a: [a[0], a[1]], b }));
-    let rates = |a: &PerDrive, b: f64| PerDrive::from(map.lift_rates([a[0], a[1]], b));
-    bang_bang(&lift, &rates, [from, to].map(|x| (PerDrive::from(x.a), x.b)))
-}
-
-/// The same of any number of drives, by what lifts relative angles and b to drive angles, and their rates.
-pub fn bang_bang(
-    lift: &dyn Fn(&PerDrive, f64) -> DriveAngles,
-    lift_rates: &dyn Fn(&PerDrive, f64) -> PerDrive,
-    [from, to]: [(PerDrive, f64); 2],
-) -> Option<PathTable> {
-    let step = to.0.minus(&from.0);
-    let delta_b = to.1 - from.1;
+pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[Posed; 2]) -> Option<PathTable> {
+    let step = to.a.minus(&from.a);
+    let delta_b = to.b - from.b;
     let point = |share: [f64; 3], turn: [f64; 3]| {
-        let rates = |i: usize| lift_rates(&step.scaled(share[i]), turn[i] * delta_b);
-        let q = lift(&from.0.plus(share[0], &step), from.1 + turn[0] * delta_b);
+        let rates = |i: usize| space.lift_rates(&step.scaled(share[i]), turn[i] * delta_b);
+        let q = space.lift(&from.a.plus(share[0], &step), from.b + turn[0] * delta_b);
         PathPoint { q, first: rates(1), second: rates(2) }
     };
     let middle = [0.5, 1.875, 0.0];

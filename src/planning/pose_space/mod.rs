@@ -1,9 +1,10 @@
-//! Pose constants of machines with any number of drives: which b reach a point, with which poses, and how far the
-//! reactionless workspace goes.
+//! Poses of machines with any number of drives by their pose constant: which b reach a point, with which poses, how far
+//! the reactionless workspace goes, and where a hand leads the machine in it.
 //!
-//! Three drives have a plane, and everything about it in closed form in [`reactionless`](super::reactionless). Here the
-//! set of poses of a b has n − 1 freedoms: with two drives it is a curve of the end effector, with four and more every
-//! point of the workspace leaves n − 3 freedoms.
+//! The set of poses of a b has n − 1 freedoms: with two drives it is a curve of the end effector, with four and more every
+//! point of the workspace leaves n − 3 freedoms. Three drives with limits of both relative angles have planes, and
+//! everything about them in closed form in [`reactionless`](super::reactionless): a [`PoseSpace`] answers by these where
+//! it has them. [`PoseSpace::general`] leaves them out, so that tests can compare both ways.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -25,19 +26,26 @@ mod continuation;
 mod covered;
 mod critical;
 mod facing;
+mod hand;
+mod in_reach;
 mod joint;
+mod lacking;
 mod looks;
 mod loops;
 mod nearest;
 mod outline;
 mod pattern;
+mod planes;
 mod poses;
 mod reach;
 mod rings;
 mod space;
 mod toward;
 
+pub use in_reach::Reach;
 pub use joint::Joint;
+pub use lacking::{NoPoseSpace, OwnWay};
+pub(crate) use lacking::{held, is_reactionless};
 pub use outline::Outline;
-pub use space::{Lead, NoPoseSpace, PoseSpace};
-pub(crate) use space::{held, is_reactionless};
+pub use planes::{PlaneError, Planes, plane_area, plane_map};
+pub use space::{Lead, PoseSpace};

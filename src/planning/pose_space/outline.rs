@@ -6,6 +6,7 @@
 use super::loops::Traced;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, dot, unit};
+use crate::planning::reactionless::Extent;
 
 /// A workspace of b: a region, or with two drives a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,6 +65,16 @@ impl PoseSpace {
     /// The same, with chords as near to the boundary as this, m; two drives have what they have.
     /// Told how much is done, from 0 to 1, the caller says whether the rest is still wanted; `None` if it is not.
     pub fn outline_within(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
+        if let Ok(planes) = self.planes() {
+            let (boundary, loops) = (planes.boundary(), planes.boundary().turned(b));
+            let Extent { x_min, x_max, y_min, y_max } = boundary.extent(b);
+            return Some(Outline {
+                area: boundary.area(),
+                extent: [x_min, x_max, y_min, y_max],
+                loops,
+                ..Outline::default()
+            });
+        }
         Some(match self.drives() {
             1 => {
                 let place = self.place(&self.lift(&[], b));

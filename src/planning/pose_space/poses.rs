@@ -33,6 +33,9 @@ impl PoseSpace {
     /// Relative angles of poses at `p`, m, and `b`, rad: with up to three drives all of them. With more, at least one of
     /// each piece that these poses consist of, and others that are spread over it, in no order.
     pub fn sheets(&self, p: Vector, b: f64) -> Vec<PerDrive> {
+        if let Some(map) = self.map() {
+            return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();
+        }
         let mut poses: Vec<PerDrive> = Vec::new();
         let mut take = |a: &PerDrive| {
             let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME);
@@ -51,6 +54,9 @@ impl PoseSpace {
 
     /// Whether some pose within the limits puts the end effector on `p`, m, at `b`, rad.
     pub fn reaches(&self, p: Vector, b: f64) -> bool {
+        if let Some(map) = self.map() {
+            return !map.poses(p, b).is_empty();
+        }
         let mut any = false;
         let mut take = |_: &PerDrive| {
             any = true;

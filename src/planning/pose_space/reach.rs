@@ -9,6 +9,8 @@ use crate::planning::reactionless::{BSet, NoReach};
 
 /// Values of b that come as near as this are one, rad: rounding.
 const SAME: f64 = 1e-10;
+/// Single b of two drives may be off by this share of Σλ, rad: half of what its poses may be off.
+const SINGLE_B: f64 = 0.5e-6;
 /// How far beside a distance, as a share of the reach: past what rounding and the slack of limits decide.
 const BESIDE: f64 = 4.1e-9;
 
@@ -24,6 +26,9 @@ impl PoseSpace {
 
     /// The same, with poses looked for with all care, or less: then b may be missing.
     pub(in crate::planning) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
+        if let Some(map) = self.map() {
+            return map.reach(p);
+        }
         let (distance, farthest, nearest) = (p.norm(), self.farthest(), self.nearest());
         if distance > farthest * (1.0 + 1e-12) {
             return Err(NoReach::TooFar { distance, farthest });
@@ -39,6 +44,20 @@ impl PoseSpace {
         let turn = p.arg() * self.sum;
         let turned = set.intervals.iter().map(|[low, high]| [low + turn, high + turn]);
         Ok(BSet::union(turned.collect(), self.period()))
+    }
+
+    /// Whether a point, m, lies in what is reached at b, rad, its edge included.
+    pub fn contains(&self, p: Vector, b: f64) -> bool {
+        match self.planes() {
+            Ok(planes) => planes.boundary().contains(p, b),
+            Err(_) => self.reach(p).is_ok_and(|set| set.contains(b)),
+        }
+    }
+
+    /// By how much single b of two points may differ and still be one, rad: one and two drives reach a point at single b,
+    /// which points share up to rounding.
+    pub(in crate::planning) fn b_slack(&self) -> f64 {
+        if self.drives() < 3 { SINGLE_B * self.sum } else { 0.0 }
     }
 
     /// A pose of a point at the b nearest to a given one at which there is one.

@@ -1,15 +1,18 @@
 //! [`PoseSpace`]: coordinates (a, b) of the poses of any machine that has a pose constant.
+//!
+//! Three drives with limits of both relative angles have [`Planes`], which know most in closed form: where a space has
+//! them, it answers by them. Which of the two ways answers is decided inside of this module only.
 
 use std::f64::consts::{PI, TAU};
-
-use thiserror::Error;
+use std::sync::Arc;
 
 use super::joint::Joint;
+use super::lacking::{NoPoseSpace, OwnWay, held, is_reactionless};
 use super::pattern::{Pattern, Patterns};
+use super::planes::{PlaneError, Planes, plane_map};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
-use crate::planning::reactionless::WIDEST;
-use crate::settings::number::{Short, significant};
+use crate::planning::reactionless::{PlaneMap, PlanePoint, WIDEST};
 
 /// A point as near to B as this, as a share of the reach, is B: the workspace turned about it.
 pub(super) const AT_BASE: f64 = 1e-12;
@@ -27,6 +30,8 @@ pub struct PoseSpace {
     is_reactionless: bool,
     /// Of these arms and joints: a space of others has its own.
     pub(super) patterns: Patterns,
+    /// What is known in closed form.
+    planes: Result<Arc<Planes>, PlaneError>,
 }
 
 /// What a hand that leads the end effector makes of the freedoms that are left.
@@ -43,97 +48,26 @@ pub enum Lead {
     Middle,
 }
 
-/// Why a machine has no pose constant, in words.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoPoseSpace {
-    /// D depends on the pose.
-    #[error(
-        "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
-         coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",
-        .pair[0], .pair[1], significant(*residual), if *.only { ONLY_TWO } else { "" }
-    )]
-    Varies {
-        /// The drives that are coupled most, counted from 1.
-        pair: [usize; 2],
-        /// |C_kl|, kg m².
-        residual: f64,
-        /// The link that contributes most.
-        link: String,
-        /// Whether there are only these two drives.
-        only: bool,
-    },
-    /// Every D_k is 0.
-    #[error("every motion of this machine is reactionless, as no drive turns the base: there is no b to hold")]
-    Free,
-    /// Turning the machine as a whole changes b the wrong way, or not at all.
-    #[error(
-        "turned as a whole, this machine changes b by Σλ = {}: want it above 0, with rotors that turn the other way less \
-         fast or lighter", Short(*sum)
-    )]
-    Sum {
-        /// Σλ.
-        sum: f64,
-    },
-    /// The relative angles bind each other.
-    #[error(
-        "angle {angle:?} joins drives that the angles before it join already: want at most one way between two drives \
-         for reactionless planes"
-    )]
-    Loop {
-        /// The angle.
-        angle: String,
-    },
-    /// Limits too far apart to count windings one by one.
-    #[error("angle {angle:?} may turn by {width:.2} rad: want limits at most eight turns apart, {WIDEST} rad")]
-    TooWide {
-        /// The angle.
-        angle: String,
-        /// max − min, rad.
-        width: f64,
-    },
-    /// An arm that is nothing, or all of them.
-    #[error("the arms reach {} m: want a reach of 1e-9 to 1e9 m", Short(*reach))]
-    Size {
-        /// Σ |c_k|, m.
-        reach: f64,
-    },
-}
-
-/// Two drives keep something even so: see [`b_integral`](crate::planning::off_plane::b_integral).
-const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
-                        b, because its λ changes with the pose";
-
-/// Up to this share λ changes so little that to hold b keeps most of the moment from the base.
-const NEARLY: f64 = 0.1;
-
-/// Whether holding Σ λ_k q_k keeps every moment from the base.
-pub(crate) fn is_reactionless(machine: &Machine) -> bool {
-    Inertia::of(machine).is_invariant()
-}
-
-/// The inertia of a machine with λ that are constant, or nearly.
-///
-/// # Errors
-/// Why it has none.
-pub(crate) fn held(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
-    let inertia = Inertia::of(machine);
-    if inertia.pose_dependence() > NEARLY {
-        return Err(varies(machine, &inertia));
-    }
-    if inertia.pose_inertia() == 0.0 {
-        return Err(NoPoseSpace::Free);
-    }
-    Ok(inertia)
-}
-
 impl PoseSpace {
     /// Of a machine whose D is constant, or nearly.
     ///
     /// # Errors
     /// Why it has no b.
     pub fn of(machine: &Machine) -> Result<Self, NoPoseSpace> {
+        Self::holding(machine, Planes::of(machine).map(Arc::new))
+    }
+
+    /// The same by the way of any number of drives, for three drives too: the twin of their closed forms in tests.
+    ///
+    /// # Errors
+    /// Why it has no b.
+    pub fn general(machine: &Machine) -> Result<Self, NoPoseSpace> {
+        Self::holding(machine, Err(PlaneError::LeftOut))
+    }
+
+    fn holding(machine: &Machine, planes: Result<Arc<Planes>, PlaneError>) -> Result<Self, NoPoseSpace> {
         let inertia = held(machine)?;
-        Self::with(machine, inertia.lambda(), inertia.pose_inertia())
+        Self::with(machine, inertia.lambda(), inertia.pose_inertia(), planes)
     }
 
     /// The same by what each drive has to turn alone, H_kk, where D depends on the pose or is nothing: its b only tells
@@ -144,30 +78,38 @@ impl PoseSpace {
     pub fn nominal(machine: &Machine) -> Result<Self, NoPoseSpace> {
         let inertia = Inertia::of(machine);
         let h = inertia.diagonals();
-        Self::with(machine, h.scaled(1.0 / h[0]), h[0])
+        Self::with(machine, h.scaled(1.0 / h[0]), h[0], Err(plane_map(machine).err().unwrap_or(PlaneError::LeftOut)))
     }
 
-    fn with(machine: &Machine, lambda: PerDrive, inertia: f64) -> Result<Self, NoPoseSpace> {
-        let n = machine.drives();
+    fn with(
+        machine: &Machine,
+        lambda: PerDrive,
+        inertia: f64,
+        planes: Result<Arc<Planes>, PlaneError>,
+    ) -> Result<Self, NoPoseSpace> {
         let sum: f64 = lambda.iter().sum();
-        if sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) {
-            return Err(NoPoseSpace::Sum { sum });
-        }
-        let tip = PerDrive::from_fn(n, |k| machine.end_effector()[k]);
+        let tip = PerDrive::from_fn(machine.drives(), |k| machine.end_effector()[k]);
         let reach: f64 = tip.iter().map(|c| c.abs()).sum();
-        if !(1e-9..=1e9).contains(&reach) {
-            return Err(NoPoseSpace::Size { reach });
+        let mut joints = joints(machine)?;
+        match &planes {
+            // Planes have checks of their own, and count angles as the machine does.
+            Ok(_) => joints.sort_by_key(|joint| joint.angle),
+            Err(_) if sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) => {
+                return Err(NoPoseSpace::Sum { sum });
+            }
+            Err(_) if !(1e-9..=1e9).contains(&reach) => return Err(NoPoseSpace::Size { reach }),
+            Err(_) => {}
         }
-        let joints = joints(machine)?.into();
         Ok(Self {
             tip,
             lambda,
             sum,
-            joints,
+            joints: joints.into(),
             lead: Lead::LeastEnergy,
             inertia,
             is_reactionless: is_reactionless(machine),
             patterns: Patterns::default(),
+            planes,
         })
     }
 
@@ -175,6 +117,30 @@ impl PoseSpace {
     #[must_use]
     pub fn led(self, lead: Lead) -> Self {
         Self { lead, ..self }
+    }
+
+    /// The same, with ways that lead across change points or keep off them, where it has planes.
+    #[must_use]
+    pub fn keeping_off_change_points(self, keep_off: bool) -> Self {
+        let kept = |planes: Arc<Planes>| match planes.keep_off_change_points() == keep_off {
+            true => planes,
+            false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
+        };
+        Self { planes: self.planes.map(kept), ..self }
+    }
+
+    /// What only three drives with limits of both relative angles have: sheets, folds, change points and Eq. (16).
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub fn planes(&self) -> Result<&Arc<Planes>, &PlaneError> {
+        self.planes.as_ref()
+    }
+
+    /// Eqs (13)–(16), where they answer.
+    #[inline]
+    pub(super) fn map(&self) -> Option<&PlaneMap> {
+        self.planes.as_ref().ok().map(|planes| planes.map())
     }
 
     /// Every choice of limits and signs for which b can be stationary: made once, at the first point that is asked for.
@@ -197,6 +163,11 @@ impl PoseSpace {
         &self.lambda
     }
 
+    /// Σλ.
+    pub fn lambda_sum(&self) -> f64 {
+        self.sum
+    }
+
     /// n_B = −D_1 b̈, kg m².
     pub fn inertia(&self) -> f64 {
         self.inertia
@@ -210,6 +181,20 @@ impl PoseSpace {
     /// The relative angles, n − 1 of them.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
+    }
+
+    /// Whether what is reached while b is held is an area, whose points are reached by ranges of b; else it is a curve or
+    /// one place, and each point has its b.
+    pub fn reaches_area(&self) -> bool {
+        self.joints.len() > 1
+    }
+
+    /// Whether the end effector can follow curves while b is held.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn follows_curves(&self) -> Result<(), OwnWay> {
+        if self.reaches_area() { Ok(()) } else { Err(OwnWay { drives: self.drives() }) }
     }
 
     /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
@@ -229,6 +214,9 @@ impl PoseSpace {
 
     /// Drive angles of relative angles on b. Never wrapped.
     pub fn lift(&self, a: &[f64], b: f64) -> DriveAngles {
+        if let Some(map) = self.map() {
+            return DriveAngles::from(map.lift(PlanePoint { a: [a[0], a[1]], b }));
+        }
         let mut q = self.unturned(a);
         let turn = (b - self.lambda.dot(&q)) / self.sum;
         q.iter_mut().for_each(|q| *q += turn);
@@ -237,6 +225,9 @@ impl PoseSpace {
 
     /// Rates of the drives for rates of the relative angles and ḃ.
     pub fn lift_rates(&self, ad: &[f64], bd: f64) -> PerDrive {
+        if let Some(map) = self.map() {
+            return PerDrive::from(map.lift_rates([ad[0], ad[1]], bd));
+        }
         let mut qd = PerDrive::zeros(self.drives());
         for (joint, ad) in self.joints.iter().zip(ad) {
             qd[joint.ends[1]] = qd[joint.ends[0]] + joint.sense * ad;
@@ -248,10 +239,18 @@ impl PoseSpace {
 
     /// Rates of the relative angles for rates of the drives.
     pub fn angle_rates(&self, qd: &[f64]) -> PerDrive {
+        if let Some(map) = self.map() {
+            return PerDrive::from(map.project_rates(qd).0);
+        }
         PerDrive::from_fn(self.joints.len(), |i| {
             let Joint { ends, sense, .. } = self.joints[i];
             sense * (qd[ends[1]] - qd[ends[0]])
         })
+    }
+
+    /// Least and greatest value of a relative angle, rad; infinite where it turns freely.
+    pub fn limits(&self, i: usize) -> [f64; 2] {
+        self.joints[i].bounds()
     }
 
     /// How far the workspace is turned at b, rad.
@@ -270,12 +269,33 @@ impl PoseSpace {
 
     /// Relative angles of a pose, in the order of [`joints`](Self::joints).
     pub fn angles(&self, q: &[f64]) -> PerDrive {
+        if let Some(map) = self.map() {
+            return PerDrive::from(map.project(q).a);
+        }
         PerDrive::from_fn(self.joints.len(), |i| self.joints[i].of(q))
     }
 
     /// b of a pose, rad.
     pub fn b(&self, q: &[f64]) -> f64 {
-        self.lambda.dot(q)
+        self.map().map_or_else(|| self.lambda.dot(q), |map| map.project(q).b)
+    }
+
+    /// Relative angles and b of a pose, rad.
+    pub fn project(&self, q: &[f64]) -> (PerDrive, f64) {
+        (self.angles(q), self.b(q))
+    }
+
+    /// Rates of the relative angles and ḃ for rates of the drives.
+    pub fn project_rates(&self, qd: &[f64]) -> (PerDrive, f64) {
+        (self.angle_rates(qd), self.b(qd))
+    }
+
+    /// The end effector of relative angles on b, m.
+    pub fn forward(&self, a: &[f64], b: f64) -> Vector {
+        match self.map() {
+            Some(map) => map.forward([a[0], a[1]], b),
+            None => self.place(&self.lift(a, b)),
+        }
     }
 
     /// The end effector, m.
@@ -325,20 +345,4 @@ fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
 /// Limits as they are; one turn about 0 where there are none.
 fn window(min: f64, max: f64) -> [f64; 2] {
     if min.is_finite() && max.is_finite() { [min, max] } else { [-PI, PI] }
-}
-
-/// The drives that are coupled most, and the link that contributes most to that.
-fn varies(machine: &Machine, inertia: &Inertia) -> NoPoseSpace {
-    let n = machine.drives();
-    let coupled = |(k, l): &(usize, usize)| inertia.coupling(*k, *l).norm();
-    let (k, l) = Inertia::pairs(n).max_by(|x, y| coupled(x).total_cmp(&coupled(y))).unwrap_or((0, 0));
-    let whole = inertia.coupling(k, l);
-    let part = |j: &usize| {
-        let a = machine.com_chain(*j);
-        // As far as it adds to the sum, rather than taking from it.
-        (machine.links()[*j].mass * a[k].conj() * a[l] * whole.conj()).re
-    };
-    let most = (0..machine.links().len()).max_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
-    let link = machine.links()[most].name.clone();
-    NoPoseSpace::Varies { pair: [k + 1, l + 1], residual: whole.norm(), link, only: n == 2 }
 }

@@ -19,6 +19,7 @@ mod envelope;
 mod goal;
 mod hand;
 mod layers;
+mod led;
 mod refine;
 mod route;
 mod rows;
@@ -28,6 +29,7 @@ mod stations;
 use serde::{Deserialize, Serialize};
 
 pub use hand::Postures;
+pub use led::Led;
 pub use search::{Asked, Found, NoWay};
 
 /// How the freedoms that a point leaves are used.

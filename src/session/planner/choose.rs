@@ -1,9 +1,15 @@
 //! The plan of a task, by its kind.
 
-use super::along::{along, tried};
-use super::plan::Plan;
-use super::{any_drives, given, off_plane};
-use crate::planning::pose_constant::Planes;
+use super::along::along_parts;
+use super::change_b::change_b;
+use super::given::given;
+use super::held::held;
+use super::least_reaction::least_reaction;
+use super::momentum::zero_momentum;
+use super::plan::{Plan, Space};
+use super::proposals::tried;
+use super::rates::{minimum_norm, same_tip};
+use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 
 use crate::session::refusal::{Refusal, allowed};
@@ -13,17 +19,15 @@ use crate::session::scenario::{Scenario, Task, TaskKind};
 ///
 /// # Errors
 /// Which point, part of the path or setting is in the way, and what would do.
-pub fn plan(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refusal> {
+pub fn plan(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
-    let plan = match planes {
-        None => any_drives::plan(scenario)?,
-        Some(planes) => directly(scenario, planes).map_err(|refusal| match leaves_plane {
-            true => elsewhere(scenario, planes, refusal),
-            false => refusal,
-        })?,
-    };
+    let plan = directly(scenario, space).map_err(|refusal| match space {
+        // On planes it is known at once what another b would do.
+        Ok(space) if leaves_plane && space.planes().is_ok() => elsewhere(scenario, space, refusal),
+        _ => refusal,
+    })?;
     let found = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
     let time = plan.motion.duration();
     // A path that goes nowhere takes no time.
@@ -38,27 +42,24 @@ pub fn plan(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refusa
 }
 
 /// The same, where a refusal proposes nothing that has to be planned first.
-fn directly(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
-    let task = &scenario.task;
-    if task.samples.is_some() || task.kind == TaskKind::Given {
-        given::given(scenario, Some(planes))
-    } else {
-        match task.kind {
-            TaskKind::ChangeB => off_plane::change_b(scenario, planes),
-            TaskKind::LeastReaction => off_plane::least_reaction(scenario, planes),
-            TaskKind::ZeroMomentum => off_plane::zero_momentum(scenario, planes),
-            TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {
-                along(scenario, planes)
-            }
-        }
+fn directly(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+    match scenario.task.kind {
+        _ if scenario.task.samples.is_some() => given(scenario, space),
+        TaskKind::Given => given(scenario, space),
+        TaskKind::Reactionless => held(scenario, space),
+        TaskKind::MinimumNorm => along_parts(scenario, &|scenario| minimum_norm(scenario, space)),
+        TaskKind::SameTip => along_parts(scenario, &|scenario| same_tip(scenario, space)),
+        TaskKind::ChangeB => change_b(scenario, space),
+        TaskKind::LeastReaction => least_reaction(scenario, space),
+        TaskKind::ZeroMomentum => zero_momentum(scenario, space),
     }
 }
 
 /// A refusal for a b that does not reach A, of a task that leaves its plane: the b nearest to it with which it can be
 /// planned.
-fn elsewhere(scenario: &Scenario, planes: &Planes, refusal: Refusal) -> Refusal {
+fn elsewhere(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
     // Where a path goes does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
-    tried(planes.map(), refusal, |b, _| directly(&at(b), planes).map(|_| ()))
+    tried(space, refusal, |b, _| directly(&at(b), Ok(space)).map(|_| ()))
 }

@@ -1,20 +1,17 @@
 //! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
 
-use super::along::start;
-use super::plan::{Effort, Plan, dynamics_of, keeps_rules};
-use super::pose::{posed, start as start_of};
-use super::posture;
+use super::held::along_curves;
+use super::plan::{Effort, Plan, Space, dynamics_of, keeps_rules};
+use super::poses::start;
 use crate::planning::Motion;
-use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
+use crate::planning::curves::path::minimum_norm_curve;
 use crate::planning::curves::{Curve, Path, PathTable};
 use crate::planning::following::{Rule, trace};
 use crate::planning::forecast::Forecast;
-use crate::planning::pose_constant::Planes;
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::pose_space::NoPoseSpace;
 use crate::planning::timing::{Limits, Profile};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
-use crate::settings::number::counted;
 
 /// Instants at which a motion is looked at for each of its samples, at least, and at most in all.
 const A_SAMPLE: usize = 8;
@@ -24,7 +21,7 @@ const INSTANTS: (usize, usize) = (2000, 100_000);
 ///
 /// # Errors
 /// If there are none, they do not fit the machine or the kind of the task, or cannot be followed.
-pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refusal> {
+pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let (task, drives) = (&scenario.task, scenario.machine.drives());
     let refuse = |why: String| Err(Refusal::Task(why));
     let Some(samples) = &task.samples else {
@@ -44,23 +41,18 @@ pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refus
         (TaskKind::Given | TaskKind::Reactionless, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
             let rule = Rule { keep_off_change_points: task.keep_off_change_points };
-            match planes {
+            match space.ok().and_then(|space| space.planes().ok()) {
                 Some(planes) => {
                     let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
                     tables.pop().ok_or_else(unsound)?
                 }
-                None => sampled(scenario, &curve)?,
+                None => sampled(scenario, space, &curve)?,
             }
         }
         (TaskKind::MinimumNorm, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
-            match planes {
-                Some(planes) => {
-                    let ends = [samples.point(0), samples.point(samples.count() - 1)];
-                    minimum_norm_curve(scenario.machine.end_effector(), start(task, planes, &ends)?, &curve)?
-                }
-                None => sampled(scenario, &curve)?,
-            }
+            let ends = [samples.point(0), samples.point(samples.count() - 1)];
+            minimum_norm_curve(scenario.machine.end_effector(), start(scenario, space, &ends)?, &curve)?
         }
         (TaskKind::Given, _) => {
             return refuse(format!(
@@ -78,29 +70,26 @@ pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refus
     Ok(Plan::foreseen(motion, forecast))
 }
 
-/// The motion of the end effector by samples, with b held, or by least rates where the task says so or no b matters.
+/// The motion of the end effector by samples, with b held, or by least rates where no b matters.
 ///
 /// # Errors
 /// If it cannot be followed.
-fn sampled(scenario: &Scenario, curve: &Curve) -> Result<PathTable, Refusal> {
-    let (task, tip) = (&scenario.task, scenario.machine.end_effector());
-    let space = match PoseSpace::of(&scenario.machine) {
-        _ if task.kind == TaskKind::MinimumNorm => return Ok(minimum_norm_curve(tip, start_of(scenario)?, curve)?),
-        Err(NoPoseSpace::Free) => return Ok(minimum_norm_curve(tip, start_of(scenario)?, curve)?),
-        space => space?,
+fn sampled(scenario: &Scenario, space: Space<'_>, curve: &Curve) -> Result<PathTable, Refusal> {
+    let points = scenario.task.points();
+    let space = match space {
+        Err(NoPoseSpace::Free) => {
+            return Ok(minimum_norm_curve(
+                scenario.machine.end_effector(),
+                start(scenario, space, &points[..1])?,
+                curve,
+            )?);
+        }
+        space => space.map_err(Clone::clone)?,
     };
-    if space.drives() < 3 {
-        return Err(Refusal::Task(format!(
-            "while b is held the end effector of a machine with {} has its own way: want minimum-norm, or samples of \
-             the drive angles",
-            counted(space.drives(), "drive")
-        )));
+    let other = |why| Refusal::Task(format!("{why}: want minimum-norm, or samples of the drive angles"));
+    space.follows_curves().map_err(other)?;
+    match along_curves(scenario, space, std::slice::from_ref(curve), None, Effort::Whole)?.pop() {
+        Some((Path::Table(table), _)) => Ok(table),
+        _ => Err(Refusal::Task("the samples give no path".into())),
     }
-    // Three drives have one motion of each b.
-    if space.drives() == 3 {
-        let start = posed(task, &space, (&task.points()[..1], 0), &space.middle())?;
-        return Ok(least_rate_curve(tip, Some(space.lambda()), start, curve)?);
-    }
-    let mut tables = posture::tables(scenario, &space, std::slice::from_ref(curve), None, Effort::Whole)?;
-    tables.pop().ok_or_else(|| Refusal::Task("the samples give no path".into()))
 }

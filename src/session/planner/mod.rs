@@ -1,14 +1,18 @@
-//! From a task to a motion: poses for its points, a path through them, and when to be where.
+//! From a task to a motion: poses for its points, a path through them, and when to be where. One way for any number of
+//! drives: what a machine cannot do its pose space says.
 
 mod along;
-mod any_drives;
+mod change_b;
 mod choose;
 mod given;
-mod off_plane;
-mod off_space;
+mod held;
+mod least_reaction;
+mod momentum;
 mod plan;
-mod pose;
+mod poses;
 mod posture;
+mod proposals;
+mod rates;
 
 pub use along::curves;
 pub(super) use choose::plan;

@@ -8,14 +8,15 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::Path;
 use crate::planning::off_plane::Price;
 use crate::planning::off_plane::least_reaction::Verdicts;
-use crate::planning::pose_constant::Planes;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::PlanePoint;
+use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::timing::limits::DriveLimit;
 use crate::planning::timing::{Limits, TimeLaw};
 use crate::planning::{Forecast, Motion};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
+
+/// The pose space of a machine, or why its b cannot be held.
+pub(super) type Space<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
 
 /// How much is done to find a path and to say what would do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,22 +77,15 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
-    /// Rest where the end effector is as near to A as the plane of the task lets it be: for a run that waits.
-    pub fn rest(scenario: &Scenario, planes: Option<&Planes>) -> Self {
-        let task = &scenario.task;
+    /// Rest where the end effector is as near to A as the b of the task lets it be: for a run that waits.
+    pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
+        let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];
-        let q = match planes {
-            Some(planes) => {
-                let map = planes.map();
-                let pose = map.poses(p, task.b).iter().next().copied();
-                let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
-                DriveAngles::from(map.lift(PlanePoint { a, b: task.b }))
-            }
-            None => match PoseSpace::nominal(&scenario.machine) {
+        let q =
+            space.and_then(|space| space.standing(p, task.b)).unwrap_or_else(|| match PoseSpace::nominal(machine) {
                 Ok(space) => space.near(p, task.b).unwrap_or_else(|| space.lift(&space.middle(), task.b)),
-                Err(_) => DriveAngles(PerDrive::zeros(scenario.machine.drives())),
-            },
-        };
+                Err(_) => DriveAngles(PerDrive::zeros(machine.drives())),
+            });
         let path = Path::JointLine { from: q, to: q };
         Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
     }

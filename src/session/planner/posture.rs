@@ -1,8 +1,8 @@
 //! Paths of four drives and more that hold b, with their freedoms used as the task wants.
 
-use super::along::inner;
 use super::plan::Effort;
-use super::pose::{faced, hand_of, posed};
+use super::poses::{faced, hand_of, posed};
+use super::proposals::inner;
 use crate::mechanics::planar::Vector;
 use crate::planning::common::common;
 use crate::planning::curves::path::least_rate_curve;

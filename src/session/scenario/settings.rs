@@ -257,7 +257,7 @@ impl Scenario {
     /// What a key would want to have an effect, if it has none as things are.
     pub fn idle(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
-            Some(("task", key @ ("posture" | "orientation"))) => self.machine.drives() > 3 && self.task.uses(key),
+            Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
             Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
             Some(("task", key)) => self.task.uses(key),
             Some(("base", key)) => self.base.uses(key),
@@ -272,7 +272,7 @@ impl Scenario {
     /// Whether samples of two values are the angles of two drives.
     fn gives_two_drives(&self) -> bool {
         let samples = self.task.samples.as_ref().map(Samples::columns);
-        self.machine.drives() == 2 && self.task.kind == TaskKind::Given && samples == Some(2)
+        samples == Some(2) && samples == Some(self.machine.drives()) && self.task.kind == TaskKind::Given
     }
 
     /// Whether a force is held at the end effector at any time.

@@ -343,8 +343,8 @@ impl StatedTask {
         Ok(Task {
             from: from.or(first).ok_or("from")?,
             to: to.or(last).ok_or("to")?,
-            // With one or two drives a point says enough.
-            b: b.or(ends.and_then(|ends| ends.b)).or((machine.drives() < 3).then_some(0.0)).ok_or("b")?,
+            // Without redundancy a point says enough.
+            b: b.or(ends.and_then(|ends| ends.b)).or((!machine.is_redundant()).then_some(0.0)).ok_or("b")?,
             time: time.or(samples.as_ref().map(Samples::duration)).unwrap_or(1.0),
             kind,
             shape,
@@ -380,7 +380,7 @@ struct Ends {
 /// machine.
 fn ends_of((kind, samples): (TaskKind, &Samples), turn: f64, machine: &Machine) -> Option<Ends> {
     let last = samples.count() - 1;
-    if samples.columns() == 2 && !(machine.drives() == 2 && kind == TaskKind::Given) {
+    if samples.columns() == 2 && !(machine.drives() == samples.columns() && kind == TaskKind::Given) {
         return Some(Ends { places: [0, last].map(|i| [samples.point(i).re, samples.point(i).im]), b: None });
     }
     let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + turn));

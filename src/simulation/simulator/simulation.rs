@@ -6,7 +6,7 @@ use crate::mechanics::kinematics::{end_effector, least_transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
 use crate::planning::Reference;
-use crate::planning::pose_constant::plane_map;
+use crate::planning::pose_space::plane_map;
 use crate::planning::reactionless::PlaneMap;
 use crate::simulation::control::{Controller, Reading};
 use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};

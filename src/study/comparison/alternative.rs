@@ -1,5 +1,6 @@
 //! [`Alternative`]: other ways to do the same task.
 
+use crate::planning::common::serve;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
@@ -38,9 +39,9 @@ impl Alternative {
     pub const ALL: [Self; 6] =
         [Self::AsGiven, Self::Reactionless, Self::StraightLine, Self::OtherPose, Self::Wheel, Self::Slowly];
 
-    /// Whether a machine has such a way: with one or two drives the end effector's motion leaves drive 1 none of its own.
+    /// Whether a machine has such a way: without redundancy the end effector's motion leaves drive 1 none of its own.
     pub fn is_of(self, scenario: &Scenario) -> bool {
-        self != Self::OtherPose || scenario.machine.drives() > 2
+        self != Self::OtherPose || scenario.machine.is_redundant()
     }
 
     /// Short name, as in file names and on the command line.
@@ -135,15 +136,14 @@ impl Alternative {
     }
 }
 
-/// Where drive 1 is at A on the plane of the task, rad.
+/// Where drive 1 is at A at the b of the task, rad, where that is on planes or leaves freedoms.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
     let points = scenario.task.points();
-    if scenario.machine.drives() > 3 {
-        let space = PoseSpace::of(&scenario.machine).ok()?;
-        return space.poses(*points.first()?, scenario.task.b, &space.middle()).first().map(|q| q[0]);
+    let space = PoseSpace::of(&scenario.machine).ok()?;
+    if space.planes().is_err() && !space.leaves_freedoms() {
+        return None;
     }
-    let planes = crate::planning::pose_constant::Planes::of(&scenario.machine).ok()?;
     let ends = [*points.first()?, *points.last()?];
-    let poses = planes.serve(&ends, scenario.task.b).or_else(|_| planes.serve(&ends[..1], scenario.task.b)).ok()?;
-    Some(planes.map().lift(*poses.first()?)[0])
+    let poses = serve(&space, &ends, scenario.task.b).or_else(|_| serve(&space, &ends[..1], scenario.task.b)).ok()?;
+    Some(poses.first()?.q[0])
 }

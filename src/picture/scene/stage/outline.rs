@@ -129,7 +129,7 @@ impl Outlined {
             line.iter().map(|[x, y, _]| Vector::new(f64::from(*x), f64::from(*y))).collect()
         };
         let mut lines: Vec<_> = self.strips.iter().map(flat).collect();
-        if self.space.drives() == 2 {
+        if !self.space.reaches_area() {
             for line in &mut lines {
                 let back: Vec<_> = line.iter().rev().skip(1).copied().collect();
                 line.extend(back);

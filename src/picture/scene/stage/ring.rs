@@ -8,7 +8,7 @@ use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
-use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_space::PoseSpace;
 
 /// Corners of the circle.
 const CORNERS: u32 = 96;
@@ -25,10 +25,10 @@ pub struct Ring {
 
 impl Ring {
     /// Of a machine with a b, of a radius, m.
-    pub fn of(map: &PoseMap, radius: f64) -> Self {
+    pub fn of(space: &PoseSpace, radius: f64) -> Self {
         let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CORNERS)) * radius, 0.0);
         let circle = vec![(0..=CORNERS).map(corner).collect::<Vec<_>>()];
-        Self { circle: circle.into(), radius, sum: map.period() / TAU }
+        Self { circle: circle.into(), radius, sum: space.period() / TAU }
     }
 
     /// Direction of the knob at the present b, rad.

@@ -11,7 +11,7 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{
     Anchor, Area, Label, Line, Marker, Measure, Name, Rgba, Scene, Shade, Strips, dexterity, point, posed,
 };
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::Planes;
 use crate::planning::reactionless::{self, AngleLimit, PlaneMap};
 
 /// The workspaces of a run before they are turned: that of its b, one to compare with, and one that is looked at.

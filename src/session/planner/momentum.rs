@@ -1,20 +1,16 @@
-//! Of machines without planes: motions that leave their b knowingly, zero momentum where there is none, and the end
-//! effector as it was with drive 1 elsewhere.
+//! Motions at zero momentum: two drives along the one curve that they have, more along any.
 
 use std::f64::consts::TAU;
 
-use super::along::{Parts, refusal};
-use super::off_plane::{changed, followed, goes_straight, in_rounds};
-use super::plan::{Plan, dynamics_of};
-use super::pose::{off, posed, reached, start};
+use super::along::{curves, in_rounds};
+use super::plan::{Plan, Space, dynamics_of};
+use super::poses::{off, reached, start};
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::why_not;
 use crate::planning::curves::Path;
-use crate::planning::curves::path::same_tip_path;
 use crate::planning::off_plane::b_integral::BIntegral;
-use crate::planning::off_plane::null_space::turns_nothing;
-use crate::planning::off_plane::price::{INWARDS, bang_bang, nearest_planes};
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::off_plane::drift::zero_momentum_curve;
+use crate::planning::off_plane::null_space::MomentumFreedom;
+use crate::planning::pose_space::PoseSpace;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Shape, Task};
 use crate::settings::number::fixed;
@@ -24,111 +20,15 @@ const ON_CURVE: f64 = 1e-6;
 /// Looks along that curve for the place that is nearest to a point.
 const LOOKS: usize = 720;
 
-/// From A at the b of the task to B at another, along a straight joint line; a limit on |n_B| sets the time.
-pub(super) fn change_b(scenario: &Scenario) -> Result<Plan, Refusal> {
-    goes_straight(&scenario.task)?;
-    let space = match PoseSpace::of(&scenario.machine) {
-        Err(NoPoseSpace::Free) => {
-            let why =
-                "no motion of this machine has a price, as no drive turns the base: want reactionless or minimum-norm";
-            return Err(Refusal::Task(why.into()));
-        }
-        space => space?,
-    };
-    let [from, to] = ends(&scenario.task, &space)?;
-    let line = Path::JointLine { from, to };
-    let at = |q: &DriveAngles| (space.angles(q), space.b(q));
-    let bang = || bang_bang(&|a, b| space.lift(a, b), &|ad, bd| space.lift_rates(ad, bd), [at(&from), at(&to)]);
-    changed(scenario, line, space.b(&to) - space.b(&from), &bang)
-}
-
-/// Poses of A and B, each at its b.
-fn ends(task: &Task, space: &PoseSpace) -> Result<[DriveAngles; 2], Refusal> {
-    let (points, middle) = (task.points(), space.middle());
-    let last = points.len() - 1;
-    let (a, b) = (points[0], points[last]);
-    if let Some(b_to) = task.b_to {
-        let start = posed(task, space, (&points[..1], 0), &middle)?;
-        let end = space.poses(b, b_to, &space.angles(&start)).first().copied();
-        let end = end.ok_or_else(|| refusal(task, last, why_not(space, &points[last..], 0, b_to)))?;
-        return Ok(nearest(space, [a, b], [task.b, b_to]).unwrap_or([start, end]));
-    }
-    let set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
-    let sets = [set(0, a)?, set(last, b)?];
-    let on = space.reaches(a, task.b);
-    // Of one and two drives the point says which b, where the task leaves it out, which stands as 0.
-    if !on && (space.drives() > 2 || task.b != 0.0) {
-        return Err(refusal(task, 0, why_not(space, &points[..1], 0, task.b)));
-    }
-    // B's own b nearest to that of A, if A is at its own; else the pair with the least change.
-    let pair =
-        if on { sets[1].nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&sets[0], &sets[1], task.b) };
-    let inwards = |[from, to]: [f64; 2], share: f64| match on {
-        true => [from, sets[1].inwards(to, share)],
-        false => [sets[0].inwards(from, share), sets[1].inwards(to, share)],
-    };
-    pair.and_then(|pair| INWARDS.into_iter().find_map(|share| nearest(space, [a, b], inwards(pair, share)))).ok_or_else(
-        || Refusal::NoWay("no poses of A and B were found to go straight between: want other points".into()),
-    )
-}
-
-/// Of the poses of two points, each at its b, those that lie nearest together.
-fn nearest(space: &PoseSpace, [a, b]: [Vector; 2], [from, to]: [f64; 2]) -> Option<[DriveAngles; 2]> {
-    let starts = space.poses(a, from, &space.middle());
-    let pairs = starts.into_iter().filter_map(|x| {
-        let near = space.angles(&x);
-        let far = |y: &DriveAngles| space.angles(y).minus(&near).max_abs();
-        let ends = space.poses(b, to, &near);
-        ends.into_iter().min_by(|y, z| far(y).total_cmp(&far(z))).map(|y| ([x, y], far(&y)))
-    });
-    pairs.min_by(|x, y| x.1.total_cmp(&y.1)).map(|(pair, _)| pair)
-}
-
-/// Refuses points between A and B of a task that has no path for them.
-fn apart(task: &Task) -> Result<(), Refusal> {
-    if task.via.is_empty() && !task.closed {
-        return Ok(());
-    }
-    let why = "same-tip goes straight from A to B: want no points between and an open path";
-    Err(Refusal::Task(why.into()))
-}
-
-/// The end effector as on the joint line from A to B, drive 1 on a course of its own, the others after it.
-pub(super) fn same_tip(scenario: &Scenario) -> Result<Parts, Refusal> {
-    let (task, machine) = (&scenario.task, &scenario.machine);
-    if machine.drives() < 3 {
-        return Err(Refusal::Task(
-            "with one or two drives the end effector's motion leaves drive 1 no course of its own: want minimum-norm, \
-             which follows a path of the end effector, or change-b, which goes to another b"
-                .into(),
-        ));
-    }
-    apart(task)?;
-    let points = task.points();
-    let last = points.len() - 1;
-    let (space, has_b) = match PoseSpace::of(machine) {
-        Ok(space) => (space, true),
-        Err(_) => (PoseSpace::nominal(machine)?, false),
-    };
-    let pose = |i: usize, near: &[f64]| match has_b {
-        true => posed(task, &space, (&points, i), near),
-        false => reached(task, &space, i, points[i]),
-    };
-    let from = pose(0, &space.middle())?;
-    let to = pose(last, &space.angles(&from))?;
-    let first_to = task.first_drive_to.unwrap_or(from[0]);
-    Ok(vec![(Path::Table(same_tip_path(machine.end_effector(), from, to, first_to)?), 1.0)])
-}
-
 /// At zero momentum: two drives along the one curve that they have, more along any.
-pub(super) fn zero_momentum(scenario: &Scenario) -> Result<Plan, Refusal> {
-    let (task, machine) = (&scenario.task, &scenario.machine);
+pub(super) fn zero_momentum(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
     let (model, _) = dynamics_of(scenario);
-    match machine.drives() {
-        1 => Err(Refusal::Task(
+    match MomentumFreedom::of(&model) {
+        MomentumFreedom::None => Err(Refusal::Task(
             "one drive has momentum as soon as it turns: want minimum-norm, and a machine of more drives".into(),
         )),
-        2 if !turns_nothing(&model) => {
+        MomentumFreedom::OneCurve => {
             if task.shape.is_some_and(|shape| shape != Shape::JointLine) {
                 return Err(Refusal::Task(
                     "at zero momentum the end effector of two drives has its own way: want the shape joint-line".into(),
@@ -143,8 +43,24 @@ pub(super) fn zero_momentum(scenario: &Scenario) -> Result<Plan, Refusal> {
             })?;
             along_curve(scenario, &keeps)
         }
-        _ => followed(scenario, start(scenario)?),
+        MomentumFreedom::AnyCurve => followed(scenario, start(scenario, space, &task.points()[..1])?),
     }
+}
+
+/// The end effector's curves at zero momentum from a pose of A.
+fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let (model, _) = dynamics_of(scenario);
+    let curves = curves(task, &task.points())?;
+    in_rounds(scenario, start, &|mut q, cycle| {
+        let mut parts = Vec::new();
+        for curve in &curves {
+            let table = zero_momentum_curve(&model, q, curve, cycle)?;
+            q = table.nodes().last().map_or(q, |last| last.q);
+            parts.push((Path::Table(table), curve.length()));
+        }
+        Ok((parts, q))
+    })
 }
 
 /// Two drives, from point to point of a curve q₁ + ∫ D₂/(D₁ + D₂) dδ = const.

@@ -1,10 +1,10 @@
-//! Poses of the points of a task, of machines without planes.
+//! Poses of the points of a task.
 
 use std::f64::consts::{PI, TAU};
 
-use super::along::refusal;
+use super::plan::Space;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::why_not;
+use crate::planning::common::{self, Posed, why_not};
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::NoReach;
@@ -12,13 +12,33 @@ use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
 use crate::settings::number::{Short, fixed, nine_digits};
 
-/// A pose of A: at the b of the task where that leaves a choice.
-pub(super) fn start(scenario: &Scenario) -> Result<DriveAngles, Refusal> {
-    let (task, machine) = (&scenario.task, &scenario.machine);
-    let points = task.points();
-    match PoseSpace::of(machine) {
-        Ok(space) if space.drives() > 2 => posed(task, &space, (&points[..1], 0), &space.middle()),
-        _ => reached(task, &PoseSpace::nominal(machine)?, 0, points[0]),
+/// Poses of points at the b of the task.
+pub(super) fn serve(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
+    common::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+}
+
+/// A pose of the first of some points: at the b of the task where that leaves a choice, on one sheet with the others where
+/// there are sheets and they can be.
+pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
+    let task = &scenario.task;
+    match space {
+        Ok(space) if space.reaches_area() => {
+            let all = match space.planes() {
+                Ok(_) if points.len() > 1 => common::serve(space, points, task.b).ok(),
+                _ => None,
+            };
+            let served = all.map_or_else(|| serve(task, space, &points[..1]), Ok)?;
+            served.first().map(|pose| pose.q).ok_or_else(|| Refusal::NoWay("A has no pose".into()))
+        }
+        _ => reached(task, &PoseSpace::nominal(&scenario.machine)?, 0, points[0]),
+    }
+}
+
+/// Why a point is not served, by its name.
+pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
+    match unreachable {
+        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
+        unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
     }
 }
 

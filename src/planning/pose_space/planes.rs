@@ -1,0 +1,206 @@
+//! [`Planes`]: what three drives with limits of both relative angles have in closed form. A pose space keeps it as its
+//! kernel, and gives it out to those who want what only planes have: sheets, folds and change points.
+
+use thiserror::Error;
+
+use super::in_reach::Reach;
+use super::lacking::{NoPoseSpace, held, is_reactionless};
+use crate::mechanics::machine::{Machine, RelativeAngle};
+use crate::mechanics::planar::Vector;
+use crate::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, NotAPlaneMap, PlaneMap};
+use crate::settings::number::counted;
+
+/// The reactionless planes of a machine, with the boundary of their workspace.
+#[derive(Clone, Debug)]
+pub struct Planes {
+    map: PlaneMap,
+    boundary: Boundary,
+    keep_off_change_points: bool,
+    is_reactionless: bool,
+}
+
+impl PartialEq for Planes {
+    /// The boundary follows from the map.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { map, boundary: _, keep_off_change_points, is_reactionless } = self;
+        (map, keep_off_change_points, is_reactionless)
+            == (&other.map, &other.keep_off_change_points, &other.is_reactionless)
+    }
+}
+
+/// Why a machine has no reactionless planes that can be drawn.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PlaneError {
+    /// Not three drives.
+    #[error(
+        "this machine has {} and {}: planes want three drives and two relative angles with limits, each an [[angle]] \
+         with name, to, from, min and max",
+        counted(drives, "drive"),
+        counted(angles, "relative angle")
+    )]
+    Shape {
+        /// Drives of the machine.
+        drives: usize,
+        /// Its relative joint angles.
+        angles: usize,
+    },
+    /// An angle that turns freely.
+    #[error(
+        "the angle {0} has no limits: planes of three drives want limits of both angles, such as limits.{0}=0,3.1416"
+    )]
+    Unlimited(String),
+    /// λ depends on the pose, or is nothing.
+    #[error(transparent)]
+    NoPoseConstant(NoPoseSpace),
+    /// The lengths, λ or limits give no plane coordinates.
+    #[error(transparent)]
+    Map(#[from] NotAPlaneMap),
+    /// A space that goes the general way by choice.
+    #[error("these poses are told apart by b alone, without planes")]
+    LeftOut,
+}
+
+impl PlaneError {
+    /// Whether a machine of as many drives can have planes.
+    pub fn is_mendable(&self) -> bool {
+        !matches!(self, Self::Shape { drives, .. } if *drives != 3)
+    }
+}
+
+impl Planes {
+    /// The planes of a machine, by the λ of its constant diagonal D_k = H_kk.
+    ///
+    /// # Errors
+    /// If it has not three drives and two relative angles, or no b.
+    pub(super) fn of(machine: &Machine) -> Result<Self, PlaneError> {
+        let map = plane_map(machine)?;
+        let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
+        Ok(Self { boundary, map, keep_off_change_points: false, is_reactionless })
+    }
+
+    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
+    pub fn is_reactionless(&self) -> bool {
+        self.is_reactionless
+    }
+
+    /// The same planes, on which ways lead across change points or keep off them.
+    #[must_use]
+    pub(super) fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
+        Self { keep_off_change_points, ..self }
+    }
+
+    /// Whether ways keep off change points.
+    pub fn keep_off_change_points(&self) -> bool {
+        self.keep_off_change_points
+    }
+
+    /// Whether something inside the limits can bar a way: a fold, or a change point to keep off.
+    pub fn has_bars(&self) -> bool {
+        self.keep_off_change_points || self.boundary.interior_singularity()
+    }
+
+    /// Eqs (13)–(16).
+    pub fn map(&self) -> &PlaneMap {
+        &self.map
+    }
+
+    /// The boundary of the workspace.
+    pub fn boundary(&self) -> &Boundary {
+        &self.boundary
+    }
+
+    /// The pose that puts the end effector on p on the plane b, continuously from another.
+    pub fn follow(&self, p: Vector, b: f64, from: [f64; 2]) -> Option<[f64; 2]> {
+        self.map.follow(p, b, from)
+    }
+
+    /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
+    pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_open_way(from, *a)) {
+            return (a, Reach::Inside);
+        }
+        let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
+        let poses = self.map.poses(p, b);
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_open_way(from, *a));
+        if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
+            return (a, Reach::Inside);
+        }
+        let other_sheet = !poses.is_empty();
+        let set = self.map.reach(p).ok().filter(|_| !other_sheet);
+        let mending_b = set.as_ref().and_then(|set| set.nearest(b));
+        let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
+        let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
+        let edge = self.map.clamp(nearest.a);
+        if !other_sheet && self.is_open_way(from, edge) {
+            return (edge, Reach::Outside { nearest: nearest.at, mending_b, shown_b, other_sheet });
+        }
+        // Something lies between: as near as the straight way goes.
+        let a = self.towards(p, b, from);
+        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, shown_b, other_sheet })
+    }
+
+    /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
+    fn towards(&self, p: Vector, b: f64, from: [f64; 2]) -> [f64; 2] {
+        let start = self.map.forward(from, b);
+        let (mut a, mut t, mut step) = (from, 0.0, 0.125);
+        while step > 1e-6 && t < 1.0 {
+            let next = self.follow(start + (t + step) * (p - start), b, a);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_open_way(from, *x);
+            match next.filter(near) {
+                Some(x) => (a, t) = (x, t + step),
+                None => step *= 0.5,
+            }
+        }
+        a
+    }
+
+    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign,
+    /// and, if so asked, to one side of every change point.
+    pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        /// At least so many looks, and one for each tenth of a radian.
+        const LOOKS: i32 = 32;
+        if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {
+            return false;
+        }
+        if !self.boundary.interior_singularity() {
+            return true;
+        }
+        let sheet = self.map.det(from);
+        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        let far = (to[0] - from[0]).hypot(to[1] - from[1]);
+        // As a cast: limits keep it below a thousand.
+        let looks = LOOKS.max((10.0 * far) as i32);
+        (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
+    }
+}
+
+/// Area of the workspace of each b of a machine with planes, m².
+pub fn plane_area(machine: &Machine) -> Option<f64> {
+    Some(Boundary::of(&plane_map(machine).ok()?).area())
+}
+
+/// Eqs (13)–(16) of a machine.
+///
+/// # Errors
+/// If it has not three drives and two relative angles, or no b.
+pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
+    let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
+    let [first, second] = machine.angles() else { return Err(shape()) };
+    if machine.drives() != 3 {
+        return Err(shape());
+    }
+    let bounded = |a: &RelativeAngle| a.limits.start().is_finite() && a.limits.end().is_finite();
+    if let Some(free) = [first, second].into_iter().find(|a| !bounded(a)) {
+        return Err(PlaneError::Unlimited(free.name.clone()));
+    }
+    let tip = machine.end_effector();
+    let lambda = held(machine).map_err(PlaneError::NoPoseConstant)?.lambda();
+    let angle = |a: &RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
+    let limit = |a: &RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
+    Ok(PlaneMap::new(
+        [tip[0], tip[1], tip[2]],
+        [lambda[0], lambda[1], lambda[2]],
+        [angle(first), angle(second)],
+        [limit(first), limit(second)],
+    )?)
+}

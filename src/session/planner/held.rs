@@ -1,0 +1,178 @@
+//! Paths that hold the b of their task, so that nothing reaches the base.
+
+use super::along::{Parts, along_parts, by_least_rates, curves};
+use super::plan::{Effort, Plan, Space};
+use super::poses::{faced, posed, reached, refusal, serve};
+use super::posture;
+use super::proposals::proved;
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::common::{Posed, unreached};
+use crate::planning::curves::{Curve, Path};
+use crate::planning::following::{Rule, trace};
+use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
+use crate::planning::timing::TimeLaw;
+use crate::session::refusal::Refusal;
+use crate::session::scenario::{Corners, Scenario, Shape, Task};
+
+/// With b held; a refusal proposes only what has been tried.
+pub(super) fn held(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    along_parts(scenario, &|scenario| reactionless(scenario, space, Effort::Whole)).map_err(|refusal| {
+        let Ok(known) = space else { return refusal };
+        // Where a path goes does not depend on the time law.
+        let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
+        let goes = |task: &Task, effort| match known.planes() {
+            // What is followed on a plane keeps the limits.
+            Ok(_) => reactionless(&own(task), space, effort).map(|_| ()),
+            Err(_) => along_parts(&own(task), &|scenario| reactionless(scenario, space, effort)).map(|_| ()),
+        };
+        proved(task, known, &goes, refusal)
+    })
+}
+
+/// A path that holds b.
+pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort) -> Result<Parts, Refusal> {
+    let (task, points) = (&scenario.task, scenario.task.points());
+    let space = match space {
+        Err(NoPoseSpace::Free) => return free(scenario, &PoseSpace::nominal(&scenario.machine)?, &points),
+        space => space.map_err(Clone::clone)?,
+    };
+    if let Ok(planes) = space.planes() {
+        return match task.shape() {
+            Shape::JointLine => joint_lines(scenario, space, serve(task, space, &points)?),
+            _ => on_plane(task, (space, planes), &points),
+        };
+    }
+    if let Some((i, why)) = unreached(space, &points, task.b) {
+        return Err(refusal(task, i, why));
+    }
+    match task.shape() {
+        Shape::JointLine => {
+            cornered(task, space, points.len())?;
+            joint_lines(scenario, space, one_by_one(scenario, space, &points)?)
+        }
+        _ => {
+            space.follows_curves().map_err(|why| Refusal::Task(format!("{why}: want the shape joint-line")))?;
+            along_curves(scenario, space, &curves(task, &points)?, Some(task.law), effort)
+        }
+    }
+}
+
+/// The end effector's curves with b held, of a machine without planes; `law` as in
+/// [`Asked`](crate::planning::posture::Asked).
+pub(super) fn along_curves(
+    scenario: &Scenario,
+    space: &PoseSpace,
+    curves: &[Curve],
+    law: Option<TimeLaw>,
+    effort: Effort,
+) -> Result<Parts, Refusal> {
+    let lengths = curves.iter().map(Curve::length);
+    if space.leaves_freedoms() {
+        let tables = posture::tables(scenario, space, curves, law, effort)?;
+        return Ok(tables.into_iter().map(Path::Table).zip(lengths).collect());
+    }
+    // There is one motion of each b.
+    let start = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
+    by_least_rates(scenario, start, curves, Some(space))
+}
+
+/// Of a machine that no motion turns: as the points ask, at whatever b.
+fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Parts, Refusal> {
+    let task = &scenario.task;
+    if task.shape() != Shape::JointLine {
+        let start = reached(task, space, 0, points[0])?;
+        return by_least_rates(scenario, start, &curves(task, points)?, None);
+    }
+    cornered(task, space, points.len())?;
+    let pose = |(i, p): (usize, &Vector)| Ok(Posed::of(space, reached(task, space, i, *p)?));
+    joint_lines(scenario, space, points.iter().enumerate().map(pose).collect::<Result<_, Refusal>>()?)
+}
+
+/// Refuses corners to be rounded off where they cannot be.
+fn cornered(task: &Task, space: &PoseSpace, points: usize) -> Result<(), Refusal> {
+    let Err(lacking) = space.planes() else { return Ok(()) };
+    if task.corners != Corners::Blend || (points <= 2 && !task.closed) {
+        return Ok(());
+    }
+    Err(Refusal::Task(match lacking.is_mendable() {
+        true => format!("corners of joint lines are rounded off on planes only: {lacking}, or corners = stop"),
+        false => "corners of joint lines are rounded off for three drives only: want corners = stop".into(),
+    }))
+}
+
+/// A pose of each point near the one before, the last link as the task has it.
+fn one_by_one(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
+    let machine = &scenario.machine;
+    let hand = machine.resolved_links()[machine.end_link()].drive;
+    let mut near = space.middle();
+    let mut poses: Vec<Posed> = Vec::with_capacity(points.len() + 1);
+    for i in 0..points.len() {
+        let kept = poses.first().map(|pose| pose.q[hand]);
+        poses.push(Posed::of(space, faced(scenario, space, (points, i), (&near, kept))?));
+        near = poses[i].a;
+    }
+    Ok(poses)
+}
+
+/// Straight lines of joint space from pose to pose; their corners a stop or a blend.
+fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) -> Result<Parts, Refusal> {
+    let task = &scenario.task;
+    if let Ok(planes) = space.planes() {
+        if task.keep_off_change_points {
+            same_side(task, &poses)?;
+        }
+        if task.corners == Corners::Blend && (poses.len() > 2 || task.closed) {
+            let corners: Vec<Vector> = poses.iter().map(|pose| Vector::new(pose.a[0], pose.a[1])).collect();
+            // The curve closes itself, so that an error names points that were given.
+            let curves = Curve::polyline(&corners, task.closed, task.blend)?;
+            let path = |curve: Curve| {
+                let length = curve.length();
+                (Path::OnPlane { map: *planes.map(), b: task.b, curve }, length)
+            };
+            return Ok(curves.into_iter().map(path).collect());
+        }
+    }
+    poses.extend(task.closed.then(|| poses[0]));
+    let way = |i: usize| poses[i].way(space, &poses[i + 1]);
+    let line = |i: usize| (Path::JointLine { from: poses[i].q, to: poses[i + 1].q }, way(i).max(1e-12));
+    // The same point twice in a row makes no path.
+    let moving = (0..poses.len() - 1).filter(|i| poses.len() == 2 || way(*i) > 1e-12);
+    Ok(moving.map(line).collect())
+}
+
+/// Refuses poses between which two drives would become parallel.
+fn same_side(task: &Task, poses: &[Posed]) -> Result<(), Refusal> {
+    for (i, w) in poses.windows(2).enumerate() {
+        let [from, to] = [w[0].q, w[1].q];
+        for [k, l] in [[0, 1], [0, 2], [1, 2]] {
+            let side = |q: &DriveAngles| (q[k] - q[l]).sin();
+            let turns = |q: &DriveAngles| ((q[k] - q[l]) / std::f64::consts::PI).floor();
+            if side(&from) * side(&to) < 0.0 || (turns(&from) != turns(&to) && side(&from) * side(&to) > 0.0) {
+                let between = [task.name_of(i), task.name_of(i + 1)];
+                return Err(Refusal::NoWay(format!(
+                    "between {} and {} drives {} and {} become parallel, a change point: want points on one side of \
+                     it, another b, or keep_off_change_points = false",
+                    between[0],
+                    between[1],
+                    k + 1,
+                    l + 1
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The end effector's curves followed on the plane of the task.
+fn on_plane(task: &Task, (space, planes): (&PoseSpace, &Planes), points: &[Vector]) -> Result<Parts, Refusal> {
+    let curves = curves(task, points)?;
+    let rule = Rule { keep_off_change_points: task.keep_off_change_points };
+    // Where single points cannot be reached, they are the clearer reason.
+    let prefer = match task.shape() {
+        Shape::Freehand => None,
+        _ => serve(task, space, points)?.first().map(|pose| [pose.a[0], pose.a[1]]),
+    };
+    let tables = trace::follow(planes.map(), &curves, task.b, prefer, rule)?;
+    Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
+}

@@ -1,0 +1,154 @@
+//! Along the end effector's curves with the least reaction that they allow.
+
+use super::along::{along_parts, curves, timed};
+use super::held::reactionless;
+use super::plan::{Effort, Plan, Space, dynamics_of, keeps_rules};
+use super::poses::serve;
+use super::rates::minimum_norm;
+use crate::planning::curves::{Curve, CurvePoint, Path};
+use crate::planning::following::trace;
+use crate::planning::off_plane::LeastReaction;
+use crate::planning::off_plane::b_course::Reaction;
+use crate::planning::off_plane::least_reaction::{FixedB, Goal, MinimumNorm, Verdicts};
+use crate::planning::pose_constant::Unreachable;
+use crate::planning::pose_space::{PlaneError, Planes, PoseSpace};
+use crate::planning::reactionless::BSet;
+use crate::planning::timing::{Limits, Profile, TimeLaw};
+use crate::planning::{Forecast, Motion};
+use crate::session::refusal::Refusal;
+use crate::session::scenario::{Least, Scenario, Task, TaskKind};
+use crate::settings::number::nine_digits;
+
+/// On planes b changes as little as its corridor allows; elsewhere it is held, where it can be.
+pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+    if !scenario.machine.is_redundant() {
+        let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
+                   only motion along it, or reactionless in the shape joint-line";
+        return Err(Refusal::Task(why.into()));
+    }
+    let law = smooth(&scenario.task)?;
+    let space = space.map_err(Clone::clone)?;
+    match space.planes() {
+        Ok(planes) => in_corridor(scenario, (space, planes), law),
+        Err(lacking) => holding_b(scenario, (space, lacking)),
+    }
+}
+
+/// The law of a motion whose moment is to be least.
+fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
+    match task.law {
+        TimeLaw::Fastest | TimeLaw::FastestSmooth => {
+            Err(Refusal::Task("least-reaction wants a law over a given time: quintic or septic".into()))
+        }
+        TimeLaw::Trapezoidal => Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into())),
+        law @ (TimeLaw::Quintic | TimeLaw::Septic) => Ok(law),
+    }
+}
+
+/// All curves one after another over u = t/T, each by the law in its share of the time.
+fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
+    let total: f64 = curves.iter().map(Curve::length).sum();
+    let profile =
+        Profile::sequence(curves.iter().map(|c| (Profile::of(law, c.length() / total), c.length())).collect());
+    move |u: f64| {
+        let at = profile.at(u);
+        let (i, s) = trace::part(curves, at.s);
+        let scale = total / curves[i].length();
+        let local = curves[i].at(s);
+        let (rate, acceleration) = (at.rate * scale, at.acceleration * scale);
+        CurvePoint {
+            p: local.p,
+            first: local.first * rate,
+            second: local.second * rate * rate + local.first * acceleration,
+        }
+    }
+}
+
+/// The end effector's curves with b changing as little as its corridor allows.
+fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law: TimeLaw) -> Result<Plan, Refusal> {
+    let (task, map) = (&scenario.task, planes.map());
+    let curves = curves(task, &task.points())?;
+    let curve = whole(&curves, law);
+    let goal = match task.least {
+        Least::MeanSquare => Goal::Rms,
+        Least::Peak => Goal::Peak,
+    };
+    let (model, _) = dynamics_of(scenario);
+    let mut refused = None;
+    for start in map.poses(task.points()[0], task.b).iter() {
+        match LeastReaction::plan(map, &model, &curve, *start, task.b_to, goal) {
+            Ok(plan) => {
+                let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
+                keeps_rules(scenario, &motion)?;
+                let verdicts = plan.compare(scenario.machine.end_effector(), &curve, task.time);
+                return Ok(Plan { verdicts: Some(verdicts), ..Plan::of(scenario, motion) });
+            }
+            Err(why) => refused = Some(refused.unwrap_or(why)),
+        }
+    }
+    match refused {
+        Some(why) => Err(Refusal::LeastReaction(why)),
+        None => {
+            let refusal = serve(task, space, &task.points()[..1]).err();
+            Err(refusal.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
+        }
+    }
+}
+
+/// With b held, where it can be: then nothing reaches the base. Between which b a path could choose is known on planes only.
+fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    if let Some(b_to) = task.b_to.filter(|b_to| *b_to != task.b) {
+        return Err(Refusal::Task(format!(
+            "with {} drives the least reaction holds b, here to end at {b_to} rad: want change-b, or b_to = default",
+            space.drives()
+        )));
+    }
+    let holding = |b: f64, effort| {
+        let own = Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), b, b_to: None, ..task.clone() };
+        along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario, Ok(space), effort))
+    };
+    let why = match holding(task.b, Effort::Whole) {
+        Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario, space)?), ..plan }),
+        Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
+        Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
+            return Err(Refusal::Unreachable { point, unreachable });
+        }
+        Err(why) => why,
+    };
+    let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
+    let common = BSet::overlap(&sets.unwrap_or_default());
+    let tries =
+        common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
+    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), Effort::Trial).is_ok());
+    let would_do = match does {
+        Some(b) => format!("at b = {b} rad it can: want that"),
+        None => "want minimum-norm, or change-b from point to point".into(),
+    };
+    let only = match lacking.is_mendable() {
+        true => format!("it can change on the way only on planes: {lacking}"),
+        false => "with other than three drives it does not change on the way".into(),
+    };
+    let why = why.to_string();
+    Err(Refusal::NoWay(format!(
+        "b = {} rad cannot be held along this path ({}), and {only}; {would_do}",
+        nine_digits(task.b),
+        why.split(": want").next().unwrap_or(&why)
+    )))
+}
+
+/// The verdicts on a motion that holds b.
+fn nothing(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts, Refusal> {
+    let usual = minimum_norm(scenario, Ok(space)).and_then(|parts| Ok(timed(scenario, parts)?.0));
+    let minimum_norm = match usual {
+        Ok(motion) => {
+            let (model, around) = dynamics_of(scenario);
+            let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
+            let reaction = Reaction { peak: forecast.moment, rms: forecast.moment_rms };
+            Ok(MinimumNorm { reaction, end_b: forecast.b_end, keeps_limits: keeps_rules(scenario, &motion).is_ok() })
+        }
+        Err(Refusal::Path(why)) => Err(why),
+        Err(why) => return Err(why),
+    };
+    Ok(Verdicts { fixed: FixedB::Serves, minimum_norm, least: Reaction { peak: 0.0, rms: 0.0 } })
+}
