@@ -9,13 +9,14 @@ use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::pick::{Aim, Pick};
 use stillbase::picture::scene::pointer::Pointer;
+use stillbase::picture::scene::stage::Stage;
 use stillbase::picture::scene::tower::Tower;
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
 use stillbase::picture::scene::{Line, Measure, Scene, place};
 use stillbase::planning::reactionless::AngleLimit;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Edit, Session};
+use stillbase::session::{Edit, Run, Session};
 use stillbase::simulation::frame::Frame;
 
 fn open(case: &str) -> Session {
@@ -44,8 +45,12 @@ fn sessions() -> Vec<Session> {
     vec![open("case-3"), moving, posed("case-3", 4.9), posed("case-3", -11.3), posed("case-3", 31.0), outside]
 }
 
+fn raised(run: &Run) -> Tower {
+    Tower::of(run, Stage::of(run).outlined().expect("it has a workspace")).expect("three drives")
+}
+
 fn tower_of(session: &Session) -> (Tower, Scene) {
-    let tower = Tower::of(session.run()).expect("three drives");
+    let tower = raised(session.run());
     let scene = tower.scene(session.frame(), &ViewOptions::default(), &tower.camera());
     (tower, scene)
 }
@@ -185,7 +190,7 @@ fn bars_end_where_b_stops_reaching_the_point() {
     }
     // Anywhere: within the window, whole turns apart, and never where the point cannot be reached.
     for session in sessions() {
-        let (tower, frame) = (Tower::of(session.run()).expect("three drives"), session.frame());
+        let (tower, frame) = (raised(session.run()), session.frame());
         let [low, high] = tower.window(frame.b_reference);
         for (post, bars) in tower.posts(frame) {
             let set = session.run().planes().expect("three drives").map().reach(post.at).expect("within reach");
@@ -202,7 +207,7 @@ fn bars_end_where_b_stops_reaching_the_point() {
 /// The window of b holds the present one, never jumps, and is where the paper's b are.
 #[test]
 fn the_window_of_b_slides() {
-    let tower = Tower::of(open("case-3").run()).expect("three drives");
+    let tower = raised(open("case-3").run());
     assert_eq!(tower.window(2.4), [0.0, 5.0]);
     let mut last = sliding(-20.0, 2.5, 5.0, 0.4);
     for i in -2000..2000 {
@@ -297,7 +302,7 @@ fn pointer(camera: Camera, at: [f64; 3]) -> Pointer {
 #[test]
 fn pulling_the_slice_asks_for_the_b_under_the_pointer() {
     let session = open("case-3");
-    let (frame, tower) = (session.frame(), Tower::of(session.run()).expect("three drives"));
+    let (frame, tower) = (session.frame(), raised(session.run()));
     let planes = session.run().planes().expect("three drives");
     let inside = planes.map().forward([2.2, 0.8], frame.b_reference);
     for camera in cameras(tower.camera()) {
@@ -320,7 +325,7 @@ fn pulling_the_slice_asks_for_the_b_under_the_pointer() {
 #[test]
 fn a_bar_gives_the_b_at_the_pointer_within_reach() {
     let session = open("case-3");
-    let (frame, tower) = (session.frame(), Tower::of(session.run()).expect("three drives"));
+    let (frame, tower) = (session.frame(), raised(session.run()));
     let camera = tower.camera();
     let over = |b: f64| pointer(camera, [0.5, 0.5, b * tower.rise()]);
     let grip = tower.pick(frame, &over(1.9)).expect("the bar of A");
@@ -453,7 +458,7 @@ fn axes_mark_their_values() {
 #[test]
 fn the_grid_is_behind() {
     let session = open("case-3");
-    let tower = Tower::of(session.run()).expect("three drives");
+    let tower = raised(session.run());
     for camera in cameras(tower.camera()) {
         let scene = tower.scene(session.frame(), &ViewOptions::default(), &camera);
         let eye = camera.eye_direction();

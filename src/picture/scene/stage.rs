@@ -2,7 +2,6 @@
 
 mod base;
 mod limits;
-mod outline;
 mod path;
 mod pins;
 mod reaction;
@@ -14,7 +13,7 @@ mod under;
 mod workspace;
 
 pub use base::PULL;
-pub use outline::{Outlined, Outlining};
+pub use workspace::{Outlining, Workspace};
 
 use std::sync::Arc;
 
@@ -29,7 +28,7 @@ use super::pick::{Aim, Hold, Hook, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
-use crate::planning::pose_space::PoseSpace;
+use crate::planning::pose_space::{Planes, PoseSpace};
 use crate::query::{Queries, Shared};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
@@ -38,22 +37,19 @@ use limits::Limits;
 use path::Plan;
 use pins::Pins;
 use ring::Ring;
-use workspace::Workspace;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Stage {
     linkage: Linkage,
     base: BaseStage,
-    workspace: Option<Workspace>,
+    reached: Reached,
+    /// The mesh that fills it.
+    fill: Option<usize>,
     /// The b to compare with, rad.
     compared: Option<f64>,
     /// Of a machine with a b to turn.
     ring: Option<Ring>,
-    /// The same of other than three drives.
-    outline: Outline,
-    /// The mesh that fills it.
-    fill: Option<usize>,
     plan: Option<Plan>,
     /// Whether the run waits, and whether a hand can lead the machine.
     waits: bool,
@@ -65,23 +61,21 @@ pub struct Stage {
     grid: Grid,
 }
 
-/// The outline of what other than three drives reach while b is held.
+/// What is reached while b is held.
 #[derive(Clone, Debug)]
-enum Outline {
+enum Reached {
     /// There is none.
     None,
-    /// It is yet to be found.
+    /// Its outline is yet to be found.
     Wanted(Arc<PoseSpace>),
     /// Here it is.
-    Done(Arc<Outlined>),
+    Done(Arc<Workspace>),
 }
 
-impl Outline {
-    fn done(&self) -> Option<&Outlined> {
-        match self {
-            Self::Done(outline) => Some(outline),
-            _ => None,
-        }
+impl Reached {
+    /// Of a pose space: planes know it at once.
+    fn of(space: &Arc<PoseSpace>) -> Self {
+        Workspace::known(space).map_or_else(|| Self::Wanted(space.clone()), |known| Self::Done(Arc::new(known)))
     }
 }
 
@@ -100,7 +94,7 @@ impl Stage {
         }
     }
 
-    /// The same but for the outline of what other than three drives reach, which takes longer.
+    /// The same but for an outline of what is reached that takes longer.
     pub fn begun(run: &Run) -> Self {
         let model = &run.scenario().machine;
         // A machine with other lengths is drawn as it is.
@@ -109,14 +103,10 @@ impl Stage {
         let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
         Self {
             base: BaseStage::of(run, &plant, &linkage),
-            workspace: run.planes().map(|planes| Workspace::of(planes, compared)),
+            reached: space.map_or(Reached::None, Reached::of),
+            fill: None,
             compared,
             ring: space.filter(|space| !space.joints().is_empty()).map(|space| Ring::of(space, ring_radius(&linkage))),
-            outline: match space {
-                Some(space) if space.planes().is_err() => Outline::Wanted(space.clone()),
-                _ => Outline::None,
-            },
-            fill: None,
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
             follows: run.waiting().is_none() && space.is_some(),
@@ -131,46 +121,51 @@ impl Stage {
     /// The same without a workspace, for a run that is led otherwise.
     #[must_use]
     pub fn without_workspace(self) -> Self {
-        Self { workspace: None, ring: None, outline: Outline::None, ..self }
+        Self { ring: None, reached: Reached::None, ..self }
     }
 
-    /// The outline of what other than three drives reach, once it is found.
-    pub fn outlined(&self) -> Option<&Outlined> {
-        self.outline.done()
+    /// What is reached while b is held, once it is found.
+    pub fn outlined(&self) -> Option<&Workspace> {
+        match &self.reached {
+            Reached::Done(workspace) => Some(workspace),
+            _ => None,
+        }
     }
 
     /// What is yet to be outlined.
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
-        match &self.outline {
-            Outline::Wanted(space) => Some(space.clone()),
+        match &self.reached {
+            Reached::Wanted(space) => Some(space.clone()),
             _ => None,
         }
     }
 
     /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Outlined>>) {
-        if matches!(&self.outline, Outline::Wanted(space) if **space == *of) {
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Workspace>>) {
+        if matches!(&self.reached, Reached::Wanted(space) if **space == *of) {
             match outline {
                 Some(outline) => self.take(outline),
-                None => self.outline = Outline::None,
+                None => self.reached = Reached::None,
             }
         }
     }
 
     /// Takes the outline over from another stage, if it is the same.
     pub fn keep_outline(&mut self, other: &Self) {
-        if let (Outline::Wanted(space), Outline::Done(outline)) = (&self.outline, &other.outline)
+        if let (Reached::Wanted(space), Reached::Done(outline)) = (&self.reached, &other.reached)
             && outline.space() == &**space
         {
             self.take(outline.clone());
         }
     }
 
-    fn take(&mut self, outline: Arc<Outlined>) {
-        if !outline.fill().triangles.is_empty() {
-            self.fill = Some(self.linkage.add(outline.fill().clone()));
-        }
-        self.outline = Outline::Done(outline);
+    fn take(&mut self, outline: Arc<Workspace>) {
+        self.fill = outline.fill().map(|mesh| self.linkage.add(mesh.clone()));
+        self.reached = Reached::Done(outline);
+    }
+
+    fn planes(&self) -> Option<&Planes> {
+        self.outlined()?.planes()
     }
 
     /// Takes over what has changed of base and payload.
@@ -190,7 +185,7 @@ impl Stage {
 
     /// From where to where a measure of dexterity is shaded.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
-        self.workspace.as_ref().map_or([0.0, 1.0], |workspace| workspace.shaded(measure))
+        self.outlined().and_then(|workspace| workspace.shaded(measure)).unwrap_or([0.0, 1.0])
     }
 
     /// Radius of the b ring, m.
@@ -257,15 +252,15 @@ impl Stage {
             let i = self.link_at(shown, pointer)?;
             return turning::hook(i, self.linkage.bars().get(i)?, shown, pointer);
         }
-        let workspace = self.workspace.as_ref().filter(|_| self.follows)?;
-        let (i, map) = (self.link_at(shown, pointer)?, workspace.planes().map());
+        let planes = self.planes().filter(|_| self.follows)?;
+        let (i, map) = (self.link_at(shown, pointer)?, planes.map());
         turning::grip(i, self.linkage.bars().get(i)?, map, shown, pointer)
     }
 
     /// The angles (a_1, a_2), rad, at which a link points where the pointer pulls it, on the plane b; as near to that as
     /// the joint limits let it.
     pub fn turned(&self, link: usize, grip: &Hold, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
-        let map = self.workspace.as_ref()?.planes().map();
+        let map = self.planes()?.map();
         turning::turned(self.linkage.bars().get(link)?, grip, map, shown, pointer, b)
     }
 
@@ -277,7 +272,8 @@ impl Stage {
     /// What is under the pointer that cannot be pulled at; the uppermost of several.
     pub fn under(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
         let load = || self.base.load_at(shown).filter(|at| under::payload(*at, &self.linkage, pointer));
-        let edge = || self.workspace.as_ref().filter(|w| under::line(&w.edge(shown, self.linkage.floor()), pointer));
+        let known = || self.outlined().filter(|workspace| workspace.planes().is_some());
+        let edge = || known().filter(|w| under::line(&w.edge(shown, self.linkage.floor()), pointer));
         load()
             .map(|_| Handle::Payload)
             .or_else(|| under::reaction(&self.linkage, shown, pointer))
@@ -316,27 +312,15 @@ impl Stage {
         });
         let links = links.map(|[x, y, z]| (on_base(Vector::new(x, y)), z));
         let workspace = |b: f64| {
-            let planes = self.workspace.as_ref().map(Workspace::planes);
-            let loops = planes.map_or_else(Vec::new, |planes| planes.boundary().turned(b));
-            loops.into_iter().flatten().step_by(4).map(|[x, y]| (on_base(Vector::new(x, y)), self.linkage.floor()))
+            let points = self.outlined().map_or_else(Vec::new, |workspace| workspace.points(b, frame));
+            points.into_iter().map(|p| (p, self.linkage.floor()))
         };
-        let outline = self.outline.done().into_iter().flat_map(|outline| outline.points(frame.b_reference, frame));
-        let outline = outline.map(|p| (p, self.linkage.floor()));
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
         let target = [(Shown::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
-        let compared = self.workspace.as_ref().and_then(Workspace::compared_b);
-        let other = self.compared.zip(self.outline.done()).map(|(b, outline)| outline.points(b, frame));
-        let other = other.into_iter().flatten().map(|p| (p, self.linkage.floor()));
         Content {
-            first: links
-                .chain(workspace(frame.b_reference))
-                .chain(outline)
-                .chain(waypoints)
-                .chain(target)
-                .map(points)
-                .collect(),
-            then: compared.into_iter().flat_map(workspace).chain(other).map(points).collect(),
+            first: links.chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
+            then: self.compared.into_iter().flat_map(workspace).map(points).collect(),
         }
     }
 
@@ -361,17 +345,11 @@ impl Stage {
         self.grid.draw(&mut scene, &palette);
         self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.times());
         self.base.draw(&mut scene, linkage, &palette, shown);
-        if let Some(workspace) = &self.workspace {
-            workspace.draw(&mut scene, linkage, &palette, shown, options);
+        if let Some(workspace) = self.outlined() {
+            workspace.draw(&mut scene, (linkage, self.fill), &palette, shown, (options, self.compared));
         }
         if let Some(ring) = &self.ring {
             ring.draw(&mut scene, &palette, shown, options, z);
-        }
-        if let Some(outline) = self.outline.done() {
-            if let Some(b) = self.compared.filter(|_| options.compares) {
-                outline.draw_compared(&mut scene, linkage, &palette, b, shown.base);
-            }
-            outline.draw(&mut scene, (linkage, self.fill), &palette, shown);
         }
         if let Some(plan) = &self.plan {
             plan.draw(&mut scene, &palette, options);
@@ -397,8 +375,8 @@ impl Stage {
         if let Some(plan) = self.plan.as_ref().filter(|plan| !plan.waits()) {
             scene.solids.extend(self.linkage.ghost("plan/start", &plan.start, palette, 0.16));
         }
-        if let (Some(b), Some(workspace)) = (options.preview_b, &self.workspace) {
-            let map = workspace.planes().map();
+        if let (Some(b), Some(planes)) = (options.preview_b, self.planes()) {
+            let map = planes.map();
             let p = self.plan.as_ref().and_then(|plan| plan.begins).unwrap_or(shown.frame.target.at);
             for pose in map.poses(p, b).iter() {
                 let q = DriveAngles::from(map.lift(*pose));

@@ -14,7 +14,7 @@ use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::Pointer;
-use super::stage::Outlined;
+use super::stage::Workspace;
 use super::wall::Wall;
 use super::{Anchor, Changes, Label, Line, Marker, Mesh, Model, Scene, Solid, Strips, point, posed};
 use crate::mechanics::machine::place_of;
@@ -79,35 +79,22 @@ pub struct Post {
 }
 
 impl Tower {
-    /// Prepares a run for drawing, over [`SPAN`]; to be made again when its machine or plan changes.
-    pub fn of(run: &Run) -> Option<Self> {
-        Self::showing(run, SPAN, None)
+    /// Prepares a run for drawing, over [`SPAN`], once what it reaches is known; to be made again when its machine or plan
+    /// changes.
+    pub fn of(run: &Run, reached: &Workspace) -> Option<Self> {
+        Self::rising(run, reached.shape(), SPAN, None)
     }
 
     /// For a whole run, whose b lie in a range: it shows [`SPAN`] or more, up to [`MOST`], and stands still. Its wall
-    /// is a few thousand triangles. Without planes it stands over an outline.
-    pub fn over(run: &Run, outline: Option<&Outlined>, b: [f64; 2]) -> Option<Self> {
+    /// is a few thousand triangles.
+    pub fn over(run: &Run, reached: &Workspace, b: [f64; 2]) -> Option<Self> {
         let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
         let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN));
-        match outline {
-            Some(outline) => Self::rising(run, outline.shape(), span, fixed),
-            None => Self::showing(run, span, fixed),
-        }
-    }
-
-    /// Of a machine of other than three drives, whose workspace is outlined, over [`SPAN`].
-    pub fn outlined(run: &Run, outline: &Outlined) -> Option<Self> {
-        Self::rising(run, outline.shape(), SPAN, None)
-    }
-
-    fn showing(run: &Run, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
-        let loops = run.planes()?.boundary().turned(0.0);
-        let outlines = loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect();
-        Self::rising(run, outlines, span, fixed)
+        Self::rising(run, reached.shape(), span, fixed)
     }
 
     /// Above outlines at b = 0: closed ones, with the inside on their left.
-    fn rising(run: &Run, outlines: Vec<Vec<Vector>>, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
+    fn rising(run: &Run, outlines: &[Vec<Vector>], span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
         let space = run.pose_space().ok()?.clone();
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         if !(radius > 0.0 && span.is_finite() && span > 0.0) {
@@ -115,7 +102,7 @@ impl Tower {
         }
         let rise = HEIGHT * radius / span;
         let grain = if fixed.is_some() { GRAIN } else { 1.0 };
-        let wall = Wall::with_grain(&outlines, space.turn(1.0) / rise, grain);
+        let wall = Wall::with_grain(outlines, space.turn(1.0) / rise, grain);
         // The fill of a slice is known of planes alone.
         let slice = match space.planes() {
             Ok(planes) => sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),

@@ -14,7 +14,7 @@ use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
 use super::section::Section;
-use super::stage::{Outlined, PULL, Stage};
+use super::stage::{PULL, Stage, Workspace};
 use super::tower::Tower;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::DriveAngles;
@@ -153,7 +153,7 @@ impl PartialEq for Seen {
 
 impl Quick for Views {
     type Input = Seen;
-    /// In the window but for the outline of what other than three drives reach, which takes longer, and their tower.
+    /// In the window but for an outline of what is reached that takes longer, and its tower.
     type Answer = Self;
 
     fn answer(seen: &Seen) -> Self {
@@ -176,19 +176,21 @@ impl Views {
     pub fn over(run: &Run, b: [f64; 2], queries: &Queries) -> Self {
         let mut stage = Stage::begun(run);
         stage.finish(queries);
-        let (joints, tower) = (Joints::over(run, b), Tower::over(run, stage.outlined(), b));
+        let tower = stage.outlined().and_then(|reached| Tower::over(run, reached, b));
+        let joints = Joints::over(run, b);
         let machine = run.scenario().machine.clone();
         Self { joints, tower, draft: Draft::of(&machine), stage, machine }
     }
 
-    /// The same but for the outline of what other than three drives reach, which takes longer, and their tower.
+    /// The same but for an outline of what is reached that takes longer, and its tower.
     pub fn begun(run: &Run) -> Self {
         Self::with(Stage::begun(run), run)
     }
 
     fn with(stage: Stage, run: &Run) -> Self {
         let machine = run.scenario().machine.clone();
-        Self { stage, joints: Joints::of(run), tower: Tower::of(run), draft: Draft::of(&machine), machine }
+        let tower = stage.outlined().and_then(|reached| Tower::of(run, reached));
+        Self { stage, joints: Joints::of(run), tower, draft: Draft::of(&machine), machine }
     }
 
     /// Whether a machine looks like that of other views: its links are the same, wherever its limits are.
@@ -218,7 +220,7 @@ impl Views {
     }
 
     /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Outlined>>) {
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Workspace>>) {
         self.stage.set_outline(of, outline);
     }
 
@@ -241,10 +243,10 @@ impl Views {
         }
     }
 
-    /// Makes the tower of other than three drives, once their workspace is outlined.
+    /// Makes the tower, once what is reached is outlined.
     pub fn raise_tower(&mut self, run: &Run) {
-        if let (None, Some(outline)) = (&self.tower, self.stage.outlined()) {
-            self.tower = Tower::outlined(run, outline);
+        if let (None, Some(reached)) = (&self.tower, self.stage.outlined()) {
+            self.tower = Tower::of(run, reached);
         }
     }
 

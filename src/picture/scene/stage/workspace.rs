@@ -1,4 +1,4 @@
-//! The reactionless workspaces, and what runs inside them.
+//! What is reached while b is held: the reactionless workspace of any number of drives, and what runs inside it.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
@@ -9,19 +9,53 @@ use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{
-    Anchor, Area, Label, Line, Marker, Measure, Name, Rgba, Scene, Shade, Strips, dexterity, point, posed,
+    Anchor, Area, Changes, Label, Line, Marker, Measure, Mesh, Name, Rgba, Scene, Shade, Solid, Strips, dexterity,
+    fill, point, posed,
 };
-use crate::planning::pose_space::Planes;
-use crate::planning::reactionless::{self, AngleLimit, PlaneMap};
+use crate::planning::pose_space::{Planes, PoseSpace};
+use crate::planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
+use crate::query::{Portion, Query, Shared, Watch};
+use crate::simulation::frame::Frame;
 
-/// The workspaces of a run before they are turned: that of its b, one to compare with, and one that is looked at.
+/// Chords are as near to the boundary as this, m for an arm of a metre: less than a pixel.
+const CHORD: f64 = 5e-4;
+
+/// How much of the colour fills it, and how far below the boundary triangles lie, as a share of the reach.
+const FILL: f32 = 0.13;
+const BELOW: f64 = 1e-3;
+
+/// Words stand this far above their place on planes and elsewhere, points.
+const RAISED: [f32; 2] = [0.0, -26.0];
+
+/// A workspace before it is turned: a region, or the curve of two drives.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    planes: Arc<Planes>,
-    /// Where words about it have the most room.
-    middle: Option<Vector>,
-    compared: Option<f64>,
+    space: Arc<PoseSpace>,
     boundary: Strips,
+    /// The boundary as closed lines, m: a curve there and back.
+    shape: Vec<Vec<Vector>>,
+    /// What it is, and its length or area.
+    words: [String; 2],
+    /// Where words about it have the most room, m.
+    middle: Option<Vector>,
+    /// Where a curve ends, m, and at which angle.
+    ends: Vec<(Vector, String)>,
+    inside: Inside,
+}
+
+/// What fills a workspace.
+#[derive(Clone, Debug)]
+enum Inside {
+    /// Planes know it by Eq. (16).
+    Sheets(Sheets),
+    /// Triangles, none of a curve.
+    Filled(Arc<Mesh>),
+}
+
+/// What planes know of the inside.
+#[derive(Clone, Debug)]
+struct Sheets {
+    planes: Arc<Planes>,
     folds: Strips,
     limits: Strips,
     change_points: Strips,
@@ -32,19 +66,44 @@ pub struct Workspace {
 }
 
 /// What is reached while b is held, in words that promise no more than is true.
-pub(super) fn held(noun: &str, is_reactionless: bool) -> String {
+fn held(noun: &str, is_reactionless: bool) -> String {
     format!("{}reactionless {noun}", if is_reactionless { "" } else { "nearly " })
 }
 
+/// The outline of what a pose space reaches while b is held.
+#[derive(Debug)]
+pub struct Outlining(Shared<PoseSpace>);
+
+impl Query for Outlining {
+    type Input = Shared<PoseSpace>;
+    /// Nothing of a machine that stays on a point.
+    type Answer = Option<Arc<Workspace>>;
+
+    fn begin(space: Self::Input) -> Self {
+        Self(space)
+    }
+
+    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+        let mut stopped = false;
+        let mut watched = |share: f64| {
+            stopped = !goes_on(share);
+            !stopped
+        };
+        let outline = Workspace::outlined(&self.0.0, &mut watched);
+        if stopped { Portion::Stopped } else { Portion::Done(outline.map(Arc::new)) }
+    }
+}
+
 impl Workspace {
-    /// Of planes, with a b to compare with.
-    pub fn of(planes: &Arc<Planes>, compared: Option<f64>) -> Self {
+    /// Of a machine with planes, whose workspace is known at once.
+    pub fn known(space: &Arc<PoseSpace>) -> Option<Self> {
+        let planes = space.planes().ok()?;
         let boundary = planes.boundary();
-        let loops: Vec<Vec<Vector>> = boundary.turned(0.0).into_iter().map(vectors).collect();
-        let drawn = |lines: &mut dyn Iterator<Item = &reactionless::BoundaryLine>| -> Strips {
+        let shape: Vec<Vec<Vector>> = boundary.turned(0.0).iter().map(|line| vectors(line)).collect();
+        let drawn = |lines: &mut dyn Iterator<Item = &BoundaryLine>| -> Strips {
             lines
                 .map(|line| {
-                    let mut points = vectors(line.turned(0.0));
+                    let mut points = vectors(&line.turned(0.0));
                     points.extend(points.first().copied().filter(|_| line.is_closed()));
                     flat(&points)
                 })
@@ -55,89 +114,200 @@ impl Workspace {
             points.extend(points.first().copied().filter(|first| points.len() > 2 && points.last() != Some(first)));
             points
         };
-        Self {
-            middle: roomiest(planes, &loops),
-            compared,
-            boundary: loops.iter().map(closed).collect(),
-            folds: drawn(&mut boundary.fold_curves().iter()),
-            limits: drawn(&mut boundary.inner_limits().iter()),
-            change_points: drawn(&mut boundary.change_curves().iter().map(|curve| &curve.line)),
-            cusps: boundary.cusps().iter().map(|v| v.at).collect(),
-            dexterity: Default::default(),
-            planes: planes.clone(),
+        Some(Self {
+            boundary: shape.iter().map(closed).collect(),
+            words: [held("workspace", space.is_reactionless()), format!("{:.3} m²", boundary.area())],
+            middle: roomiest_of_planes(planes, &shape),
+            ends: Vec::new(),
+            inside: Inside::Sheets(Sheets {
+                folds: drawn(&mut boundary.fold_curves().iter()),
+                limits: drawn(&mut boundary.inner_limits().iter()),
+                change_points: drawn(&mut boundary.change_curves().iter().map(|curve| &curve.line)),
+                cusps: boundary.cusps().iter().map(|v| v.at).collect(),
+                dexterity: Default::default(),
+                planes: planes.clone(),
+            }),
+            shape,
+            space: space.clone(),
+        })
+    }
+
+    /// Of any other machine with a pose constant; nothing of one that stays on a point, or if, told how much is done, the
+    /// caller wants the rest no more.
+    fn outlined(space: &Arc<PoseSpace>, goes_on: Watch<'_>) -> Option<Self> {
+        let outline = space.outline_within(0.0, CHORD, goes_on)?;
+        let curve = vectors(&outline.curve);
+        let (lines, words, middle) = if curve.len() > 1 {
+            let words = [held("curve", space.is_reactionless()), format!("{:.3} m", outline.length)];
+            (vec![flat(&curve)], words, curve[curve.len() / 2])
+        } else {
+            let closed = |line: &Vec<[f64; 2]>| {
+                let mut points = flat(&vectors(line));
+                points.extend(points.first().copied());
+                points
+            };
+            let words = [held("workspace", space.is_reactionless()), format!("{:.3} m²", outline.area)];
+            let middle = roomiest(&outline.loops, outline.extent, 0.35 * space.farthest());
+            (outline.loops.iter().map(closed).collect(), words, middle)
+        };
+        let named = |(end, at): (usize, &Vector)| {
+            let angle = space.joints().first()?.bounds()[end];
+            angle.is_finite().then(|| (*at, format!("a₁ = {:.1}°", angle.to_degrees())))
+        };
+        let ends = [curve.first(), curve.last()].into_iter().flatten().filter(|_| curve.len() > 1);
+        let ends = ends.enumerate().filter_map(named).collect();
+        let there_and_back = |line: &Vec<[f32; 3]>| {
+            let mut line: Vec<Vector> =
+                line.iter().map(|[x, y, _]| Vector::new(f64::from(*x), f64::from(*y))).collect();
+            if curve.len() > 1 {
+                let back: Vec<_> = line.iter().rev().skip(1).copied().collect();
+                line.extend(back);
+            }
+            line
+        };
+        (!lines.is_empty()).then(|| Self {
+            shape: lines.iter().map(there_and_back).collect(),
+            boundary: lines.into(),
+            words,
+            middle: Some(middle),
+            ends,
+            inside: Inside::Filled(Arc::new(fill::mesh(&outline.loops))),
+            space: space.clone(),
+        })
+    }
+
+    /// What it is of.
+    pub fn space(&self) -> &PoseSpace {
+        &self.space
+    }
+
+    /// Its boundary at b = 0 as closed lines, m: a curve there and back.
+    pub fn shape(&self) -> &[Vec<Vector>] {
+        &self.shape
+    }
+
+    /// Triangles that fill it before it is turned, where it needs some.
+    pub fn fill(&self) -> Option<&Mesh> {
+        match &self.inside {
+            Inside::Filled(mesh) if !mesh.triangles.is_empty() => Some(mesh),
+            _ => None,
         }
     }
 
-    /// The planes it is of.
-    pub fn planes(&self) -> &Planes {
-        &self.planes
+    /// The planes it is of, if the machine has some.
+    pub fn planes(&self) -> Option<&Planes> {
+        self.sheets().map(|sheets| &*sheets.planes)
+    }
+
+    fn sheets(&self) -> Option<&Sheets> {
+        match &self.inside {
+            Inside::Sheets(sheets) => Some(sheets),
+            Inside::Filled(_) => None,
+        }
+    }
+
+    /// How far it is turned at a b on a base, rad.
+    fn turn(&self, b: f64, base: Pose2) -> f64 {
+        self.space.turn(b) + base.angle
     }
 
     /// Its boundary at a height, m, where it is in a frame.
     pub fn edge(&self, shown: &Shown<'_>, z: f64) -> Line {
-        let turn = self.planes.map().turn(shown.frame.b_reference) + shown.base.angle;
         let line = Line::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
-        line.moving(posed(shown.base.at, unit(turn), z))
+        line.moving(posed(shown.base.at, unit(self.turn(shown.frame.b_reference, shown.base)), z))
     }
 
-    /// From where to where a measure of dexterity is shaded.
-    pub fn shaded(&self, measure: Measure) -> [f64; 2] {
-        *self.dexterity[measure as usize].get_or_init(|| measure.range(self.planes.map()))
+    /// From where to where a measure of dexterity is shaded; none where planes do not tell it.
+    pub fn shaded(&self, measure: Measure) -> Option<[f64; 2]> {
+        let sheets = self.sheets()?;
+        Some(*sheets.dexterity[measure as usize].get_or_init(|| measure.range(sheets.planes.map())))
     }
 
-    /// The b of the workspace to compare with, rad.
-    pub fn compared_b(&self) -> Option<f64> {
-        self.compared
+    /// Points of its boundary at a b on the base of a frame, m.
+    pub fn points(&self, b: f64, frame: &Frame) -> Vec<Vector> {
+        if let Some(sheets) = self.sheets() {
+            let on_base = |[x, y]: [f64; 2]| frame.base.at + unit(frame.base.angle) * Vector::new(x, y);
+            return sheets.planes.boundary().turned(b).into_iter().flatten().step_by(4).map(on_base).collect();
+        }
+        let turn = unit(self.turn(b, frame.base));
+        let all = self.boundary.iter().flatten();
+        all.map(|[x, y, _]| frame.base.at + turn * Vector::new(f64::from(*x), f64::from(*y))).collect()
     }
 
-    /// The workspace to compare with, the own one, and the one that is looked at.
+    /// The workspace to compare with, the own one, filled with a mesh, and the one that is looked at.
     pub fn draw(
         &self,
         scene: &mut Scene,
-        linkage: &Linkage,
+        (linkage, fill): (&Linkage, Option<usize>),
         palette: &Palette,
         shown: &Shown<'_>,
-        options: &ViewOptions,
+        (options, compared): (&ViewOptions, Option<f64>),
     ) {
-        let (floor, map) = (linkage.floor(), self.planes.map());
-        if let Some(b) = self.compared.filter(|_| options.compares) {
-            self.compared(scene, palette, b, shown.base, floor - 0.002 * linkage.reach());
+        let floor = linkage.floor();
+        if let Some(b) = compared.filter(|_| options.compares) {
+            self.compared(scene, palette, b, shown.base, floor - 2.0 * BELOW * linkage.reach());
         }
+        self.fill_own(scene, (linkage, fill), palette, shown, options);
         self.own(scene, palette, shown, options, floor);
-        if let Some(b) = options.preview_b {
-            let pose = posed(Vector::default(), unit(map.turn(b)), floor);
+        if let (Some(b), Some(_)) = (options.preview_b, self.sheets()) {
+            let pose = posed(Vector::default(), unit(self.space.turn(b)), floor);
             let outline = Line::new("workspace/preview", self.boundary.clone(), 1.2, faded(palette.amber, 0.8));
             scene.lines.push(Line { world_from_item: pose, ..outline.dashed(5.0, 4.0) });
         }
     }
 
     fn compared(&self, scene: &mut Scene, palette: &Palette, b: f64, base: Pose2, z: f64) {
-        let turn = self.planes.map().turn(b) + base.angle;
-        let colour = faded(palette.dim, 0.08);
-        scene.areas.push(area(self.planes.map(), (turn, base.at), "workspace/compared", z, colour));
+        let turn = self.turn(b, base);
+        if let Some(sheets) = self.sheets() {
+            let colour = faded(palette.dim, 0.08);
+            scene.areas.push(area(sheets.planes.map(), (turn, base.at), "workspace/compared", z, colour));
+        }
         let name = "workspace/compared/boundary";
         let edge = Line::new(name, self.boundary.clone(), 1.2, faded(palette.dim, 0.55)).dashed(5.0, 4.0);
         scene.lines.push(edge.moving(posed(base.at, unit(turn), z)));
         if let Some(middle) = self.middle {
             let at = point(base.at + middle * unit(turn), z);
-            let text = format!("b = {:.3} rad", b.rem_euclid(self.planes.map().period()));
+            let text = format!("b = {:.3} rad", b.rem_euclid(self.space.period()));
             let name = "workspace/compared/label";
             scene.labels.push(Label::new(name, at, [0.0, 0.0], text, palette.dim, 11.5, Anchor::Centre));
         }
     }
 
-    fn own(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
-        let (map, b, base) = (self.planes.map(), shown.frame.b_reference, shown.base);
-        let turn = map.turn(b) + base.angle;
-        let mut area = area(map, (turn, base.at), "workspace", z, faded(palette.amber, 0.13));
-        if let Some(measure) = options.dexterity {
+    fn fill_own(
+        &self,
+        scene: &mut Scene,
+        (linkage, fill): (&Linkage, Option<usize>),
+        palette: &Palette,
+        shown: &Shown<'_>,
+        options: &ViewOptions,
+    ) {
+        let (turn, z) = (self.turn(shown.frame.b_reference, shown.base), linkage.floor());
+        let Some(sheets) = self.sheets() else {
+            // Under all lines.
+            let below = posed(shown.base.at, unit(turn), z - BELOW * linkage.reach());
+            scene.solids.extend(fill.map(|mesh| Solid {
+                name: "workspace".into(),
+                mesh,
+                world_from_item: below,
+                colour: faded(palette.amber, FILL),
+                changes: Changes::Pose,
+            }));
+            return;
+        };
+        let mut area = area(sheets.planes.map(), (turn, shown.base.at), "workspace", z, faded(palette.amber, FILL));
+        if let Some((measure, [low, high])) = options.dexterity.and_then(|m| Some((m, self.shaded(m)?))) {
             // By a measure, from its least to its greatest.
-            let [low, high] = dexterity::colours(palette);
-            let [empty, full] = self.shaded(measure).map(|x| x as f32);
-            (area.colour, area.shade) = (low, Some(Shade { measure, colour: high, empty, full }));
+            let [least, most] = dexterity::colours(palette);
+            let (empty, full) = (low as f32, high as f32);
+            (area.colour, area.shade) = (least, Some(Shade { measure, colour: most, empty, full }));
         }
         scene.areas.push(area);
-        let pose = posed(base.at, unit(turn), z);
+    }
+
+    fn own(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+        let (b, base) = (shown.frame.b_reference, shown.base);
+        let turn = unit(self.turn(b, base));
+        let pose = posed(base.at, turn, z);
         let mut line = |name: &'static str, strips: &Strips, width, colour, dash: Option<[f32; 2]>| {
             if !strips.is_empty() {
                 scene.lines.push(Line { dash, ..Line::new(name, strips.clone(), width, colour).moving(pose) });
@@ -145,29 +315,36 @@ impl Workspace {
         };
         let width = if options.hot == Some(Handle::Boundary) { 3.0 } else { 1.8 };
         line("workspace/boundary", &self.boundary, width, palette.amber, None);
-        line("workspace/folds", &self.folds, 1.2, palette.amber, None);
-        line("workspace/inner_limits", &self.limits, 1.2, faded(palette.amber, 0.55), None);
-        line("workspace/change_points", &self.change_points, 1.2, faded(palette.dim, 0.8), Some([2.0, 4.0]));
-        let there = |p: Vector| point(base.at + p * unit(turn), z);
-        let cusps = self.cusps.iter().map(|cusp| Marker::disc("workspace/cusps", there(*cusp), 2.5, palette.amber));
-        scene.markers.extend(cusps);
+        let there = |p: Vector| point(base.at + p * turn, z);
+        if let Some(sheets) = self.sheets() {
+            line("workspace/folds", &sheets.folds, 1.2, palette.amber, None);
+            line("workspace/inner_limits", &sheets.limits, 1.2, faded(palette.amber, 0.55), None);
+            line("workspace/change_points", &sheets.change_points, 1.2, faded(palette.dim, 0.8), Some([2.0, 4.0]));
+            let cusps = sheets.cusps.iter();
+            let cusps = cusps.map(|cusp| Marker::disc("workspace/cusps", there(*cusp), 2.5, palette.amber));
+            scene.markers.extend(cusps);
+        }
+        for (end, words) in &self.ends {
+            scene.markers.push(Marker::disc("workspace/ends", there(*end), 3.5, palette.amber));
+            let (name, offset) = ("workspace/ends/names", [0.0, 14.0]);
+            scene.labels.push(Label::new(name, there(*end), offset, words, palette.dim, 11.5, Anchor::Centre));
+        }
         let Some(middle) = self.middle else { return };
         // Whole turns of the machine make no other workspace.
-        let within = b.rem_euclid(map.period());
-        let rows = [
-            (held("workspace", self.planes.is_reactionless()), palette.amber, 12.5),
-            (format!("b = {within:.3} rad · {:.3} m²", self.planes.boundary().area()), palette.dim, 11.5),
-        ];
+        let within = b.rem_euclid(self.space.period());
+        let [what, size] = &self.words;
+        let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {within:.3} rad · {size}"), palette.dim, 11.5)];
+        let raised = RAISED[usize::from(self.sheets().is_none())];
         for (i, (text, colour, size)) in rows.into_iter().enumerate() {
-            let offset = [0.0, 17.0 * i as f32];
+            let offset = [0.0, raised + 17.0 * i as f32];
             let name = "workspace/label";
             scene.labels.push(Label::new(name, there(middle), offset, text, colour, size, Anchor::Centre));
         }
     }
 }
 
-fn vectors(points: Vec<[f64; 2]>) -> Vec<Vector> {
-    points.into_iter().map(|[x, y]| Vector::new(x, y)).collect()
+fn vectors(points: &[[f64; 2]]) -> Vec<Vector> {
+    points.iter().map(|[x, y]| Vector::new(*x, *y)).collect()
 }
 
 fn flat(points: &[Vector]) -> Vec<[f32; 3]> {
@@ -193,8 +370,8 @@ fn area(map: &PlaneMap, (turn, at): (f64, Vector), name: impl Into<Name>, z: f64
     }
 }
 
-/// The point of the workspace that is farthest from its boundary, of those that the arm's root does not cover.
-fn roomiest(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
+/// The point of the workspace that is farthest from its boundary, m, of those that the arm's root does not cover.
+fn roomiest_of_planes(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
     let map = planes.map();
     let [l1, l2] = map.limits();
     let at = |l: AngleLimit, i: i32| l.min + (f64::from(i) + 0.5) / 20.0 * (l.max - l.min);
@@ -207,4 +384,35 @@ fn roomiest(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
         .map(|p| (room(&p), p))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, p)| p)
+}
+
+/// The point inside the loops that is farthest from them, m, of those of a coarse grid that the arm's root does not
+/// cover.
+fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], root: f64) -> Vector {
+    const GRID: i32 = 16;
+    /// Vertices of a loop that are looked at.
+    const THINNED: usize = 240;
+    let thin = |line: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        line.iter().step_by(line.len().div_ceil(THINNED).max(1)).copied().collect()
+    };
+    let loops: Vec<Vec<[f64; 2]>> = loops.iter().map(thin).collect();
+    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID);
+    let points = (0..GRID * GRID).map(|k| Vector::new(at(k % GRID, x_min, x_max), at(k / GRID, y_min, y_max)));
+    // Edges above or below a point, counted: inside of an odd number.
+    let is_inside = |p: &Vector| {
+        let crossed = |line: &Vec<[f64; 2]>| {
+            let crosses = |i: &usize| {
+                let ([ax, ay], [bx, by]) = (line[*i], line[(*i + 1) % line.len()]);
+                (ay > p.im) != (by > p.im) && p.re < ax + (p.im - ay) / (by - ay) * (bx - ax)
+            };
+            (0..line.len()).filter(crosses).count()
+        };
+        loops.iter().map(crossed).sum::<usize>() % 2 == 1
+    };
+    let room = |p: &Vector| {
+        let all = loops.iter().flatten();
+        all.fold(f64::INFINITY, |least, [x, y]| least.min((Vector::new(*x, *y) - p).norm_sqr()))
+    };
+    let roomy = points.filter(|p| p.norm() > root && is_inside(p)).map(|p| (room(&p), p));
+    roomy.max_by(|p, q| p.0.total_cmp(&q.0)).map(|(_, p)| p).unwrap_or_default()
 }
