@@ -101,18 +101,23 @@
 //! # Where to add something
 //! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
 //!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
-//! * **A setting**: a field, and its row in the `KEYS` beside the part that it sets: `simulation/control.rs`,
-//!   `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/ranges.rs`, and its line in `set.rs`.
-//!   The row says type, range, default, meaning and when it has an effect; files, `--set`, edits, *All settings* in the
-//!   window, `stillbase keys` and the page of the guide follow. A row of its own in the panel stands in `app/side/`.
+//! * **A setting**: a row in the struct of the part that it sets, which `keyed!` declares (`settings/keyed.rs`):
+//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/ranges.rs`,
+//!   and its line in `set.rs`. The row is the field, with type, default, range, meaning and when it has an effect; files,
+//!   `--set`, edits, *All settings* in the window and `stillbase keys` follow, and so does the page of the guide, which
+//!   `stillbase keys --markdown` writes. A row of its own in the panel stands in `app/side/`.
+//! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the
+//!   screen and what it means. Files, keys, the command line and the menus of the window follow.
 //! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
 //!   own). Window, figures and recordings show it then; what can be switched on is an option in
 //!   `picture/scene/options.rs`.
 //! * **What is asked of a machine's poses**: a method of [`PoseSpace`](planning::pose_space::PoseSpace), for any number of
 //!   drives. If only some machines have it, it gives a `Result` with the reason in words; if three drives have a closed
 //!   form, the method takes it, and a test lays it beside [`general`](planning::pose_space::PoseSpace::general).
-//! * **A kind of task**: a variant of `TaskKind`, and its function in `session/planner/`, listed in `choose.rs` there.
-//! * **A time law**: a variant in `planning/timing/law.rs`. Files, commands and the window know it by its words there.
+//! * **A kind of task**: a row of `TaskKind` in `session/scenario/choices.rs`, and its function in `session/planner/`, listed
+//!   in `choose.rs` there.
+//! * **A time law**: a row of the enum in `planning/timing/law.rs`: its words, its formula, and where s̈ jumps or bends.
+//!   All else follows; write a line of `guide/planning.md`.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
 //!   follow; write a line of `guide/command_line.md`.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;

@@ -17,39 +17,7 @@ use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
 use crate::session::{Edit, Session};
 use crate::settings::number::counted;
-
-/// A choice: what stands in a file, what stands on the screen, and what it means.
-type Choice<T> = (T, &'static str, &'static str, &'static str);
-
-const KINDS: [Choice<TaskKind>; 7] = [
-    (TaskKind::Reactionless, "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)"),
-    (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
-    (TaskKind::LeastReaction, "least-reaction", "Least reaction", "Any path, b changing as little as it must"),
-    (TaskKind::ChangeB, "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈"),
-    (
-        TaskKind::ZeroMomentum,
-        "zero-momentum",
-        "Zero momentum",
-        "Reactionless on any machine; on a closed path the joints may drift",
-    ),
-    (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
-    (TaskKind::Given, "given", "As given", "By samples over time, from a file: stillbase import"),
-];
-
-const SHAPES: [Choice<Shape>; 5] = [
-    (Shape::JointLine, "joint-line", "Joint lines", "Straight in joint space"),
-    (Shape::Line, "line", "Straight lines", "The end effector on straight lines"),
-    (Shape::Arc, "arc", "Arc", "One arc through three points"),
-    (Shape::Spline, "spline", "Spline", "A smooth curve through all points"),
-    (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: P, then drag"),
-];
-
-const POSTURES: [Choice<Posture>; 4] = [
-    (Posture::LeastRates, "least-rates", "Drives turn least", "The drives turn as little as they can"),
-    (Posture::Orientation, "orientation", "Keep the hand's orientation", "The last link does not turn"),
-    (Posture::LeastTorque, "least-torque", "Least motor torque", "What the motors need to set the motion up is least"),
-    (Posture::MidRange, "mid-range", "Far from limits", "Joints stay as near to the middle of their ranges as can be"),
-];
+use crate::settings::word::{Choice, Words};
 
 /// The most points that are listed.
 const LISTED: usize = 8;
@@ -59,10 +27,13 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     section(ui, p, "Path");
     let task = &session.scenario().task;
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
-    choose(ui, session, ("Redundancy", "kind"), &KINDS, task.kind, 2.0 * half, commands);
+    let mut kinds = TaskKind::ALL.to_vec();
+    // Those that want more than points come last.
+    kinds.sort_by_key(|kind| matches!(kind, TaskKind::SameTip | TaskKind::Given));
+    choose(ui, session, ("Redundancy", "kind"), &kinds, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, session, ("Shape", "shape"), &SHAPES, task.shape(), half - 16.0, commands);
-        choose(ui, session, ("Time law", "law"), &laws(), task.law, half - 16.0, commands);
+        choose(ui, session, ("Shape", "shape"), Shape::ALL, task.shape(), half - 16.0, commands);
+        choose(ui, session, ("Time law", "law"), TimeLaw::ALL, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
@@ -71,29 +42,22 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     costs(ui, session, p);
 }
 
-fn laws() -> [Choice<TimeLaw>; TimeLaw::ALL.len()] {
-    TimeLaw::ALL.map(|law| {
-        let [word, words, tip] = law.words();
-        (law, word, words, tip)
-    })
-}
-
-fn choose<T: Copy + PartialEq>(
+fn choose<T: Choice>(
     ui: &mut Ui,
     session: &Session,
     (label, key): (&str, &str),
-    choices: &[Choice<T>],
+    choices: &[T],
     now: T,
     width: f32,
     commands: &mut Vec<Command>,
 ) {
-    let shown = choices.iter().find(|c| c.0 == now);
-    let combo = ComboBox::from_id_salt(key).selected_text(shown.map_or("", |c| c.2)).width(width);
+    let combo = ComboBox::from_id_salt(key).selected_text(now.words().screen).width(width);
     let response = combo.show_ui(ui, |ui| {
-        for (value, word, words, tip) in choices {
-            if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
-                let mut change = Change::from_iter([(key.to_owned(), Value::String((*word).into()))]);
-                if *word == "arc" && session.scenario().task.via.is_empty() {
+        for choice in choices {
+            let Words { file: word, screen, meaning } = choice.words();
+            if ui.selectable_label(*choice == now, screen).on_hover_text(meaning).clicked() && *choice != now {
+                let mut change = Change::from_iter([(key.to_owned(), Value::String(word.into()))]);
+                if word == "arc" && session.scenario().task.via.is_empty() {
                     // The arc goes through the middle of the path so far.
                     let p = session.run().on_path(0.5);
                     change.insert("via".into(), vec![vec![p.re, p.im]].into());
@@ -101,7 +65,7 @@ fn choose<T: Copy + PartialEq>(
                 if key == "kind" {
                     // What only the other kind has.
                     change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
-                    let takes = ["given", "reactionless", "minimum-norm"].contains(word);
+                    let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
                     if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
                         change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
                     }
@@ -110,7 +74,7 @@ fn choose<T: Copy + PartialEq>(
             }
         }
     });
-    name(&response.response.on_hover_text(shown.map_or(label, |c| c.3)), label);
+    name(&response.response.on_hover_text(now.words().meaning), label);
 }
 
 /// Sets one key of the task, as an undo of its own.
@@ -235,7 +199,7 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
             let mut blend = task.corners == Corners::Blend;
             let tip = "Round corners off instead of coming to rest there";
             if ui.checkbox(&mut blend, "blend corners").on_hover_text(tip).changed() {
-                set(commands, "corners", if blend { "blend" } else { "stop" });
+                set(commands, "corners", if blend { Corners::Blend } else { Corners::Stop }.words().file);
             }
             if blend {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -257,7 +221,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     match task.kind {
         TaskKind::Reactionless | TaskKind::Given if session.scenario().idle("task.posture").is_none() => {
             let width = ui.available_width() - 10.0;
-            choose(ui, session, ("Freedoms left", "posture"), &POSTURES, task.posture, width, commands);
+            choose(ui, session, ("Freedoms left", "posture"), Posture::ALL, task.posture, width, commands);
             if let Some(drift) = plan.drift().next() {
                 note(ui, p, &format!("the drives end up to {} rad from where they began", signed(drift, 3)));
             }
@@ -304,12 +268,8 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
             }
         }
         TaskKind::LeastReaction => {
-            let least = [
-                (Least::MeanSquare, "mean-square", "Least mean square", "∫ n_B² dt as small as can be"),
-                (Least::Peak, "peak", "Least peak", "The greatest |n_B| as small as can be"),
-            ];
             let width = ui.available_width() - 10.0;
-            choose(ui, session, ("What to keep small", "least"), &least, task.least, width, commands);
+            choose(ui, session, ("What to keep small", "least"), Least::ALL, task.least, width, commands);
             if let Some(verdicts) = &plan.verdicts {
                 let fixed = match verdicts.fixed {
                     FixedB::Serves => "b can stay: no reaction at all".into(),

@@ -67,8 +67,8 @@ impl Keys {
             sought.iter().all(|word| all.contains(word) || key.matches(word))
         };
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
-        let of_part = |&(part, keys): &(&'static str, &'static [Key])| {
-            keys.iter().filter(asked).map(move |key| Row {
+        let of_part = |&(part, tables): &(&'static str, &'static [&'static [Key]])| {
+            tables.iter().copied().flatten().filter(asked).map(move |key| Row {
                 key: key.path,
                 holds: key.holds.to_string(),
                 unit: some(key.unit()),

@@ -29,6 +29,7 @@ use super::input::{
 use super::output::{Format, Table, check_output};
 use super::reach::OfMend;
 use stillbase::settings::number::{counted, fixed};
+use stillbase::settings::word::{Choice, Words};
 
 /// What a plan of a machine is called until a file gives it a name.
 const NAMELESS: &str = "plan";
@@ -132,9 +133,9 @@ enum ShapeName {
 
 /// Every time law by its name in files.
 fn laws() -> PossibleValuesParser {
-    PossibleValuesParser::new(TimeLaw::ALL.map(|law| {
-        let [word, _, does] = law.words();
-        PossibleValue::new(word).help(does)
+    PossibleValuesParser::new(TimeLaw::ALL.iter().map(|law| {
+        let Words { file, meaning, .. } = law.words();
+        PossibleValue::new(file).help(meaning)
     }))
 }
 

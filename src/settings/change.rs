@@ -15,20 +15,28 @@ pub const DEFAULT: &str = "default";
 /// # Errors
 /// What key or value is wrong, and what would be right.
 pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
-    with_as(value, change)
+    read(&laid(value, change)?)
 }
 
-/// The same, read as another type.
+/// The keys of a value with some of them changed, not yet read as a value.
 ///
 /// # Errors
-/// As [`with`].
-pub fn with_as<T: Serialize, U: DeserializeOwned>(value: &T, change: &Table) -> Result<U, String> {
+/// Which number is not finite.
+pub fn laid<T: Serialize>(value: &T, change: &Table) -> Result<Table, String> {
     if let Some(key) = not_finite(change) {
         return Err(format!("{} is not a finite number: want one", clipped(&key)));
     }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
     lay(&mut table, change);
-    table.try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
+    Ok(table)
+}
+
+/// A value by its keys.
+///
+/// # Errors
+/// What key or value is wrong, and what would be right.
+pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, String> {
+    table.clone().try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
 }
 
 /// What the keys of a change hold now, so that [`with`] brings it back.

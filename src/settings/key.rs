@@ -116,6 +116,19 @@ impl Key {
 }
 
 impl Holds {
+    /// The same with numbers in a range, if it holds any.
+    #[must_use]
+    pub const fn within(self, range: Range) -> Self {
+        match self {
+            Self::Number(_) => Self::Number(range),
+            Self::Whole(_) => Self::Whole(range),
+            Self::PerDrive(_) => Self::PerDrive(range),
+            Self::List(count, _) => Self::List(count, range),
+            Self::Points(_) => Self::Points(range),
+            Self::Choice(_) | Self::Switch | Self::Spread(_) | Self::Rows => self,
+        }
+    }
+
     /// Whether a value is of the kind that is held; the word `default` always is.
     pub fn takes(&self, value: &Value) -> bool {
         let number = |value: &Value| change::number(value).is_some();

@@ -10,128 +10,51 @@
 //! joint by its own angle, q_k − q_on. With equal gains on all drives the errors of an
 //! exact model obey Σ D_k e_k = const · decay, so they stay on the plane and transmit nothing; unequal gains leak.
 
-use serde::{Deserialize, Serialize};
-
 use crate::mechanics::dynamics::{by_drives, first, torques};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
-use crate::settings::key::{Holds, Key};
+use crate::settings::keyed::keyed;
 use crate::settings::number::{Short, nine_digits};
 use crate::settings::range::{Check, Range};
-use crate::simulation::plant::{Each, MovingBody, is_default};
+use crate::settings::word::words;
+use crate::simulation::plant::{Each, MovingBody};
 
-/// Control as a file states it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Control {
-    /// What is computed.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub law: ControlLaw,
-    /// K_p, s⁻², one for all drives or one for each.
-    #[serde(default = "stiff")]
-    pub kp: Each,
-    /// K_d, s⁻¹, one for all drives or one for each.
-    #[serde(default = "critical")]
-    pub kd: Each,
-    /// Whether the model includes a base that moves, but no wheel in it; otherwise the base is taken to be fixed.
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
-    pub knows_base: bool,
-    /// How often torques are computed, Hz, and held between; 0: all the time.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub rate: f64,
-    /// From reading the encoders to the torque, s; sampled at every step if no rate is given. Until the first torque
-    /// arrives the motors hold the start pose.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub delay: f64,
-    /// Counts of the encoders in a turn, rates by their differences; 0: exact. All that control knows of the drives is
-    /// rounded to them; the base is measured by other instruments, exactly.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub encoder: f64,
+keyed! {
+    /// Control as a file states it.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Control at "control" {
+        /// What control computes: torques from the model, the same with the payload in it while it is held, or PD from the
+        /// errors alone.
+        law: ControlLaw = "computed-torque";
+        /// Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.
+        kp: Each = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
+        /// Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.
+        kd: Each = "40", range: Range::new(0.0, 2e5, "s⁻¹"), saved: always;
+        // A wheel in the base is no part of the model.
+        /// Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.
+        knows_base: bool = "true", when: "base.kind = free or compliant: a fixed base does not move";
+        /// How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the
+        /// time.
+        rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz");
+        // Sampled at every step if no rate is given. Until the first torque arrives the motors hold the start pose.
+        /// From reading the encoders to the torque, a whole number of steps.
+        delay: f64 = "0", range: DELAY;
+        // All that control knows of the drives is rounded to them; the base is measured by other instruments, exactly.
+        /// Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.
+        encoder: f64 = "0", range: Range::new(0.0, 1e12, "counts");
+    }
 }
-
-/// Every key of `[control]`.
-pub const KEYS: [Key; 7] = [
-    Key::new(
-        "control.law",
-        Holds::Choice(&["computed-torque", "payload-compensation", "pd"]),
-        "computed-torque",
-        "What control computes: torques from the model, the same with the payload in it while it is held, or PD from the \
-         errors alone.",
-    ),
-    Key::new(
-        "control.kp",
-        Holds::PerDrive(Range::new(0.0, 1e10, "s⁻²")),
-        "400",
-        "Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.",
-    ),
-    Key::new(
-        "control.kd",
-        Holds::PerDrive(Range::new(0.0, 2e5, "s⁻¹")),
-        "40",
-        "Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.",
-    ),
-    Key::new(
-        "control.knows_base",
-        Holds::Switch,
-        "true",
-        "Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.",
-    )
-    .when("base.kind = free or compliant: a fixed base does not move"),
-    Key::number(
-        "control.rate",
-        Range::new(0.0, 1e5, "Hz"),
-        "0",
-        "How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the time.",
-    ),
-    Key::number("control.delay", DELAY, "0", "From reading the encoders to the torque, a whole number of steps."),
-    Key::number(
-        "control.encoder",
-        Range::new(0.0, 1e12, "counts"),
-        "0",
-        "Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.",
-    ),
-];
 
 const DELAY: Range = Range::new(0.0, 1.0, "s");
 
-/// What a controller computes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ControlLaw {
-    /// From the whole model.
-    #[default]
-    ComputedTorque,
-    /// From the whole model, with the payload in it while it is held.
-    PayloadCompensation,
-    /// From the errors alone.
-    Pd,
-}
-
-fn stiff() -> Each {
-    Each::All(400.0)
-}
-fn critical() -> Each {
-    Each::All(40.0)
-}
-fn yes() -> bool {
-    true
-}
-fn is_yes(flag: &bool) -> bool {
-    *flag
-}
-
-impl Default for Control {
-    fn default() -> Self {
-        Self {
-            law: ControlLaw::ComputedTorque,
-            kp: stiff(),
-            kd: critical(),
-            knows_base: true,
-            rate: 0.0,
-            delay: 0.0,
-            encoder: 0.0,
-        }
+words! {
+    /// What a controller computes.
+    pub enum ControlLaw {
+        ComputedTorque = "computed-torque", "Computed torque", "From the whole model";
+        PayloadCompensation =
+            "payload-compensation", "… with the payload", "From the whole model, with the payload in it while it is held";
+        Pd = "pd", "PD", "From the errors alone";
     }
 }
 

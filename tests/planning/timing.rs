@@ -19,6 +19,7 @@ use stillbase::planning::timing::usage::ACTIVE;
 use stillbase::planning::timing::{Fastest, Limits, Profile, Progress, TimeError, TimeLaw, Usage, fastest, s_curve};
 use stillbase::session::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
+use stillbase::settings::word::Choice;
 
 use crate::support::tip_line;
 
@@ -139,7 +140,7 @@ proptest! {
     #[test]
     fn derivatives_of_laws_are_their_own(u in 0.002..0.998, duration in 0.2..5.0) {
         prop_assume!(KINKS.iter().all(|kink| f64::abs(u - kink) > 1e-3));
-        for law in TimeLaw::ALL {
+        for &law in TimeLaw::ALL {
             derivatives_agree(&format!("{law:?}"), |t| law.at(t, duration), u * duration, 1e-4 * duration, 1e-6);
             // The second half is the first, backwards.
             let (p, back) = (law.at(u * duration, duration), law.at((1.0 - u) * duration, duration));
@@ -174,7 +175,7 @@ fn laws_have_their_peaks() {
 
 #[test]
 fn laws_begin_and_end_at_rest() {
-    for law in TimeLaw::ALL {
+    for &law in TimeLaw::ALL {
         for t in [-1.0, -1e-300] {
             assert_eq!(law.at(t, 2.0), Progress::still(0.0), "{law:?}");
         }

@@ -1,3 +1,4 @@
-//! How values are typed.
+//! How values are typed, and what choices and parts are written as.
 
 mod quantity;
+mod words;

@@ -10,7 +10,7 @@ use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
-use crate::session::scenario::{KEYS, Value};
+use crate::session::scenario::{Value, part_of};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{Holds, Key};
 use crate::settings::quantity::{self, Misread};
@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Comm
             if count > SHOWN {
                 continue;
             }
-            let of = KEYS.iter().find(|(_, keys)| keys.contains(setting.key)).map_or("", |(part, _)| *part);
+            let of = part_of(setting.key);
             if of != std::mem::replace(&mut part, of) {
                 ui.add_space(2.0);
                 note(ui, p, of);

@@ -8,18 +8,13 @@ use crate::app::{Command, ViewState, place};
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::{Edit, Session};
+use crate::settings::word::Choice;
 use crate::simulation::plant::{Base, BaseKind, Wheel};
-
-const KINDS: [(BaseKind, &str, &str); 3] = [
-    (BaseKind::Fixed, "fixed", "It cannot move"),
-    (BaseKind::Compliant, "compliant", "On springs and dampers, preloaded so that the start is an equilibrium"),
-    (BaseKind::Free, "free", "It floats, as a spacecraft does"),
-];
 
 /// Draws this section.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (base, p) = (&session.scenario().base, &view_state.palette());
-    let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
+    let word = base.kind.words().file;
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
     let back = (*base != Base::default()).then(|| Section::Base.all_back());
     place::of(ui, Handle::Base, p, |ui| section(ui, session, view_state, (&summary, back), commands));
@@ -34,8 +29,9 @@ fn section(
 ) {
     let (base, p) = (&session.scenario().base, &view_state.palette());
     fold(ui, p, ("Base", summary), back, commands, |ui, commands| {
-        let word = |kind: BaseKind| KINDS.iter().find(|k| k.0 == kind).map_or("fixed", |k| k.1);
-        segments(ui, p, &KINDS, base.kind, commands, |kind| Section::Base.set(&["kind"], word(kind)));
+        let kinds: Vec<_> =
+            BaseKind::ALL.iter().map(|kind| (*kind, kind.words().screen, kind.words().meaning)).collect();
+        segments(ui, p, &kinds, base.kind, commands, |kind| Section::Base.set(&["kind"], kind.words().file));
         if base.moves() {
             body(ui, base, p, commands);
             let mut seen = view_state.exaggerates_base;

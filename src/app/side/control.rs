@@ -8,13 +8,8 @@ use crate::app::Command;
 use crate::app::widgets::{Row, tip_of};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
+use crate::settings::word::Choice;
 use crate::simulation::control::{Control, ControlLaw};
-
-const LAWS: [(ControlLaw, &str, &str); 3] = [
-    (ControlLaw::ComputedTorque, "computed-torque", "Computed torque"),
-    (ControlLaw::PayloadCompensation, "payload-compensation", "… with the payload"),
-    (ControlLaw::Pd, "pd", "PD"),
-];
 
 /// Steps between samples that are offered; a rate must fit the simulation's step.
 const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
@@ -26,7 +21,6 @@ const COUNTS: [f64; 6] = [1024.0, 4096.0, 16384.0, 65536.0, 262_144.0, 1_048_576
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let scenario = session.scenario();
     let (control, step, n) = (&scenario.control, scenario.step, scenario.machine.drives());
-    let law = LAWS.iter().find(|l| l.0 == control.law);
     let mut summary = match control.law {
         ControlLaw::ComputedTorque => "computed torque".to_owned(),
         ControlLaw::PayloadCompensation => "with the payload".to_owned(),
@@ -37,9 +31,10 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     }
     let back = (*control != Control::default()).then(|| Section::Control.all_back());
     fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
-        let laws: Vec<(&str, String)> = LAWS.iter().map(|l| (l.1, l.2.to_owned())).collect();
-        choose(ui, ("law", tip_of("control.law")), &laws, &law.map_or("", |l| l.1), commands, |word| {
-            Some(Section::Control.set(&["law"], *word))
+        let laws: Vec<(ControlLaw, String)> =
+            ControlLaw::ALL.iter().map(|law| (*law, law.words().screen.to_owned())).collect();
+        choose(ui, ("law", tip_of("control.law")), &laws, &control.law, commands, |law| {
+            Some(Section::Control.set(&["law"], law.words().file))
         });
         let kp = Gain { label: "Kp", path: &["control", "kp"], decimals: 0, most: 2000.0, normal: 400.0 };
         kp.show(ui, &control.kp, n, p, commands);

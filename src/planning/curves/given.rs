@@ -16,6 +16,8 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
 use crate::planning::curves::spline::{FEWEST, Knots};
 use crate::planning::curves::table::PathTable;
+use crate::settings::key::Holds;
+use crate::settings::keyed::Holding;
 use crate::settings::number::{Short, counted};
 use crate::settings::range::Range;
 
@@ -116,6 +118,10 @@ impl From<Samples> for Vec<Vec<f64>> {
     fn from(samples: Samples) -> Self {
         samples.rows().map(<[f64]>::to_vec).collect()
     }
+}
+
+impl Holding for Samples {
+    const HOLDS: Holds = Holds::Rows;
 }
 
 impl Samples {

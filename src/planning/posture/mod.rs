@@ -26,23 +26,21 @@ mod rows;
 mod search;
 mod stations;
 
-use serde::{Deserialize, Serialize};
-
 pub use hand::Postures;
 pub use led::Led;
 pub use search::{Asked, Found, NoWay};
 
-/// How the freedoms that a point leaves are used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Posture {
-    /// The drives turn as little as they can: searched for, least ∫ |q′|² ds.
-    #[default]
-    LeastRates,
-    /// The last link keeps its orientation.
-    Orientation,
-    /// The motors need the least torques: least ∫ τ² dt.
-    LeastTorque,
-    /// All relative angles are as near to the middle of their ranges as can be: least ∫ ½ Σ x_i² ds.
-    MidRange,
+use crate::settings::word::words;
+
+words! {
+    /// How the freedoms that a point leaves are used.
+    pub enum Posture {
+        /// Searched for: least ∫ |q′|² ds.
+        LeastRates = "least-rates", "Drives turn least", "The drives turn as little as they can";
+        Orientation = "orientation", "Keep the hand's orientation", "The last link does not turn";
+        /// Least ∫ τ² dt.
+        LeastTorque = "least-torque", "Least motor torque", "What the motors need to set the motion up is least";
+        /// Least ∫ ½ Σ x_i² ds.
+        MidRange = "mid-range", "Far from limits", "Joints stay as near to the middle of their ranges as can be";
+    }
 }

@@ -18,6 +18,7 @@ use crate::planning::{Forecast, Motion};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Least, Scenario, Task, TaskKind};
 use crate::settings::number::nine_digits;
+use crate::settings::word::Choice;
 
 /// On planes b changes as little as its corridor allows; elsewhere it is held, where it can be.
 pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
@@ -36,13 +37,13 @@ pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Pl
 
 /// The law of a motion whose moment is to be least.
 fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
-    match task.law {
-        TimeLaw::Fastest | TimeLaw::FastestSmooth => {
-            Err(Refusal::Task("least-reaction wants a law over a given time: quintic or septic".into()))
-        }
-        TimeLaw::Trapezoidal => Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into())),
-        law @ (TimeLaw::Quintic | TimeLaw::Septic) => Ok(law),
+    let serves = |law: &TimeLaw| !law.is_fastest() && law.is_smooth();
+    if serves(&task.law) {
+        return Ok(task.law);
     }
+    let serving: Vec<&str> = TimeLaw::ALL.iter().filter(|law| serves(law)).map(|law| law.words().file).collect();
+    let kind = if task.law.is_fastest() { "law over a given time" } else { "smooth law" };
+    Err(Refusal::Task(format!("least-reaction wants a {kind}: {}", serving.join(" or "))))
 }
 
 /// All curves one after another over u = t/T, each by the law in its share of the time.

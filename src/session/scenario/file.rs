@@ -8,7 +8,7 @@ use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
-use super::task::StatedTask;
+use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
 use crate::session::{TimedEdit, check_edits};
@@ -16,11 +16,11 @@ use crate::settings::change;
 use crate::settings::range::{clipped, shortened};
 use crate::settings::text::{plain, steering};
 use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, PlantDifferences, is_default};
+use crate::simulation::plant::{Base, PlantDifferences};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File<T> {
+struct File {
     name: Option<String>,
     #[serde(default)]
     title: String,
@@ -34,7 +34,7 @@ struct File<T> {
     #[serde(default = "usual_pose_acceleration")]
     pose_acceleration: f64,
     compare_b: Option<f64>,
-    task: T,
+    task: Task,
     #[serde(default, skip_serializing_if = "is_default")]
     control: Control,
     #[serde(default, skip_serializing_if = "is_default")]
@@ -50,6 +50,10 @@ struct File<T> {
     bookmarks: Vec<Bookmark>,
     #[serde(default, rename = "branch", skip_serializing_if = "Vec::is_empty")]
     branches: Vec<StatedBranch>,
+}
+
+fn is_default<T: Default + PartialEq>(part: &T) -> bool {
+    *part == T::default()
 }
 
 const fn usual_step() -> f64 {
@@ -103,16 +107,15 @@ impl Scenario {
     /// # Errors
     /// If it is not a scenario.
     pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
-        let file: File<StatedTask> = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
+        let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
             line: e.span().map(|s| machine::line_of(text, s.start)),
             message: shortened(e.message(), MOST_WORDS),
         })?;
         let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
-        // A key that is left out may stand as such a number until it is filled in, so it has to be seen here.
-        if let Some(key) =
-            text.parse().ok().and_then(|table| change::not_finite(&table)).filter(|key| key.starts_with("task"))
-        {
+        let stated: toml::Table = text.parse().unwrap_or_default();
+        // What is filled in by others has to be a number.
+        if let Some(key) = change::not_finite(&stated).filter(|key| key.starts_with("task")) {
             let message = format!("{} is not a finite number: want one", clipped(&key));
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
@@ -144,7 +147,8 @@ impl Scenario {
         };
         let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
         let stem = plain(&stem).into_owned();
-        let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
+        let states = |key: &str| stated.get("task").is_some_and(|task| task.get(key).is_some());
+        let task = file.task.completed(states, &machine).map_err(|key| ScenarioError::Syntax {
             file: label.into(),
             line: line_of("task"),
             message: format!("missing field `{key}`"),

@@ -5,20 +5,23 @@
 
 mod bounds;
 mod catalog;
+mod choices;
 mod definition;
 mod error;
 mod file;
 mod kept;
+mod points;
 mod settings;
 mod task;
 mod tolerance;
 
 pub(crate) use bounds::{MAX_FRAMES, ordinal};
 pub use bounds::{MAX_STEPS, MAX_TIME, STEP};
+pub use choices::{Corners, Least, Shape, TaskKind};
 pub use definition::Scenario;
 pub use error::ScenarioError;
 pub use file::{Content, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
-pub use settings::{KEYS, SettingError, key_of, keys};
-pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
+pub use settings::{KEYS, SettingError, key_of, keys, part_of};
+pub use task::{Change, MAX_POINTS, PLACE, POSE_CONSTANT, TIME, Task, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

@@ -5,15 +5,17 @@ use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 use super::bounds::{DURATION, POSE_ACCELERATION, STEP, USUAL_POSE_ACCELERATION, USUAL_STEP};
+use super::choices::TaskKind;
 use super::definition::Scenario;
-use super::task::{self, POSE_CONSTANT, TaskKind};
+use super::task::{POSE_CONSTANT, Task};
 use super::tolerance::{self, Tolerance};
 use crate::mechanics::machine::{self, PARTS, is_of_machine, ranges};
 use crate::planning::curves::Samples;
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Holds, Key};
 use crate::settings::range::{Check, Range, clipped};
-use crate::simulation::{control, plant};
+use crate::simulation::control::Control;
+use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
 
 /// The keys that stand alone.
 const OWN: [Key; 4] = [
@@ -31,20 +33,29 @@ const OWN: [Key; 4] = [
 ];
 
 /// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance.
-pub const KEYS: [(&str, &[Key]); 8] = [
-    ("The scenario itself", &OWN),
-    ("Task", &task::KEYS),
-    ("Control", &control::KEYS),
-    ("Plant: what differs in the machine that moves", &plant::KEYS),
-    ("Base", &plant::BASE_KEYS),
-    ("Reaction wheel", &plant::WHEEL_KEYS),
-    ("Machine", &ranges::KEYS),
-    ("Tolerances", &tolerance::KEYS),
+pub const KEYS: [(&str, &[&[Key]]); 8] = [
+    ("The scenario itself", &[&OWN]),
+    ("Task", &[Task::KEYS]),
+    ("Control", &[Control::KEYS]),
+    (
+        "Plant: what differs in the machine that moves",
+        &[PlantDifferences::KEYS, Load::KEYS, Friction::KEYS, LENGTH_KEYS, LinkDifference::KEYS],
+    ),
+    ("Base", &[Base::KEYS]),
+    ("Reaction wheel", &[Wheel::KEYS]),
+    ("Machine", &[&ranges::KEYS]),
+    ("Tolerances", &[&tolerance::KEYS]),
 ];
 
 /// Every key.
 pub fn keys() -> impl Iterator<Item = &'static Key> {
-    KEYS.iter().flat_map(|(_, keys)| keys.iter())
+    KEYS.iter().flat_map(|(_, keys)| keys.iter().copied().flatten())
+}
+
+/// The title of the part that a key is of.
+pub fn part_of(key: &Key) -> &'static str {
+    let of = KEYS.iter().find(|(_, tables)| tables.iter().any(|keys| keys.contains(key)));
+    of.map_or("", |(part, _)| *part)
 }
 
 /// The key of a path, such as `plant.link.5.com`.
@@ -83,7 +94,7 @@ pub enum SettingError {
     #[error(transparent)]
     Machine(#[from] machine::MachineError),
     /// No such part.
-    #[error("there is no setting {key}: want one of {}, {}", KEYS[0].1.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
+    #[error("there is no setting {key}: want one of {}, {}", OWN.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
     Unknown {
         /// The key.
         key: String,
@@ -184,7 +195,7 @@ impl Scenario {
     /// Its own settings as a file states them, without machine, samples and edits.
     fn stated(&self) -> Table {
         let task = if self.task.samples.is_some() {
-            Table::try_from(&task::Task { samples: None, ..self.task.clone() })
+            Table::try_from(&Task { samples: None, ..self.task.clone() })
         } else {
             Table::try_from(&self.task)
         };
@@ -262,7 +273,7 @@ impl Scenario {
             Some(("task", key)) => self.task.uses(key),
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
-            Some(("plant", key)) => self.plant.uses(key),
+            Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
             Some(("payload", _)) => self.machine.uses(path, self.is_pushed()),
             _ => true,
         };

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::planar::PerDrive;
+use crate::settings::key::Holds;
+use crate::settings::keyed::{ANY, Held, Holding};
 use crate::settings::range::Check;
 
 /// One number for all drives, or one for each.
@@ -18,6 +20,16 @@ pub enum Each {
 impl Default for Each {
     fn default() -> Self {
         Self::All(0.0)
+    }
+}
+
+impl Holding for Each {
+    const HOLDS: Holds = Holds::PerDrive(ANY);
+}
+
+impl Held for Each {
+    fn typed(default: &str) -> Self {
+        Self::All(f64::typed(default))
     }
 }
 
@@ -65,8 +77,4 @@ impl Each {
             Self::Own(list) => list.to_vec().into(),
         }
     }
-}
-
-pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

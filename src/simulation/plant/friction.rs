@@ -10,28 +10,29 @@
 //! smoothed: a contact either slides one way or is stuck, and a stuck one takes just the torque that keeps it so
 //! ([`Contacts::hold`]). So nothing creeps or chatters at rest, and the step size does not matter.
 
-use serde::{Deserialize, Serialize};
-
-use super::each::{Each, is_default};
+use super::each::Each;
+use super::load::MAX_PAYLOAD;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
+use crate::settings::keyed::keyed;
+use crate::settings::range::Range;
 
-/// Friction as a file states it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Friction {
-    /// Viscous friction between a drive and what its stator sits on, N m s.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub viscous: Each,
-    /// Coulomb friction between a drive and what its stator sits on, N m.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub coulomb: Each,
-    /// Viscous friction of every pin, N m s.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub pin_viscous: f64,
-    /// Coulomb friction of every pin, N m.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub pin_coulomb: f64,
+const TORQUE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
+const VISCOUS: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
+
+keyed! {
+    /// Friction as a file states it. In the bearing of a drive it is between the drive and what its stator sits on.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Friction at "plant.friction" {
+        /// Viscous friction in the bearings of the drives: a torque against the rate relative to the base.
+        viscous: Each = "0", range: VISCOUS;
+        /// Coulomb friction in the bearings of the drives; a drive at rest sticks until more than this pulls.
+        coulomb: Each = "0", range: TORQUE;
+        /// Viscous friction in every pin, against the rate between its two links.
+        pin_viscous: f64 = "0", range: VISCOUS;
+        /// Coulomb friction in every pin; a pin at rest sticks.
+        pin_coulomb: f64 = "0", range: TORQUE;
+    }
 }
 
 /// The most pairs of drives and bases that can rub: eight drives on the base, and each on each.

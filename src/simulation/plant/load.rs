@@ -1,32 +1,35 @@
 //! [`Load`]: a payload that comes and goes.
 
-use serde::{Deserialize, Serialize};
-
-use super::each::is_default;
 use crate::mechanics::machine::{Machine, MachineError, Payload};
+use crate::settings::key::Key;
+use crate::settings::keyed::keyed;
+use crate::settings::range::Range;
 
-/// A payload that the model lacks, and when it is held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Load {
-    /// kg.
-    #[serde(default)]
-    pub mass: f64,
-    /// About its own centre of mass, kg m².
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub inertia: f64,
-    /// Its centre of mass seen from the end effector: along the link that holds it, and to its left, m.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub offset: [f64; 2],
-    /// Height of its centre of mass along the drives' axis, m.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub axial: f64,
-    /// When it is picked up, s: by a hand that moves with it, so that no rate changes.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub from: f64,
-    /// When it is let go, s; none: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
+/// The heaviest unknown payload, kg; also the bound on its inertia, kg m², and on friction.
+pub const MAX_PAYLOAD: f64 = 1e4;
+
+const TIME: Range = Range::new(0.0, 1e6, "s");
+const PLACE: Range = Range::either_way(1e3, "m");
+const THERE: &str = "plant.payload.mass or plant.payload.inertia above 0";
+
+keyed! {
+    /// A payload that the model lacks, and when it is held.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Load at "plant.payload" {
+        /// Mass of a payload that control does not know of; it adds to the machine's own and unbalances it.
+        mass: f64 = "0", range: Range::new(0.0, MAX_PAYLOAD, "kg"), saved: always;
+        /// Inertia of the payload about its own centre of mass.
+        inertia: f64 = "0", range: Range::new(0.0, MAX_PAYLOAD, "kg m²");
+        /// Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.
+        offset: [f64; 2] = "0,0", range: PLACE, when: THERE => Load::is_some;
+        /// Height of the payload's centre of mass along the drives' axis.
+        axial: f64 = "0", range: PLACE, when: THERE => Load::is_some;
+        // No rate changes then.
+        /// When the payload is picked up, by a hand that moves with it.
+        from: f64 = "0", range: TIME, when: THERE => Load::is_some;
+        /// When the payload is let go.
+        until: Option<f64> = Key::NONE, range: TIME, instead: "it is held to the end", when: THERE => Load::is_some;
+    }
 }
 
 impl Load {

@@ -14,13 +14,12 @@ mod stage;
 mod state;
 mod wheel;
 
-pub use base::{Base, BaseKind, KEYS as BASE_KEYS};
-pub use differences::{KEYS, LinkDifference, MAX_PAYLOAD, PlantDifferences};
+pub use base::{Base, BaseKind};
+pub use differences::{LENGTH_KEYS, LinkDifference, PlantDifferences};
 pub use each::Each;
-pub(crate) use each::is_default;
 pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
-pub use load::Load;
+pub use load::{Load, MAX_PAYLOAD};
 pub use moving_body::MovingBody;
 pub(crate) use stage::{Command, Point, Rates, Stage};
 pub use state::{Slope, State};
-pub use wheel::{KEYS as WHEEL_KEYS, Wheel, WheelState};
+pub use wheel::{Wheel, WheelState};

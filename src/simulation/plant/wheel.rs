@@ -15,58 +15,21 @@
 //! the limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing
 //! outwards.
 
-use serde::{Deserialize, Serialize};
-
 use crate::settings::key::Key;
+use crate::settings::keyed::keyed;
 use crate::settings::range::Range;
 
-/// Every key of `[base.wheel]`.
-pub const KEYS: [Key; 3] = [
-    Key::number(
-        "base.wheel.inertia",
-        Range::new(1e-9, 1e6, "kg m²"),
-        Key::NONE,
-        "Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is given.",
-    )
-    .instead("0.02 if another key of the wheel is given, or else there is no wheel"),
-    Key::number(
-        "base.wheel.torque_limit",
-        Range::new(1e-9, 1e6, "N m"),
-        Key::NONE,
-        "The greatest torque of the wheel's motor, either way.",
-    )
-    .instead("no limit"),
-    Key::number(
-        "base.wheel.speed_limit",
-        Range::new(1e-9, 1e6, "rad/s"),
-        Key::NONE,
-        "The greatest rate of the wheel, either way.",
-    )
-    .instead("no limit"),
-];
-
-/// A reaction wheel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Wheel {
-    /// Of its rotor about its axis, kg m².
-    #[serde(default = "rotor")]
-    pub inertia: f64,
-    /// The greatest |τ_w|, N m; none: unlimited.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub torque_limit: Option<f64>,
-    /// The greatest |Ω|, rad/s; none: unlimited.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub speed_limit: Option<f64>,
-}
-
-fn rotor() -> f64 {
-    0.02
-}
-
-impl Default for Wheel {
-    fn default() -> Self {
-        Self { inertia: rotor(), torque_limit: None, speed_limit: None }
+keyed! {
+    /// A reaction wheel.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Wheel at "base.wheel" {
+        /// Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is given.
+        inertia: f64 = Key::NONE, range: Range::new(1e-9, 1e6, "kg m²"),
+            instead: "0.02 if another key of the wheel is given, or else there is no wheel", usual: 0.02, saved: always;
+        /// The greatest torque of the wheel's motor, either way.
+        torque_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e6, "N m"), instead: "no limit";
+        /// The greatest rate of the wheel, either way.
+        speed_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e6, "rad/s"), instead: "no limit";
     }
 }
 

@@ -1,0 +1,100 @@
+//! The points of a task: A, those between, B; and the changes that move, add, leave out and reorder them.
+
+use super::task::{Change, Task};
+use crate::mechanics::planar::Vector;
+
+impl Task {
+    /// All points in order, A first and B last, m.
+    pub fn points(&self) -> Vec<Vector> {
+        let all = std::iter::once(&self.from).chain(&self.via).chain(std::iter::once(&self.to));
+        all.map(|p| Vector::new(p[0], p[1])).collect()
+    }
+
+    /// What a point is called: A, 1, 2 … B.
+    pub fn name_of(&self, point: usize) -> String {
+        match point {
+            0 => "A".into(),
+            i if i > self.via.len() => "B".into(),
+            i => i.to_string(),
+        }
+    }
+
+    /// The change that makes these the points; `None` for fewer than two.
+    pub fn visiting(points: &[Vector]) -> Option<Change> {
+        let [from, via @ .., to] = points else { return None };
+        let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
+        let via = via.iter().map(pair).collect();
+        Some(
+            [("from", pair(from)), ("via", toml::Value::Array(via)), ("to", pair(to))].map(owned).into_iter().collect(),
+        )
+    }
+
+    /// The points, unless samples say where to go.
+    fn movable(&self) -> Option<Vec<Vector>> {
+        self.samples.is_none().then(|| self.points())
+    }
+
+    /// The task with a point elsewhere, m; `None` where samples say where to go, or for no such point.
+    pub fn moved(&self, point: usize, to: Vector) -> Option<Self> {
+        let mut points = self.movable()?;
+        *points.get_mut(point)? = to;
+        let mut places = points.iter().map(|p| [p.re, p.im]);
+        let (from, to) = (places.next()?, places.next_back()?);
+        Some(Self { from, via: places.collect(), to, ..self.clone() })
+    }
+
+    /// The change that moves a point, m; as all such changes, none where samples say where to go.
+    pub fn moving(&self, point: usize, to: Vector) -> Option<Change> {
+        let mut points = self.movable()?;
+        *points.get_mut(point)? = to;
+        Self::visiting(&points)
+    }
+
+    /// The change that visits one more point, m, where the least way is added.
+    pub fn adding(&self, p: Vector) -> Option<Change> {
+        let mut points = self.movable()?;
+        let detour = |i: &usize| {
+            let (a, b) = (points[*i], points[i + 1]);
+            (p - a).norm() + (b - p).norm() - (b - a).norm()
+        };
+        let place = (0..points.len() - 1).min_by(|i, j| detour(i).total_cmp(&detour(j)))?;
+        points.insert(place + 1, p);
+        Self::visiting(&points)
+    }
+
+    /// The change that leaves a point out; `None` if only two are left.
+    pub fn removing(&self, point: usize) -> Option<Change> {
+        let mut points = self.movable()?;
+        if points.len() <= 2 || point >= points.len() {
+            return None;
+        }
+        points.remove(point);
+        Self::visiting(&points)
+    }
+
+    /// The change that visits a point one place earlier.
+    pub fn advancing(&self, point: usize) -> Option<Change> {
+        let mut points = self.movable()?;
+        if point == 0 || point >= points.len() {
+            return None;
+        }
+        points.swap(point - 1, point);
+        Self::visiting(&points)
+    }
+
+    /// The change that visits the points of a curve drawn by hand, m.
+    pub fn drawing(points: &[Vector]) -> Option<Change> {
+        // Few enough to be kept in a file and to keep the shape of the line that was drawn.
+        let every = points.len().div_ceil(400).max(1);
+        let mut thin: Vec<Vector> = points.iter().step_by(every).copied().collect();
+        thin.extend(points.last().filter(|last| thin.last() != Some(last)));
+        let mut change = Self::visiting(&thin)?;
+        change.insert("shape".into(), "freehand".into());
+        change.insert("samples".into(), "default".into());
+        Some(change)
+    }
+}
+
+fn owned((key, value): (&str, toml::Value)) -> (String, toml::Value) {
+    (key.into(), value)
+}

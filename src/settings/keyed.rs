@@ -1,0 +1,210 @@
+//! [`keyed!`]: a struct whose fields are settings, declared together with their [keys](super::key::Key): each stands once.
+
+use super::key::Holds;
+use super::range::Range;
+
+/// A type that the field of a key may have.
+pub trait Holding {
+    /// What its key holds. The range of its numbers, if it holds any, stands in the row of the key.
+    const HOLDS: Holds;
+}
+
+/// A type with a default that can be typed.
+pub trait Held: Holding {
+    /// The value that the default of a key states; of text that states none, the least of all values.
+    fn typed(default: &str) -> Self;
+}
+
+/// Where no row says another range.
+pub const ANY: Range = Range::either_way(f64::MAX, "");
+
+/// A row states its range where it holds numbers.
+macro_rules! holds {
+    ($($type:ty: $holds:expr;)+) => {
+        $(impl Holding for $type {
+            const HOLDS: Holds = $holds;
+        })+
+    };
+}
+
+holds! {
+    f64: Holds::Number(ANY);
+    u32: Holds::Whole(ANY);
+    bool: Holds::Switch;
+    Vec<[f64; 2]>: Holds::Points(ANY);
+}
+
+impl<const N: usize> Holding for [f64; N] {
+    const HOLDS: Holds = Holds::List(N, ANY);
+}
+
+impl<T: Holding> Holding for Option<T> {
+    const HOLDS: Holds = T::HOLDS;
+}
+
+impl Held for f64 {
+    fn typed(default: &str) -> Self {
+        default.parse().unwrap_or_default()
+    }
+}
+
+impl Held for u32 {
+    fn typed(default: &str) -> Self {
+        default.parse().unwrap_or_default()
+    }
+}
+
+impl Held for bool {
+    fn typed(default: &str) -> Self {
+        default == "true"
+    }
+}
+
+impl<const N: usize> Held for [f64; N] {
+    fn typed(default: &str) -> Self {
+        let mut numbers = default.split(',').map(f64::typed);
+        [(); N].map(|()| numbers.next().unwrap_or_default())
+    }
+}
+
+/// Nothing, which is the only default that such a key has.
+impl<T: Holding> Held for Option<T> {
+    fn typed(_: &str) -> Self {
+        None
+    }
+}
+
+/// None, which is the only default that such a key has.
+impl Held for Vec<[f64; 2]> {
+    fn typed(_: &str) -> Self {
+        Self::new()
+    }
+}
+
+/// The lines of a doc comment as one sentence: each begins with a space.
+pub const fn sentence(doc: &'static str) -> &'static str {
+    match doc.as_bytes() {
+        [b' ', ..] => doc.split_at(1).1,
+        _ => doc,
+    }
+}
+
+/// Declares a struct whose fields are settings. A row of it is
+///
+/// ```text
+/// /// What the key means, in a sentence.
+/// field: Type = "default as it is typed", range: …, instead: "…", when: "…" => |part| …, usual: …, saved: always;
+/// ```
+///
+/// * `range` for a type that holds numbers;
+/// * `instead`: what counts where nothing is the default ([`Key::NONE`](super::key::Key::NONE));
+/// * `when`: what the key wants to have an effect, in words, and whether it has that, if the part alone can tell;
+/// * `usual`: what the field holds where the default of the key is nothing, but the part is there;
+/// * `saved: always` if a file states it even where it is the default.
+///
+/// After `tables:` follow fields that have keys of their own below this part.
+///
+/// It makes of them the struct with its documentation, `KEYS`, `Default`, what reads and writes a file (a field that is
+/// left out has its default, one that nobody knows is refused), and `uses`: whether a key has an effect as things are.
+macro_rules! keyed {
+    (
+        $(#[$outer:meta])*
+        pub struct $name:ident at $path:literal {
+            $(
+                $(#[doc = $words:literal])+
+                $field:ident: $type:ty = $default:expr
+                    $(, range: $range:expr)?
+                    $(, instead: $instead:expr)?
+                    $(, when: $when:expr $(=> $uses:expr)?)?
+                    $(, usual: $usual:expr)?
+                    $(, saved: $saved:ident)?;
+            )*
+            $(tables:
+                $(
+                    $(#[$inner:meta])+
+                    $table:ident: $of:ty;
+                )+
+            )?
+        }
+    ) => {
+        $(#[$outer])*
+        #[derive(serde::Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $name {
+            $(
+                $(#[doc = $words])+
+                #[doc = concat!("\n\nSetting `", $path, ".", stringify!($field), "`.")]
+                $(#[doc = concat!("Range `", stringify!($range), "`.")])?
+                pub $field: $type,
+            )*
+            $($(
+                $(#[$inner])+
+                pub $table: $of,
+            )+)?
+        }
+
+        impl $name {
+            #[doc = concat!("The keys of `", $path, "`, but for those of tables in it.")]
+            pub const KEYS: &'static [$crate::settings::key::Key] = &[$(
+                $crate::settings::key::Key::new(
+                    concat!($path, ".", stringify!($field)),
+                    <$type as $crate::settings::keyed::Holding>::HOLDS$(.within($range))?,
+                    $default,
+                    $crate::settings::keyed::sentence(concat!($($words),+)),
+                )
+                $(.instead($instead))?
+                $(.when($when))?,
+            )*];
+
+            /// Whether a key of this part has an effect as things are, as far as the part itself can tell.
+            #[allow(dead_code, reason = "many parts have no key that waits for another")]
+            pub fn uses(&self, key: &str) -> bool {
+                $($($(
+                    if key == stringify!($field) {
+                        let uses: fn(&Self) -> bool = $uses;
+                        return uses(self);
+                    }
+                )?)?)*
+                let _ = key;
+                true
+            }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self {
+                    $($field: $crate::settings::keyed::keyed!(@usual $type, $default $(, $usual)?),)*
+                    $($($table: Default::default(),)+)?
+                }
+            }
+        }
+
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                use serde::ser::SerializeStruct;
+                let usual = Self::default();
+                let mut part = serializer.serialize_struct(stringify!($name), Self::KEYS.len())?;
+                $(
+                    let always = false $(|| stringify!($saved) == "always")?;
+                    if always || self.$field != usual.$field {
+                        part.serialize_field(stringify!($field), &self.$field)?;
+                    }
+                )*
+                $($(
+                    if self.$table != usual.$table {
+                        part.serialize_field(stringify!($table), &self.$table)?;
+                    }
+                )+)?
+                part.end()
+            }
+        }
+    };
+    (@usual $type:ty, $default:expr) => {
+        <$type as $crate::settings::keyed::Held>::typed($default)
+    };
+    (@usual $type:ty, $default:expr, $usual:expr) => {
+        $usual
+    };
+}
+
+pub(crate) use keyed;
