@@ -18,13 +18,16 @@ mod left;
 mod payload;
 mod place;
 mod problem;
+mod program;
 mod question;
 mod refusal;
 mod relief;
 mod room;
 mod search;
+mod solution;
 mod tolerance;
 mod unknowns;
+mod way;
 
 pub use asked::{Disc, Free, FreeRotor, MATERIALS, Objective, Sites, Weighing};
 pub use front::{Front, FrontSearch, front};

@@ -1,10 +1,12 @@
 //! [`place`]: counterweights that balance a machine at the least cost.
 
 use super::asked::{Objective, Sites, Weighing};
-use super::problem::{Balance, Problem, ROUNDING};
+use super::problem::Problem;
+use super::program::SOLVER_ROUNDING;
 use super::question::One;
 use super::refusal::NoWeights;
 use super::relief::would_do;
+use super::way::Balance;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
@@ -156,7 +158,7 @@ impl One<'_> {
             Ok(least) => least.value,
             Err(weights) => return Ok(Err(weights)),
         };
-        let balance = Balance::Within(worst * (1.0 + ROUNDING[0]) + ROUNDING[1]);
+        let balance = Balance::Within(worst * (1.0 + SOLVER_ROUNDING[0]) + SOLVER_ROUNDING[1]);
         let least = match found(balance)? {
             Ok(least) => least,
             Err(weights) => return Ok(Err(weights)),

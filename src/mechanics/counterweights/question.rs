@@ -1,9 +1,10 @@
 //! [`One`]: a question about counterweights, and the problem that follows from it.
 
 use super::asked::Weighing;
-use super::problem::{Balance, Problem, Way};
+use super::problem::Problem;
 use super::refusal::NoWeights;
 use super::search::search;
+use super::way::{Balance, Way};
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;

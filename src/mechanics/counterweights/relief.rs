@@ -1,9 +1,9 @@
 //! [`would_do`]: with which bounds there would be counterweights, all others as they are.
 
 use super::asked::Weighing;
-use super::problem::Way;
 use super::question::One;
 use super::refusal::{Kind, Relief};
+use super::way::Way;
 
 /// How much further than it has to the first of two bounds gives way, so that the second need not go to its end.
 const AMPLE: f64 = 1.1;

@@ -4,9 +4,11 @@
 
 use super::asked::Weighing;
 use super::cell::Cell;
-use super::problem::{NOTHING, Problem, Way};
+use super::problem::Problem;
 use super::refusal::NoWeights;
 use super::room::Room;
+use super::solution::MIN_MASS_KG;
+use super::way::Way;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::Machine;
 
@@ -111,7 +113,7 @@ impl Search<'_> {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
             let (radius, at) = (self.asked.disc.radius(w.max(0.0)), s / w);
             let nearest = rooms[j].iter().map(|room| room.missed(clearance, radius, at)).fold(f64::INFINITY, f64::min);
-            if w > NOTHING { nearest } else { 0.0 }
+            if w > MIN_MASS_KG { nearest } else { 0.0 }
         };
         let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());
         let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -131,7 +133,7 @@ impl Search<'_> {
             let one = |j: usize| {
                 let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), way.cells[j].at);
                 let far = if from.abs() > to.abs() { from } else { to };
-                if w > NOTHING { [w, s / w] } else { [0.0, far] }
+                if w > MIN_MASS_KG { [w, s / w] } else { [0.0, far] }
             };
             (0..self.asked.sites.len()).map(one).collect::<Vec<_>>()
         };
@@ -175,7 +177,7 @@ impl Search<'_> {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
             let mut cell = way.cells[j];
             cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
-            let halves = cell.halves(by_place, [w.max(0.0), if w > NOTHING { s / w } else { 0.0 }])?;
+            let halves = cell.halves(by_place, [w.max(0.0), if w > MIN_MASS_KG { s / w } else { 0.0 }])?;
             Some((j, halves))
         });
         let Some((j, halves)) = halved else { return Vec::new() };

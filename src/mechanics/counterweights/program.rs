@@ -1,0 +1,263 @@
+//! The cone program of a [`Problem`]: its rows, and its best solution.
+
+use super::asked::{Free, Objective, Weighing};
+use super::left::Left;
+use super::problem::Problem;
+use super::refusal::{Bound, Kind};
+use super::unknowns::{Sum, Unknowns};
+use super::way::{Balance, Way};
+use crate::convex::{Least, NoX, Program, Row, conflict};
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::Machine;
+
+/// How much worse than the least the first of two wishes may be for the sake of the second, of itself and in its unit:
+/// the solver's rounding.
+pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
+
+impl Problem {
+    /// The least of what is asked for on one way.
+    pub fn least(&self, machine: &Machine, asked: &Weighing, way: &Way) -> Result<Least, NoX> {
+        let solve = |way: &Way| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
+        let first = solve(way)?;
+        if asked.objective.momentum == 0.0 || way.balance == Balance::Nearest || way.least.is_some() {
+            return Ok(first);
+        }
+        // A rotor may take more from the base than there is, if what there is counts as more: so of all that are as good
+        // the one that turns least is taken, which counts everything as what it is where that can be.
+        let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
+        let second = solve(&Way { most: Some(most), ..way.clone() });
+        Ok(second.map_or(first.clone(), |second| Least { x: second.x, ..first }))
+    }
+
+    /// Why there is none past all pins: the bounds without any of which there would be a way, which are those that the
+    /// solver's proof uses, less all that it can do without. Empty if there is none without bounds either.
+    pub fn conflict(&self, machine: &Machine, asked: &Weighing, balance: Balance, weights: &[f64]) -> Vec<Bound> {
+        let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, balance));
+        let any = Weighing { objective: Objective::mass(), ..asked.clone() };
+        let contradicts = |bounds: &[(Bound, Row)]| {
+            matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoX::Contradiction(_)))
+        };
+        let of_bounds = &weights[weights.len() - bounds.len()..];
+        conflict(bounds, of_bounds, contradicts)
+    }
+
+    /// The cone program: its unknowns, what is to be least, and its rows.
+    pub fn program(&self, machine: &Machine, asked: &Weighing, bounds: &[(Bound, Row)], way: &Way) -> Program {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
+        for j in 0..asked.sites.len() {
+            program.linear[unknowns.w(j)] += asked.objective.mass;
+            program.at_most.push(Row::new([(unknowns.w(j), -1.0)], 0.0));
+        }
+        self.enter_rotors(machine, asked, &unknowns, &mut program);
+        if unknowns.inertia {
+            self.enter_inertia(asked, &unknowns, &mut program);
+            self.cost(machine, asked, &unknowns, &mut program);
+            self.enter_motion(machine, asked, &unknowns, way, &mut program);
+        }
+        if unknowns.momentum {
+            for (j, cell) in way.cells.iter().enumerate() {
+                let [w, s, u, v] = [unknowns.w(j), unknowns.s(j), unknowns.u(j), unknowns.v(j)];
+                cell.enter(asked, [w, s, u, v], &mut program);
+            }
+        }
+        if let Some(most) = way.most {
+            let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
+            program.at_most.push(Row::new(terms, most));
+            program.linear.fill(0.0);
+            let turned = Weighing { objective: Objective::inertia(), ..asked.clone() };
+            (0..asked.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
+            self.cost(machine, &turned, &unknowns, &mut program);
+        }
+        self.enter_balance(&unknowns, way.balance, &mut program);
+        for (j, room) in way.rooms.iter().enumerate() {
+            if let Some(room) = room {
+                room.enter(asked, [unknowns.w(j), unknowns.s(j)], &mut program);
+            }
+        }
+        let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| way.loose.contains(&kind)));
+        program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
+        if let Some(kind) = way.least {
+            // Instead of its own value the bound has one that is unknown.
+            program.linear.fill(0.0);
+            let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
+            program.linear.push(1.0);
+            for ((bound, _), row) in firm.zip(&mut program.at_most[start..]).filter(|(b, _)| b.0.kind() == Some(kind)) {
+                row.right -= asked.value_of(bound, &self.bare);
+                row.terms.push((most, -1.0));
+            }
+        }
+        program
+    }
+
+    /// (7) and (8).
+    fn enter_balance(&self, unknowns: &Unknowns, balance: Balance, program: &mut Program) {
+        let terms = |condition: &Left, sign: f64| {
+            let each = condition.changes.iter().enumerate();
+            let both = each.flat_map(|(j, by)| [(unknowns.w(j), sign * by[0]), (unknowns.s(j), sign * by[1])]);
+            both.filter(|(_, by)| *by != 0.0).collect::<Vec<_>>()
+        };
+        if balance == Balance::Exact {
+            let touched = self.conditions.iter().filter(|condition| condition.is_touched());
+            program.equal.extend(touched.map(|condition| Row::new(terms(condition, 1.0), -condition.left.re)));
+            return;
+        }
+        let worst = program.linear.len();
+        if balance == Balance::Nearest {
+            program.linear.fill(0.0);
+        }
+        program.linear.push(if balance == Balance::Nearest { 1.0 } else { 0.0 });
+        for condition in &self.conditions {
+            let per = if matches!(condition.of, Condition::Force(_)) { 1.0 } else { self.reach };
+            for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
+                let mut terms = terms(condition, sign);
+                terms.push((worst, -per));
+                program.at_most.push(Row::new(terms, -sign * end));
+            }
+        }
+        if let Balance::Within(most) = balance {
+            program.at_most.push(Row::new([(worst, 1.0)], most));
+        }
+    }
+
+    fn enter_rotors(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
+            let ends = match rotor.free {
+                Free::Inertia(ends) => {
+                    program.equal.push(Row::new([(turned, 1.0)], 0.0));
+                    ends
+                }
+                Free::Ratio(ends) => {
+                    let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+                    program.above_square(turned, inertia, x);
+                    ends
+                }
+            };
+            program.at_most.push(Row::new([(x, -1.0)], -ends[0]));
+            program.at_most.push(Row::new([(x, 1.0)], ends[1]));
+        }
+    }
+
+    /// The diagonal of H but for free rotors.
+    fn enter_inertia(&self, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        let parts = self.bare.resolved_links();
+        for j in 0..asked.sites.len() {
+            program.above_quotient(unknowns.u(j), unknowns.w(j), unknowns.s(j));
+            program.above_square(unknowns.v(j), asked.disc.own(), unknowns.w(j));
+        }
+        for k in 0..self.drives() {
+            let mut terms = vec![(unknowns.h(k), 1.0)];
+            for (j, site) in asked.sites.iter().enumerate() {
+                let (root, part) = (parts[site.link].root[k], &parts[site.link]);
+                terms.push((unknowns.w(j), -root * root));
+                if part.drive == k {
+                    terms.push((unknowns.s(j), -2.0 * part.sign * root));
+                    terms.extend([(unknowns.u(j), -1.0), (unknowns.v(j), -1.0)]);
+                }
+            }
+            terms.retain(|(_, value)| *value != 0.0);
+            program.equal.push(Row::new(terms, self.inertia.diagonal(k)));
+        }
+    }
+
+    /// What it costs to turn the drives.
+    fn cost(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        for k in 0..self.drives() {
+            let [_, turned] = self.of_rotors(asked, machine, k);
+            for (x, by) in std::iter::once((unknowns.h(k), 1.0)).chain(turned.terms) {
+                program.linear[x] += asked.objective.inertia * by;
+            }
+        }
+    }
+
+    /// What the drives give to the base, the greatest torque, and what these cost.
+    fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, way: &Way, program: &mut Program) {
+        let objective = &asked.objective;
+        for k in 0..self.drives() {
+            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let with = |sum: &Sum, sign: f64| {
+                let mut terms = vec![(unknowns.h(k), sign)];
+                terms.extend(sum.terms.iter().map(|(x, by)| (*x, sign * by)));
+                terms
+            };
+            if unknowns.momentum {
+                program.linear[unknowns.momentum(k)] = objective.momentum;
+                let constant = self.constant(k) + momentum.constant;
+                for sign in [1.0, -1.0] {
+                    let mut row = Row::new(with(&momentum, sign), -sign * constant);
+                    row.terms.push((unknowns.momentum(k), -1.0));
+                    if let (true, Some(tangents)) = (sign < 0.0, &way.tangents) {
+                        let linear = self.linear_diagonal(asked, unknowns, k, tangents);
+                        row.terms.retain(|(x, _)| *x != unknowns.h(k));
+                        row.terms.extend(linear.terms.iter().map(|(x, by)| (*x, -by)));
+                        row.right += linear.constant;
+                    }
+                    program.at_most.push(row);
+                }
+            }
+            if objective.torque > 0.0 {
+                let acceleration = objective.accelerations.get(k).copied().unwrap_or_default();
+                let mut terms: Vec<_> = with(&turned, acceleration);
+                terms.push((unknowns.torque(), -1.0));
+                program.at_most.push(Row::new(terms, -acceleration * turned.constant));
+                program.linear[unknowns.torque()] = objective.torque;
+            }
+        }
+    }
+
+    /// The bounds that a person has set, with their rows.
+    fn bounds(&self, machine: &Machine, asked: &Weighing) -> Vec<(Bound, Row)> {
+        let (mut all, unknowns) = (Vec::new(), Unknowns::of(asked, self.drives()));
+        for (j, site) in asked.sites.iter().enumerate() {
+            let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
+            all.push((Bound::From(link.clone()), Row::new([(w, site.from), (s, -1.0)], 0.0)));
+            all.push((Bound::To(link.clone()), Row::new([(s, 1.0), (w, -site.to)], 0.0)));
+            if site.most.is_finite() {
+                all.push((Bound::Most(link), Row::new([(w, 1.0)], site.most)));
+            }
+        }
+        if let Some(most) = asked.most_mass {
+            let sum = (0..asked.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
+            all.push((Bound::Mass, Row::new(sum, most)));
+        }
+        if let Some(most) = asked.most_inertia {
+            let mut row = Row::new([], most);
+            for k in 0..self.drives() {
+                let [momentum, _] = self.of_rotors(asked, machine, k);
+                row.terms.push((unknowns.h(k), 1.0));
+                row.terms.extend(momentum.terms);
+                row.right -= self.constant(k) + momentum.constant;
+            }
+            all.push((Bound::Inertia, row));
+        }
+        all
+    }
+}
+
+impl Bound {
+    /// What of its kind may give way; places may not.
+    fn kind(&self) -> Option<Kind> {
+        match self {
+            Self::From(_) | Self::To(_) => None,
+            Self::Most(_) => Some(Kind::Most),
+            Self::Mass => Some(Kind::Mass),
+            Self::Inertia => Some(Kind::Inertia),
+        }
+    }
+}
+
+impl Weighing {
+    /// What a bound is that may give way.
+    fn value_of(&self, bound: &Bound, machine: &Machine) -> f64 {
+        match bound {
+            Bound::Most(link) => {
+                let own = self.sites.iter().find(|site| machine.links()[site.link].name == *link);
+                own.map_or(0.0, |site| site.most)
+            }
+            Bound::Mass => self.most_mass.unwrap_or_default(),
+            Bound::Inertia => self.most_inertia.unwrap_or_default(),
+            Bound::From(_) | Bound::To(_) => 0.0,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What a solution of the cone program stands for: its values, and the machine with its counterweights and rotors.
+
+use super::asked::{Free, Sites, Weighing};
+use super::left::Left;
+use super::problem::Problem;
+use super::refusal::NoWeights;
+use super::unknowns::{Sum, Unknowns};
+use super::way::{Balance, Way};
+use crate::mechanics::balance::{Equation, Plane};
+use crate::mechanics::machine::{Counterweight, Machine, Rotor};
+
+/// What is found at every site, or at those that are left.
+type Found = Vec<(Sites, [f64; 2])>;
+
+/// Counterweights lighter than this are left out.
+pub(super) const MIN_MASS_KG: f64 = 1e-7;
+
+/// The smallest |gear ratio|: a gear of ratio zero would hold its rotor still.
+const MIN_RATIO: f64 = 1e-9;
+
+impl Problem {
+    /// What was found with every inertia what it is, and not more.
+    pub fn settled(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<f64> {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let mut x = x.to_vec();
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+            x[unknowns.turned(i)] = match rotor.free {
+                Free::Inertia(_) => 0.0,
+                Free::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
+            };
+        }
+        if !unknowns.inertia {
+            return x;
+        }
+        let places = (0..asked.sites.len()).map(|j| {
+            let [w, s] = self.at(asked, &x, j);
+            if w > 0.0 { [w, s / w] } else { [0.0; 2] }
+        });
+        let places: Vec<[f64; 2]> = places.collect();
+        for (j, [w, at]) in places.iter().enumerate() {
+            x[unknowns.u(j)] = w * at * at;
+            x[unknowns.v(j)] = asked.disc.own() * w * w;
+        }
+        let of = |sum: &Sum, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
+        let mut torque = 0.0_f64;
+        for k in 0..self.drives() {
+            let h = of(&self.linear_diagonal(asked, &unknowns, k, &places), &x);
+            x[unknowns.h(k)] = h;
+            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let (momentum, turned) = (h + self.constant(k) + of(&momentum, &x), h + of(&turned, &x));
+            if unknowns.momentum {
+                x[unknowns.momentum(k)] = momentum.abs();
+            }
+            torque = torque.max(asked.objective.accelerations.get(k).copied().unwrap_or_default() * turned);
+        }
+        if asked.objective.torque > 0.0 {
+            x[unknowns.torque()] = torque;
+        }
+        x
+    }
+
+    /// What the objective comes to.
+    pub fn value(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> f64 {
+        let costs = self.program(machine, asked, &[], &Way::free(asked, Balance::Exact)).linear;
+        costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
+    }
+
+    /// How far the inertias that were found are from what they are: of the place and of the disc itself of each site.
+    pub fn excess(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<[f64; 2]> {
+        let (unknowns, settled) = (Unknowns::of(asked, self.drives()), self.settled(machine, asked, x));
+        let excess = |i: usize| x[i] - settled[i];
+        (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
+    }
+
+    /// What stands at a site: its mass, kg, and mass times place, kg m.
+    pub fn at(&self, asked: &Weighing, x: &[f64], j: usize) -> [f64; 2] {
+        let unknowns = Unknowns::of(asked, self.drives());
+        [x[unknowns.w(j)], x[unknowns.s(j)]]
+    }
+
+    /// The mass that is added, kg, and the machine with what was found: balanced to rounding, if that is asked for.
+    pub fn machine(
+        &self,
+        machine: &Machine,
+        asked: &Weighing,
+        x: &[f64],
+        balance: Balance,
+    ) -> Result<(f64, Machine), NoWeights> {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let sites = asked.sites.iter().enumerate();
+        let all = sites.map(|(j, site)| (*site, self.at(asked, x, j)));
+        let mut found: Found = all.filter(|(_, [w, _])| *w > MIN_MASS_KG).collect();
+        // The solver's rounding, and what was too light to count, are made up for by the least change of the others.
+        for _ in 0..if balance == Balance::Exact { 3 } else { 0 } {
+            self.refine(asked, &mut found);
+        }
+        let mut spec = self.bare.spec().clone();
+        let weight = |(site, [w, s]): &(Sites, [f64; 2])| Counterweight {
+            link: self.bare.links()[site.link].name.clone(),
+            mass: *w,
+            at: s / w,
+            radius: asked.disc.radius(*w),
+            fixed: false,
+        };
+        spec.counterweights.extend(found.iter().map(weight));
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
+            let found = match rotor.free {
+                Free::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
+                Free::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
+            };
+            spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
+        }
+        Ok((found.iter().map(|(_, [w, _])| w).sum(), Machine::new(spec)?))
+    }
+
+    fn refine(&self, asked: &Weighing, found: &mut Found) {
+        // The links balance each other.
+        if found.is_empty() {
+            return;
+        }
+        let place = |site: &Sites| asked.sites.iter().position(|other| other.link == site.link).unwrap_or_default();
+        let sites: Vec<usize> = found.iter().map(|(site, _)| place(site)).collect();
+        let residual = self.conditions.iter().map(|condition| {
+            let changed = sites.iter().zip(found.iter()).map(|(j, (_, [w, s]))| {
+                let [by_w, by_s] = condition.changes[*j];
+                by_w * w + by_s * s
+            });
+            condition.left.re + changed.sum::<f64>()
+        });
+        // In proportion to what is there, so that light ones stay where they may sit.
+        let equation = |(condition, right): (&Left, f64)| Equation {
+            a: (0..2 * sites.len()).map(|j| condition.changes[sites[j / 2]][j % 2] * found[j / 2].1[0]).collect(),
+            right,
+            tolerance: f64::INFINITY,
+        };
+        let equations: Vec<Equation> = self.conditions.iter().zip(residual).map(equation).collect();
+        let change = Plane::of(&equations, 2 * sites.len()).start;
+        for (j, (_, [w, s])) in found.iter_mut().enumerate() {
+            let by = *w;
+            (*w, *s) = (*w - by * change[2 * j], *s - by * change[2 * j + 1]);
+        }
+    }
+}
+
+/// A gear ratio of at least the smallest size, with the same sign.
+fn other_than_zero(ratio: f64) -> f64 {
+    if ratio.abs() < MIN_RATIO { MIN_RATIO.copysign(ratio) } else { ratio }
+}
