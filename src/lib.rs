@@ -118,6 +118,8 @@
 //!   in `choose.rs` there.
 //! * **A time law**: a row of the enum in `planning/timing/law.rs`: its words, its formula, and where s̈ jumps or bends.
 //!   All else follows; write a line of `guide/planning.md`.
+//! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages name its ending
+//!   then; write a section of `guide/elsewhere.md`.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
 //!   follow; write a line of `guide/command_line.md`.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::layout::Layout;
+use crate::exchange::form;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
@@ -384,10 +385,21 @@ impl Purpose {
             Self::Open => ["Open a session, machine or model", "Open", ".toml .urdf .xml"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
-            Self::Machine => ["Take along: .xml .urdf .svg .dxf .csv .md", "Save", "machine.urdf"],
+            Self::Machine => ["Take along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
             Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
+        }
+    }
+}
+
+impl Purpose {
+    /// What a dialog asks, with the endings to choose from.
+    pub(super) fn title(&self) -> String {
+        let [title, ..] = self.words();
+        match self {
+            Self::Machine => format!("{title}: .{}", form::endings().join(" .")),
+            _ => title.into(),
         }
     }
 }
@@ -412,7 +424,7 @@ impl FileDialog {
             Purpose::Open => String::new(),
             Purpose::Save => free(own, "toml"),
             Purpose::Record => free(own, "rrd"),
-            Purpose::Machine => free(session.scenario().machine.name(), "urdf"),
+            Purpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
             Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
         };
         Self { purpose, path: name }

@@ -180,7 +180,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
 /// Asks for a file name.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.dialog.clone() else { return };
-    let [title, verb, hint] = dialog.purpose.words();
+    let ([_, verb, hint], title) = (dialog.purpose.words(), dialog.purpose.title());
     let mut open = true;
     egui::Window::new(title)
         .open(&mut open)

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::drawing::Sheet;
-use stillbase::exchange::form::Form;
+use stillbase::exchange::form::{self, Form, Shows};
 use stillbase::exchange::mjcf::{hinges, middle};
 use stillbase::exchange::urdf::joint;
 use stillbase::files::write_new;
@@ -50,8 +50,7 @@ pub struct ExportModel {
     /// Thickness of the counterweights, m: of drawings and lists; what the mass of each takes where it is left out
     #[arg(long, value_name = "T")]
     thickness: Option<f64>,
-    /// Write it to this file; what is written goes by the ending: xml, urdf, svg, dxf, csv, md
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; what is written goes by the ending: {}", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]
@@ -98,7 +97,7 @@ impl ExportModel {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let form = Form::of(check_output(&self.output, self.force, &Form::ENDINGS)?).map_err(Failure::wrong_input)?;
+        let form = Form::of(check_output(&self.output, self.force, &form::endings())?).map_err(Failure::wrong_input)?;
         self.check_options(form)?;
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
@@ -125,17 +124,16 @@ impl ExportModel {
 
     /// Refuses what has no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
-        let is_drawing = matches!(form, Form::Svg | Form::Dxf);
-        let has_discs = is_drawing || matches!(form, Form::Csv | Form::Markdown);
-        let all = [
-            ("--pose", self.pose.is_empty(), form == Form::Mjcf, ".xml"),
-            ("--bar-width", self.bar_width.is_none(), is_drawing, ".svg or .dxf"),
-            ("--pin-diameter", self.pin_diameter.is_none(), is_drawing, ".svg or .dxf"),
-            ("--material", self.material.is_none(), has_discs, ".svg, .dxf, .csv or .md"),
-            ("--thickness", self.thickness.is_none(), has_discs, ".svg, .dxf, .csv or .md"),
+        let all: [Counting; 5] = [
+            ("--pose", self.pose.is_empty(), |shows| shows == Shows::Pose),
+            ("--bar-width", self.bar_width.is_none(), |shows| shows == Shows::Links),
+            ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == Shows::Links),
+            ("--material", self.material.is_none(), |shows| matches!(shows, Shows::Links | Shows::Parts)),
+            ("--thickness", self.thickness.is_none(), |shows| matches!(shows, Shows::Links | Shows::Parts)),
         ];
-        match all.into_iter().find(|(_, is_left_out, counts, _)| !is_left_out && !counts) {
-            Some((option, .., endings)) => {
+        match all.into_iter().find(|(_, is_left_out, counts)| !is_left_out && !counts(form.shows)) {
+            Some((option, _, counts)) => {
+                let endings = form::listed(counts);
                 let what = format!("{option} has no effect on such a file: want one that ends in {endings}");
                 Err(Failure::wrong_input(what).of(self.output.display()))
             }
@@ -144,19 +142,22 @@ impl ExportModel {
     }
 }
 
+/// An option, whether it is left out, and of which files it counts.
+type Counting = (&'static str, bool, fn(Shows) -> bool);
+
 fn told(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
     let links = machine.links().len();
-    Ok(match form {
-        Form::Mjcf => {
+    Ok(match form.shows {
+        Shows::Pose => {
             let qpos = hinges(machine, &pose).map_err(Failure::wrong_input)?;
             Written::Mjcf { pose, qpos }
         }
-        Form::Urdf => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
-        Form::Svg | Form::Dxf => {
+        Shows::Joints => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
+        Shows::Links => {
             let size = Sheet::of(machine, cut).map_err(Failure::wrong_input)?.size;
             Written::Drawing { size: size.map(|mm| 1e-3 * mm), links }
         }
-        Form::Csv | Form::Markdown => {
+        Shows::Parts => {
             Written::List { links, counterweights: machine.spec().counterweights.len(), mass: machine.mass() }
         }
     })

@@ -9,6 +9,7 @@ use winit::window::Window;
 
 use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, FileDialog, PlotFile, Purpose};
+use crate::exchange::form;
 use crate::query::{Job, Poll};
 
 /// Asks for files by a dialog of the system, beside the window.
@@ -75,14 +76,18 @@ impl Chooser {
 }
 
 /// How names of such files end, the usual one first.
-fn endings(purpose: &Purpose) -> &'static [&'static str] {
+fn endings(purpose: &Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open | Purpose::Save => &["toml"],
-        Purpose::Record => &["rrd"],
-        Purpose::Plot(_, PlotFile::Csv) => &["csv"],
-        Purpose::Plot(_, PlotFile::Svg) => &["svg"],
-        Purpose::Plot(_, PlotFile::Png) => &["png"],
-        Purpose::Machine => &["urdf", "xml", "svg", "dxf", "csv", "md"],
+        Purpose::Open | Purpose::Save => vec!["toml"],
+        Purpose::Record => vec!["rrd"],
+        Purpose::Plot(_, PlotFile::Csv) => vec!["csv"],
+        Purpose::Plot(_, PlotFile::Svg) => vec!["svg"],
+        Purpose::Plot(_, PlotFile::Png) => vec!["png"],
+        Purpose::Machine => {
+            let mut endings = form::endings().to_vec();
+            endings.sort_by_key(|ending| *ending != form::USUAL_ENDING);
+            endings
+        }
     }
 }
 
@@ -95,14 +100,14 @@ type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 
 /// The dialog of the system, in front of the window.
 fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
-    let ([title, ..], endings) = (dialog.purpose.words(), endings(&dialog.purpose));
+    let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
         Purpose::Open | Purpose::Save => "Sessions",
         Purpose::Record => "Recordings",
         Purpose::Plot(..) => "Plots",
         Purpose::Machine => "Models, drawings and lists",
     };
-    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, endings);
+    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, &endings);
     if let Some(folder) = folder {
         asks = asks.set_directory(folder);
     }
