@@ -6,6 +6,8 @@
 #[path = "../src/commands/mod.rs"]
 mod commands;
 mod exchange;
+#[cfg(feature = "tables")]
+mod files;
 #[cfg(any(feature = "cli", feature = "record"))]
 mod folder;
 mod fuzz;

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io;
 
 use stillbase::files::WriteError;
+use stillbase::files::table::TableError;
 use stillbase::mechanics::balance::DesignError;
 use stillbase::mechanics::joint_forces::JointsError;
 use stillbase::mechanics::machine::{FileError, MachineError};
@@ -66,6 +67,11 @@ impl From<FileError> for Failure {
 }
 impl From<ScenarioError> for Failure {
     fn from(e: ScenarioError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<TableError> for Failure {
+    fn from(e: TableError) -> Self {
         Self::wrong_input(e)
     }
 }

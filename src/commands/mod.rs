@@ -4,7 +4,6 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
-pub(crate) mod columns;
 mod compare;
 mod csv_file;
 mod design;
@@ -36,7 +35,7 @@ mod simulate;
 mod sites;
 mod spectrum;
 pub(crate) mod tolerance;
-pub(crate) mod trim;
+mod trim;
 mod workspace;
 
 pub use exit::{exit_code, usage};

@@ -1,4 +1,5 @@
-//! Files written so that nothing is lost: whole or not at all, and over another one only when asked to.
+//! Files written so that nothing is lost: whole or not at all, and over another one only when asked to; and tables of
+//! numbers that others wrote.
 
 pub mod fault;
 mod find;
@@ -8,6 +9,8 @@ pub mod journal;
 mod new_file;
 #[cfg(feature = "window")]
 pub mod preferences;
+#[cfg(feature = "tables")]
+pub mod table;
 pub mod text;
 
 pub use find::{Found, machine, scenario};

@@ -1,15 +1,15 @@
 //! The same for what only commands read: settings, samples as CSV, states as JSON, parts of a study.
 
 use clap::Parser;
+use stillbase::files::table::{motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::trim::{Recording, Rows, fit, identified, next, taken};
 
+use crate::commands::dynamics;
 use crate::commands::failure::Failure;
 use crate::commands::input::{Settings, set};
 use crate::commands::tolerance::{merge, rows};
-use crate::commands::trim::measured;
-use crate::commands::{columns, dynamics};
 use crate::fuzz::{bytes, fuzz, is_short};
 
 fn said(failure: &Failure) -> Result<(), String> {
@@ -67,18 +67,14 @@ fn a_row_of_too_many_columns_is_refused() {
         (format!("t,q1,q2,q3\n0,a\"b,2,3{commas}"), 2),
         (quoted, 1001),
     ] {
-        let said = |failure: Failure| match failure {
-            Failure::WrongInput(why) => why,
-            _ => panic!("no wrong input"),
-        };
-        let why = said(columns::samples(&text, "wide.csv", machine, None, false).expect_err("too wide"));
-        assert_eq!(why, format!("wide.csv:{line}: more than 1000 columns: want at most 1000"));
-        assert_eq!(said(measured::motions(&text, "wide.csv", machine).expect_err("too wide")), why);
+        let why = samples(&text, "wide.csv", machine, None, false).expect_err("too wide");
+        assert_eq!(why.to_string(), format!("wide.csv:{line}: more than 1000 columns: want at most 1000"));
+        assert_eq!(motions(&text, "wide.csv", machine).expect_err("too wide"), why);
     }
     // As many are read.
     let head = format!("t,q1,q2,q3{}", ",u".repeat(996));
     let rows: String = (0..20).map(|i| format!("\n{i},1,2,3{}", ",\",\"".repeat(996))).collect();
-    assert!(columns::samples(&(head + &rows), "wide.csv", machine, None, false).is_ok());
+    assert!(samples(&(head + &rows), "wide.csv", machine, None, false).is_ok());
 }
 
 /// Found by chance: keys within keys once went as deep as the stack.
@@ -103,12 +99,12 @@ fn samples_as_csv() {
     let machine = builtin("nine-link").expect("built in");
     fuzz("csv", &good, 300, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        match columns::samples(&text, "in.csv", machine, None, dice.one_in(2)) {
+        match samples(&text, "in.csv", machine, None, dice.one_in(2)) {
             Ok(read) => match read.samples.rows().flatten().all(|x| x.is_finite()) {
                 true => Ok(()),
                 false => Err("a sample that is not finite".into()),
             },
-            Err(failure) => said(&failure),
+            Err(why) => is_short(&why.to_string()),
         }
     });
 }
@@ -138,9 +134,9 @@ fn measurements_as_csv() {
     let machine = builtin("two-drive").expect("built in");
     fuzz("measured", &good, 200, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        let recording = match measured::motions(&text, "in.csv", machine) {
+        let recording = match motions(&text, "in.csv", machine) {
             Ok(motions) => Recording { motions },
-            Err(failure) => return said(&failure),
+            Err(why) => return is_short(&why.to_string()),
         };
         let rows = match Rows::of(machine, &recording, dice.one_in(2)) {
             Ok(rows) => rows,

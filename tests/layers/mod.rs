@@ -62,7 +62,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rerun", &["recording"]),
     ("clap", &["commands", "main"]),
     ("indicatif", &["commands"]),
-    ("csv", &["commands"]),
+    ("csv", &["files/table", "commands"]),
     ("serde_json", &["commands"]),
     ("parquet", &["commands"]),
     ("signal_hook", &["commands"]),

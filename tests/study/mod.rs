@@ -3,6 +3,7 @@
 mod comparison;
 mod doubt;
 mod equations;
+mod import;
 mod lengths;
 mod samples;
 mod series;

@@ -5,8 +5,10 @@ use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, pla
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::query::{Shared, answered};
 use stillbase::study::trim::{
-    Fit, Made, Motion, Part, Recording, Rows, TrimError, Unknown, Way, fit, identified, mend, next, taken, worth,
+    Fit, Made, Motion, NoTrim, Part, Recording, Rows, TrimError, TrimRequest, Trimming, Unknown, Way, fit, identified,
+    mend, next, taken, worth,
 };
 
 use crate::support::random::a_machine;
@@ -462,6 +464,45 @@ fn a_change_is_proposed_where_it_helps() {
         (harmful, helpful) = (harmful + u32::from(!helps), helpful + u32::from(helps));
     }
     assert!(harmful <= 1 && helpful >= 10, "{harmful} harmful, {helpful} helpful");
+}
+
+/// The query says of a measurement what its parts say one by one; a wrong sign is doubted unless it is taken as given.
+#[test]
+fn the_query_puts_all_of_it_together() {
+    let machine = weighed();
+    let mut noise = Noise::of(805);
+    let mut spec = machine.spec().clone();
+    spec.counterweights.iter_mut().for_each(|weight| weight.at += noise.between(-0.01, 0.01));
+    let hidden = Machine::new(spec).expect("a machine");
+    let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
+    let mut recording = measured(&hidden, &mut noise, how, &[true; 3]);
+    let ask = |recording: &Recording, as_given: bool| {
+        answered::<Trimming>(TrimRequest {
+            machine: Shared(machine.clone().into()),
+            recording: Shared(recording.clone().into()),
+            angles_only: false,
+            as_given,
+            way: of_weights(&machine),
+            accelerations: None,
+        })
+    };
+    let found = ask(&recording, false);
+    assert!(found.doubt.is_none() && found.angle_noise.is_none());
+    let trim = found.outcome.expect("a fit");
+    let fit = fitted(&machine, &recording, false);
+    assert_eq!(trim.taken, taken(&fit));
+    let told = trim.report.numbers.iter().map(|number| number.measured.expect("told"));
+    assert!(told.eq(fit.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
+    let mended = trim.mended.expect("a change");
+    let gain = trim.report.worth.expect("what it is worth");
+    assert_eq!((gain.helps, trim.report.changes.is_empty()), (gain.worth.helps(), !gain.helps));
+    assert_eq!(mended.changes, trim.report.changes);
+    recording.motions.iter_mut().for_each(|motion| motion.moment.iter_mut().for_each(|n| *n = -*n));
+    assert!(matches!(ask(&recording, false).outcome, Err(NoTrim::Doubted(_))));
+    let believed = ask(&recording, true);
+    assert!(believed.doubt.is_some() && believed.outcome.is_ok());
+    recording.motions.clear();
+    assert!(matches!(ask(&recording, true).outcome, Err(NoTrim::Unusable(_))));
 }
 
 /// A machine without counterweights gets new ones; the machine that is written has what was measured.

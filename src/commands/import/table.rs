@@ -1,12 +1,12 @@
-//! The answer as a table.
+//! The answer of `stillbase import` as a table.
 
-use super::answer::Answer;
-use super::judge::Account;
-use crate::commands::output::{Table, yes};
 use stillbase::settings::number::{counted, fixed};
+use stillbase::study::import::{Account, Imported};
+
+use crate::commands::output::{Table, yes};
 
 /// Given and proposed side by side.
-pub fn table(answer: &Answer) -> String {
+pub fn table(answer: &Imported) -> String {
     let usual = if answer.content == "tip" { "minimum norm" } else { "as given" };
     let mut table = Table::new(["", usual, "proposed", ""]).with_words(3);
     let cell = |value: Option<f64>, decimals| value.map_or_else(|| "-".into(), |x| fixed(x, decimals));

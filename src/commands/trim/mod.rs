@@ -1,18 +1,19 @@
 //! `stillbase trim`
 
 mod answer;
-pub(crate) mod measured;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use stillbase::files::table::motions;
 use stillbase::files::{finish_all, made};
 use stillbase::mechanics::balance::{Body, Hold, Keep, Parameter, Quantity};
 use stillbase::mechanics::counterweights::{Disc, Objective, Weighing};
-use stillbase::mechanics::machine::{Machine, MachineSpec, to_toml};
+use stillbase::mechanics::machine::{Machine, to_toml};
 use stillbase::mechanics::planar::Vector;
+use stillbase::query::{Shared, answered};
 use stillbase::settings::number::counted;
-use stillbase::study::trim::{Made, Mended, Recording, Rows, Way, doubt, fit, identified, mend, next, taken, worth};
+use stillbase::study::trim::{NoTrim, Recording, Trim as Found, TrimRequest, Trimming, Way, identified, trimmed};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -20,7 +21,6 @@ use super::holds::{bound, hold};
 use super::input::{Settings, read};
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
-use answer::{Answer, Asked};
 
 /// Find from measured base forces what a built machine lacks of balance, and the least change that mends it
 ///
@@ -110,38 +110,27 @@ impl Trim {
         let way = self.way(&machine)?;
         let mut recording = Recording::default();
         for file in files {
-            recording.motions.extend(measured::motions(&read(Path::new(file))?, file, &machine)?);
+            recording.motions.extend(motions(&read(Path::new(file))?, file, &machine)?);
         }
-        let rows = Rows::of(&machine, &recording, self.angles_only).map_err(Failure::wrong_input)?;
-        if let Made::Windows { noise, .. } = rows.made
-            && noise > 0.02
-        {
+        let request = TrimRequest {
+            machine: Shared(machine.clone().into()),
+            recording: Shared(recording.into()),
+            angles_only: self.angles_only,
+            as_given: self.as_given,
+            way,
+            accelerations: Some(self.accelerations.clone()).filter(|all| !all.is_empty()),
+        };
+        let found = answered::<Trimming>(request);
+        if let Some(noise) = found.angle_noise {
             say(format!(
                 "note: noise of the angles is {:.0} % of their accelerations, or samples are too far apart: what is found \
                  may be off; want faster motions or finer encoders",
                 100.0 * noise
             ));
         }
-        // What is wrong with the recording itself is said by the fit.
-        if let Some(doubt) = doubt(&machine, &recording, self.angles_only).ok().flatten() {
-            if !self.as_given {
-                let way_out = "If the columns are right, --as-given takes them as they are.";
-                return Err(Failure::no_answer(format!("{doubt}\n  {way_out}")));
-            }
-            say(format!("note: {doubt}"));
-        }
-        let fit = fit(&machine, &rows).map_err(Failure::no_answer)?;
-        let taken = taken(&fit);
-        let accelerations = (!self.accelerations.is_empty()).then_some(self.accelerations.as_slice());
-        let next = next(&machine, &recording, &rows, &fit, accelerations);
-        let mended = mend(&machine, &taken, &way);
-        let worth = mended.as_ref().ok().map(|mended| worth(&machine, &rows, &fit, &taken, mended));
-        let helps = worth.is_some_and(|worth| worth.helps());
-        // What is not shown to help is not proposed.
-        let mended = mended.map(|mended| if helps { mended } else { Mended::not_at_all(&machine, &taken) });
-        let asked = Asked { machine: &machine, rows: &rows, fit: &fit, taken: &taken, worth, next: &next };
-        let answer = Answer::of(&asked, mended.as_ref().ok());
-        self.format.print(&answer, |answer| answer.text(&machine))?;
+        found.doubt.iter().for_each(|doubt| say(format!("note: {doubt}")));
+        let Found { report, taken, mended } = found.outcome.map_err(unread)?;
+        self.format.print(&report, |report| answer::text(report, &machine))?;
         let mended = mended.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
             return Ok(());
@@ -156,10 +145,8 @@ impl Trim {
             files.push((file, named(&built, file, format!("{}, as measured", machine.name()))?));
         }
         if let Some(file) = &self.output {
-            let mut spec = built.spec().clone();
-            spec.counterweights = mended.machine.spec().counterweights.clone();
-            moved(&mut spec, machine.spec(), mended.machine.spec());
-            files.push((file, named(&Machine::new(spec)?, file, format!("{}, trimmed as measured", machine.name()))?));
+            let trimmed = trimmed(&built, &machine, &mended)?;
+            files.push((file, named(&trimmed, file, format!("{}, trimmed as measured", machine.name()))?));
         }
         let written = |(file, text): &(&PathBuf, String)| made(file, text.as_bytes(), self.force);
         match files.as_slice() {
@@ -200,15 +187,15 @@ impl Trim {
     }
 }
 
-/// What changed from one machine to another in masses and centres of mass of links, changed in a third.
-fn moved(spec: &mut MachineSpec, from: &MachineSpec, to: &MachineSpec) {
-    for ((own, from), to) in spec.links.iter_mut().zip(&from.links).zip(&to.links) {
-        let mass = own.mass + to.mass - from.mass;
-        // First moments add up.
-        let moment =
-            |own_at: f64, from_at: f64, to_at: f64| (own.mass * own_at + to.mass * to_at - from.mass * from_at) / mass;
-        let (com, normal) = (moment(own.com, from.com, to.com), moment(own.com_normal, from.com_normal, to.com_normal));
-        (own.mass, own.com, own.com_normal) = (mass, com, normal);
+/// Why a measurement says nothing.
+fn unread(why: NoTrim) -> Failure {
+    match why {
+        NoTrim::Unusable(why) => Failure::wrong_input(why),
+        NoTrim::Doubted(doubt) => {
+            let way_out = "If the columns are right, --as-given takes them as they are.";
+            Failure::no_answer(format!("{doubt}\n  {way_out}"))
+        }
+        NoTrim::NoFit(why) => Failure::no_answer(why),
     }
 }
 

@@ -31,6 +31,25 @@ const VALUE: Range = Range::either_way(1e6, "rad or m");
 /// Two times nearer to each other than this share of the whole are one.
 const APART: f64 = 1e-9;
 
+/// What the values of samples are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Absolute drive angles, rad.
+    Drives,
+    /// x and y of the end effector, m.
+    EndEffector,
+}
+
+impl Coordinates {
+    /// Short name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drives => "drives",
+            Self::EndEffector => "tip",
+        }
+    }
+}
+
 /// Rows of time, s, and values: drive angles, rad, or x and y of the end effector, m. Times rise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]

@@ -9,7 +9,7 @@ pub mod spline;
 pub mod table;
 
 pub use curve::{Curve, CurveError, CurvePoint};
-pub use given::Samples;
+pub use given::{Coordinates, Samples};
 pub use path::{Path, PathError};
 pub use point::PathPoint;
 pub use table::PathTable;

@@ -1,5 +1,6 @@
 //! [`mend`]: the least change of counterweights that takes away what was measured.
 
+use serde::Serialize;
 use thiserror::Error;
 
 use super::taken::Taken;
@@ -7,7 +8,7 @@ use crate::mechanics::balance::{
     Body, Condition, Hold, Keep, NotKept, Parameter, Quantity, keep_with, unreachable_by_changes,
 };
 use crate::mechanics::counterweights::{NoWeights, Weighing, place_with, unreachable_by_weights};
-use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineSpec};
+use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
 
 /// What may change.
@@ -20,18 +21,18 @@ pub enum Way {
 }
 
 /// One number that changes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// Its key.
     pub key: String,
-    /// Its unit.
-    pub unit: &'static str,
     /// What it is; 0 for a counterweight that is new.
     pub from: f64,
-    /// What mends it, exactly.
-    pub exact: f64,
-    /// The same as a person can set it: to 0.1 g or 0.1 mm.
+    /// What mends it, as a person can set it: to 0.1 g or 0.1 mm.
     pub to: f64,
+    /// The same exactly.
+    pub exact: f64,
+    /// Its unit.
+    pub unit: &'static str,
 }
 
 /// What mends a machine.
@@ -135,6 +136,25 @@ pub fn identified(machine: &Machine, taken: &Taken) -> Result<(Machine, Vec<Vect
     turned(&mut spec, &kept.machine, &taken.momenta);
     let machine = Machine::new(spec).map_err(|why| NoMend::Machine(why.to_string()))?;
     Ok((machine, misses.iter().map(|miss| -miss).collect()))
+}
+
+/// A machine as it was built, with what mends the nominal one: its counterweights, and the changes of its links.
+///
+/// # Errors
+/// If no such machine can be.
+pub fn trimmed(built: &Machine, nominal: &Machine, mended: &Mended) -> Result<Machine, MachineError> {
+    let mut spec = built.spec().clone();
+    spec.counterweights = mended.machine.spec().counterweights.clone();
+    let changes = nominal.spec().links.iter().zip(&mended.machine.spec().links);
+    for (own, (from, to)) in spec.links.iter_mut().zip(changes) {
+        let mass = own.mass + to.mass - from.mass;
+        // First moments add up.
+        let moment =
+            |own_at: f64, from_at: f64, to_at: f64| (own.mass * own_at + to.mass * to_at - from.mass * from_at) / mass;
+        let (com, normal) = (moment(own.com, from.com, to.com), moment(own.com_normal, from.com_normal, to.com_normal));
+        (own.mass, own.com, own.com_normal) = (mass, com, normal);
+    }
+    Machine::new(spec)
 }
 
 /// Inertias of the links of each drive in proportion, so that it has a momentum; as they are where that would make them

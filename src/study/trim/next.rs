@@ -1,6 +1,7 @@
 //! [`next`]: which motion would say most of what is least known.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use serde::Serialize;
 
 use super::fit::Fit;
 use super::recording::{Motion, Recording};
@@ -10,18 +11,41 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 
 /// A motion that could be driven next: each drive as a sine about the middle of what it did.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     /// Drives that move and in which sense, counted from 0.
+    #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
     /// Amplitude of each drive, rad, and its frequency, Hz; drives that move against each other share a frequency.
     pub amplitude: Vec<f64>,
     /// Hz.
     pub frequency: Vec<f64>,
     /// Half the interval of the worst number with it; infinite if it is not told yet.
+    #[serde(skip_serializing_if = "is_infinite")]
     pub half_width: f64,
     /// By what factor intervals of all numbers become narrower in the mean (geometric).
+    #[serde(rename = "narrower")]
     pub all: f64,
+}
+
+fn is_infinite(x: &f64) -> bool {
+    !x.is_finite()
+}
+
+impl Candidate {
+    /// In words, by the names of the drives.
+    pub fn words(&self, machine: &Machine) -> String {
+        let names: Vec<&str> = self.drives.iter().map(|(k, _)| machine.spec().drives[*k].name.as_str()).collect();
+        let apart = self.frequency.windows(2).any(|w| w[0] != w[1]);
+        let [rest @ .., last] = names.as_slice() else { return String::new() };
+        let all = if rest.is_empty() { (*last).to_owned() } else { format!("{} and {last}", rest.join(", ")) };
+        match self.drives.as_slice() {
+            [_] => format!("drive {all} alone"),
+            _ if apart => format!("drives {all}, each at its own frequency"),
+            both if both.iter().any(|(_, sign)| *sign < 0.0) => format!("drives {all} against each other"),
+            _ => format!("drives {all} in step"),
+        }
+    }
 }
 
 /// What to measure next.

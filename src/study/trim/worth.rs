@@ -13,6 +13,7 @@
 //! choice takes the square root of the 95 % quantile of χ² for the normal one's 1.96.
 
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 use super::fit::Fit;
 use super::mend::Mended;
@@ -21,7 +22,7 @@ use super::taken::Taken;
 use crate::mechanics::machine::{Inertia, Machine};
 
 /// What a change is worth over the motions that were measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Worth {
     /// Root mean square of the force of imbalance as measured and after the change, N.
     pub force: [f64; 2],

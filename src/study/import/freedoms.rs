@@ -1,34 +1,39 @@
 //! The same ways of machines without planes: two drives have one curve for each b, four and more freedoms at each point.
 
-use stillbase::mechanics::planar::Vector;
-use stillbase::planning::Motion;
-use stillbase::planning::curves::path::minimum_norm_curve;
-use stillbase::planning::curves::{Path, Samples};
-use stillbase::planning::following::closest::{nearest_b, same_tip};
-use stillbase::planning::following::nearest::turned;
-use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posture::Posture;
-use stillbase::planning::reactionless::{BSet, between};
-use stillbase::planning::timing::Profile;
-use stillbase::session::scenario::{Task, TaskKind};
-use stillbase::settings::number::{counted, fixed};
+use crate::mechanics::planar::Vector;
+use crate::planning::Motion;
+use crate::planning::curves::path::minimum_norm_curve;
+use crate::planning::curves::{Path, PathTable, Samples};
+use crate::planning::following::closest::{nearest_b, same_tip};
+use crate::planning::following::nearest::turned;
+use crate::planning::pose_space::PoseSpace;
+use crate::planning::posture::Posture;
+use crate::planning::reactionless::{BSet, between};
+use crate::planning::timing::Profile;
+use crate::session::scenario::{Task, TaskKind};
+use crate::settings::number::{counted, fixed};
 
 use super::judge::{Candidate, Judge};
-use super::ways::{Asked, Keep, Ways};
-use crate::commands::failure::Failure;
+use super::request::{ImportError, Keep, Request};
+use super::ways::Ways;
 
 /// Points of a path of which it is asked which b reach them.
 const ASKED: usize = 25;
 /// Two drives: b of the samples may differ by this much, rad, from that of the curve that they are meant to lie on.
 const ON_CURVE: f64 = 1e-3;
 
-fn running(path: stillbase::planning::curves::PathTable, samples: &Samples) -> Motion {
+fn running(path: PathTable, samples: &Samples) -> Motion {
     Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) }
 }
 
 /// The motion given by drive angles.
-pub fn of_drives(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samples) -> Result<Ways, Failure> {
-    let path = samples.path(0.0).ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+pub(super) fn of_drives(
+    asked: &Request,
+    judge: &Judge,
+    space: &PoseSpace,
+    samples: &Samples,
+) -> Result<Ways, ImportError> {
+    let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
     let motion = running(path, samples);
     let mean = judge.account(&motion).b_mean;
     // Whole turns of all drives are nothing: the one nearest to where the motion is.
@@ -72,8 +77,13 @@ pub fn of_drives(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samp
 }
 
 /// The usual inverse of a motion given by the end effector, and one that holds b.
-pub fn of_tip(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samples) -> Result<Ways, Failure> {
-    let curve = samples.curve().ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+pub(super) fn of_tip(
+    asked: &Request,
+    judge: &Judge,
+    space: &PoseSpace,
+    samples: &Samples,
+) -> Result<Ways, ImportError> {
+    let curve = samples.curve().ok_or(ImportError::TooDense)?;
     let first = samples.point(0);
     let usual = |b: f64| {
         let q = space.near(first, b)?;
@@ -172,12 +182,11 @@ fn on_curve(
 }
 
 /// As it is given: where every motion is reactionless, or none can be proposed.
-pub fn as_given(judge: &Judge, samples: &Samples, drives: bool) -> Result<Ways, Failure> {
-    let sparse = || Failure::wrong_input("want times further apart");
+pub(super) fn as_given(judge: &Judge, samples: &Samples, drives: bool) -> Result<Ways, ImportError> {
     let path = match drives {
-        true => Some(samples.path(0.0).ok_or_else(sparse)?),
+        true => Some(samples.path(0.0).ok_or(ImportError::TooDense)?),
         false => {
-            let curve = samples.curve().ok_or_else(sparse)?;
+            let curve = samples.curve().ok_or(ImportError::TooDense)?;
             let start = PoseSpace::nominal(&judge.machine)?.near(samples.point(0), 0.0);
             start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok())
         }

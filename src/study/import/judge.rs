@@ -1,69 +1,92 @@
 //! What motions of a machine do to its base, and whether a proposed motion has no reactions, as it is meant to.
 
 use serde::Serialize;
-use stillbase::mechanics::dynamics::{Surroundings, angular_momentum};
-use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::planning::Motion;
-use stillbase::planning::following::nearest::Deviation;
-use stillbase::planning::forecast::Forecast;
-use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
-use stillbase::planning::timing::Limits;
-use stillbase::session::scenario::{Scenario, Task};
-use stillbase::session::{Run, replay};
 
-use crate::commands::input::DEFAULT_SCENARIO;
+use super::given::GivenMotion;
+use crate::mechanics::dynamics::{Surroundings, angular_momentum};
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+use crate::planning::Motion;
+use crate::planning::curves::Coordinates;
+use crate::planning::following::nearest::Deviation;
+use crate::planning::forecast::Forecast;
+use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::timing::Limits;
+use crate::query::Watch;
+use crate::session::scenario::{Scenario, Task, TaskKind};
+use crate::session::{Refusal, Run, replay_while};
 
 /// What a motion does, if it is followed exactly.
-#[derive(Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Account {
+    /// Largest |n_B|, N m.
     pub peak_base_moment: f64,
+    /// Root mean square of n_B, N m.
     pub rms_base_moment: f64,
+    /// ∫ |n_B| dt, N m s.
     pub moment_impulse: f64,
+    /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
+    /// Root mean square of the dynamic |f_B|, N.
     pub rms_base_force: f64,
+    /// Largest torque of each motor, either way, N m.
     pub peak_torque: Vec<f64>,
+    /// Largest rate of each motor, rad/s.
     pub peak_speed: Vec<f64>,
     /// The limit of a drive that is passed by most, and by what factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
     /// By how much a relative angle passes its limits at most, rad; 0 if all keep them.
     pub past_limits: f64,
+    /// Least and greatest b on the way, rad.
     pub b_range: [f64; 2],
+    /// Mean of b over time, rad.
     pub b_mean: f64,
+    /// Angular momentum about B at the start, kg m²/s.
     pub angular_momentum_start: f64,
+    /// The same at the end, kg m²/s.
     pub angular_momentum_end: f64,
-    /// Largest |q̇_k| at the end.
+    /// Largest |q̇_k| at the end, rad/s.
     pub speed_end: f64,
 }
 
-#[derive(Serialize)]
+/// A motion that is proposed, simulated.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
     /// `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,
+    /// Why it is this one, in words.
     pub why: String,
+    /// rad.
     pub b: f64,
-    /// Greatest distance of the end effector from the given motion.
+    /// Greatest distance of the end effector from the given motion, m.
     pub tip_deviation: f64,
+    /// Greatest distance of each drive from the given motion, rad.
     pub joint_deviation: Vec<f64>,
-    /// Root mean square over time and drives in the metric of kinetic energy.
+    /// Root mean square over time and drives in the metric of kinetic energy, rad.
     pub rms_deviation: f64,
+    /// What it does, if it is followed exactly.
     #[serde(flatten)]
     pub account: Account,
     /// Largest |n_B| when it is simulated, N m.
     pub simulated_peak_base_moment: f64,
+    /// Largest dynamic |f_B| when it is simulated, N.
     pub simulated_peak_base_force: f64,
+    /// Whether the simulated motion leaves the base alone.
     pub reactionless: bool,
 }
 
 /// A motion that might be proposed.
-pub struct Candidate {
+pub(super) struct Candidate {
     pub way: &'static str,
     pub why: String,
     pub task: Task,
 }
 
-/// The machine with what is needed to judge motions of it.
-pub struct Judge {
+/// The machine with what is needed to assess motions of it.
+pub(super) struct Judge {
+    /// Everything but the task.
+    pub scenario: Scenario,
     pub machine: Machine,
     pub model: Inertia,
     pub around: Surroundings,
@@ -72,6 +95,20 @@ pub struct Judge {
 }
 
 impl Judge {
+    /// Of the machine of a scenario, whose motions are looked at at so many instants.
+    pub fn new(scenario: &Scenario, instants: usize) -> Self {
+        let scenario = Scenario { compare_b: None, edits: Vec::new(), ..scenario.clone() };
+        let machine = scenario.machine.clone();
+        Self {
+            model: Inertia::of(&machine),
+            around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
+            space: PoseSpace::of(&machine),
+            instants,
+            scenario,
+            machine,
+        }
+    }
+
     fn past_limits(&self, motion: &Motion) -> f64 {
         let past = |i: usize| {
             let q = motion.path.at(i as f64 / self.instants as f64).q;
@@ -114,13 +151,33 @@ impl Judge {
     ///
     /// Errors say why it cannot.
     pub fn plans(&self, task: &Task) -> Result<(), String> {
-        let base = Scenario::builtin(DEFAULT_SCENARIO).ok_or("the built-in scenarios are gone")?;
-        let own =
-            Scenario { machine: self.machine.clone(), task: task.clone(), compare_b: None, edits: Vec::new(), ..base };
+        let own = Scenario { task: task.clone(), ..self.scenario.clone() };
         Run::new(&own).map(|_| ()).map_err(|refusal| refusal.to_string())
     }
 
-    /// A candidate, planned and simulated.
+    /// A motion as a scenario of its own, with the step, s.
+    pub fn scenario(&self, task: Task, step: f64, way: &str) -> Scenario {
+        let title = format!("{} · {way}", self.scenario.title);
+        Scenario { task, step, title, ..self.scenario.clone() }
+    }
+
+    /// A given motion as a scenario of its own, of the end effector with minimum-norm rates from the pose of b, rad; none
+    /// if the samples make no task.
+    pub fn as_given(&self, motion: &GivenMotion, b: f64, step: f64) -> Option<Scenario> {
+        let sampled = |kind, b| Task::sampled(kind, motion.samples.clone(), Some(b), &self.machine).ok();
+        let task = match motion.coordinates {
+            Coordinates::Drives => {
+                let b = self.model.lambda().dot(motion.samples.values(0));
+                sampled(TaskKind::Given, b).map(|task| Task { b, ..task })
+            }
+            Coordinates::EndEffector => sampled(TaskKind::MinimumNorm, b),
+        };
+        let own = self.scenario(task?, step, "as given");
+        Some(Scenario { name: format!("{}-given", own.name), ..own })
+    }
+
+    /// A candidate, planned and simulated; `goes_on` is told how much is done, from 0 to 1, and says whether the rest is
+    /// still wanted.
     ///
     /// Errors say why it cannot be carried out.
     pub fn proposal(
@@ -128,8 +185,9 @@ impl Judge {
         candidate: &Candidate,
         scenario: &Scenario,
         given: Option<&Motion>,
-    ) -> Result<Proposal, String> {
-        let run = replay(scenario, |_, _| {}).map_err(|refusal| refusal.to_string())?;
+        goes_on: Watch<'_>,
+    ) -> Result<Proposal, Refusal> {
+        let run = replay_while(scenario, |run, frame| goes_on(frame.time / run.planned_time()))?;
         let peaks = run.frame().peaks;
         let motion = &run.plan().motion;
         let deviation = given

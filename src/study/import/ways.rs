@@ -1,36 +1,20 @@
 //! The ways in which a given motion might be made reactionless, the best first.
 
-use clap::ValueEnum;
-use stillbase::planning::Motion;
-use stillbase::planning::common::serve;
-use stillbase::planning::curves::path::minimum_norm_curve;
-use stillbase::planning::curves::{Path, Samples};
-use stillbase::planning::following::nearest::{nearest_b, same_tip, turned};
-use stillbase::planning::following::{Rule, trace};
-use stillbase::planning::pose_space::{Planes, PoseSpace};
-use stillbase::planning::reactionless::{BSet, between};
-use stillbase::planning::timing::Profile;
-use stillbase::session::scenario::{Task, TaskKind};
-
 use super::judge::{Candidate, Judge};
-use crate::commands::failure::Failure;
-
-/// What the proposal keeps of given drive angles.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Keep {
-    Tip,
-    Joints,
-}
-
-/// What is asked of the proposal.
-pub struct Asked {
-    /// rad.
-    pub b: Option<f64>,
-    pub keep: Option<Keep>,
-}
+use super::request::{ImportError, Keep, Request};
+use crate::planning::Motion;
+use crate::planning::common::serve;
+use crate::planning::curves::path::minimum_norm_curve;
+use crate::planning::curves::{Path, Samples};
+use crate::planning::following::nearest::{nearest_b, same_tip, turned};
+use crate::planning::following::{Rule, trace};
+use crate::planning::pose_space::{Planes, PoseSpace};
+use crate::planning::reactionless::{BSet, between};
+use crate::planning::timing::Profile;
+use crate::session::scenario::{Task, TaskKind};
 
 /// The motion that samples give, and what might be proposed in its place.
-pub struct Ways {
+pub(super) struct Ways {
     /// The motion as given; for the end effector with minimum-norm rates, if these can follow.
     pub given: Option<Motion>,
     /// What might be proposed, or why nothing can be.
@@ -38,8 +22,13 @@ pub struct Ways {
 }
 
 /// The motion given by drive angles, and what might be proposed, the best first.
-pub fn of_drives(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Samples) -> Result<Ways, Failure> {
-    let path = samples.path(0.0).ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+pub(super) fn of_drives(
+    asked: &Request,
+    judge: &Judge,
+    planes: &Planes,
+    samples: &Samples,
+) -> Result<Ways, ImportError> {
+    let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
     let motion = Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) };
     let lambda = judge.model.lambda();
     let mean = judge.account(&motion).b_mean;
@@ -95,14 +84,14 @@ pub fn of_drives(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Sample
 }
 
 /// The usual inverse of a motion given by the end effector, and the one on a plane.
-pub fn of_tip(
-    asked: &Asked,
+pub(super) fn of_tip(
+    asked: &Request,
     judge: &Judge,
     (space, planes): (&PoseSpace, &Planes),
     samples: &Samples,
-) -> Result<Ways, Failure> {
+) -> Result<Ways, ImportError> {
     let map = planes.map();
-    let curve = samples.curve().ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+    let curve = samples.curve().ok_or(ImportError::TooDense)?;
     let curves = [curve];
     let (b, why) = match asked.b {
         Some(b) => (b, "b is the one asked for".to_owned()),

@@ -1,24 +1,18 @@
-//! Measured motions from a CSV file: columns are found by name and unit, and whatever is wrong is named with its file,
-//! line and column.
+//! Motions of a built machine that were measured, with what its base felt.
 
-use std::f64::consts::PI;
-use std::fmt::Display;
+use super::angle::{GAP_FACTOR, continuous_angle};
+use super::column::{ANGLE, Column, DEGREE, TIME, Units, named, no_column, unit_in_brackets};
+use super::error::TableError;
+use super::reader::Reader;
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::{PerDrive, Vector};
+use crate::settings::number::{Short, counted};
+use crate::settings::range::clipped;
+use crate::study::trim::Motion;
 
-use stillbase::mechanics::machine::Machine;
-use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::settings::number::{Short, counted};
-use stillbase::settings::range::clipped;
-use stillbase::study::trim::Motion;
+/// The most rows of a table.
+pub const MAX_ROWS: usize = 100_000;
 
-use super::super::columns::{ANGLE, Column, GAP, MOST, TIME, continuous_angle, no_column, reader, unit_in_brackets};
-use super::super::failure::Failure;
-
-/// The most rows of a file.
-pub const MOST_ROWS: usize = 100_000;
-
-type Units = &'static [(&'static str, f64)];
-
-const DEGREE: f64 = PI / 180.0;
 const RATE: Units = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE)];
 const ACCELERATION: Units = &[
     ("rad/s²", 1.0),
@@ -43,7 +37,7 @@ const MOMENT: Units = &[
 ];
 const LENGTH: Units = &[("m", 1.0)];
 /// A base that moves by more than this, m or rad, is no fixed one.
-const FIXED: f64 = 1e-9;
+const MAX_BASE_MOTION: f64 = 1e-9;
 
 /// Where everything stands.
 struct Columns {
@@ -59,58 +53,42 @@ struct Columns {
     motion: Option<usize>,
 }
 
-/// Motions of a file.
+/// Reads motions from CSV with a header: `t,q1,q2 …,fx,fy,nz`, in any order, with units if wanted. Rates `qd1 …` and
+/// accelerations `qdd1 …` are taken where they are. Motions part where the column `motion` says so, where time leaps and
+/// where it begins anew. `file` is what errors call the text.
 ///
 /// # Errors
 /// Where what is wrong, and what was expected.
-pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, Failure> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let at = |line: u64, why: &dyn Display| Failure::wrong_input(format!("{file}:{line}: {why}"));
-    let mut lines = reader(text, file)?.into_records();
-    let mut next =
-        || lines.next().map(|r| r.map_err(|e| Failure::wrong_input(format!("{file}: {e}: want a CSV file"))));
-    let line_of = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
-    let want = head_wanted(machine);
-    let Some(head) = next().transpose()? else { return Err(at(1, &format!("nothing here: want {want}"))) };
-    if head.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-        return Err(at(line_of(&head), &format!("no header: want {want}")));
-    }
-    let columns = Columns::of(&head, machine).map_err(|why| at(line_of(&head), &why))?;
+pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, TableError> {
+    let mut reader = Reader::new(text, file, &head_wanted(machine))?;
+    let columns = Columns::of(reader.head(), machine).map_err(|why| reader.head_error(why))?;
     let all = columns.all();
-    let (mut read, mut names) = (Split::default(), Vec::new());
-    while let Some(record) = next().transpose()? {
-        let line = line_of(&record);
-        let number = |column: &&Column| match record.get(column.place).filter(|cell| !cell.is_empty()) {
-            None => Err(at(line, &format!("column {}: nothing there: want a number", column.name))),
-            Some(cell) => {
-                cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MOST).ok_or_else(|| {
-                    let (name, cell) = (&column.name, clipped(cell));
-                    at(line, &format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
-                })
-            }
-        };
-        let row: Vec<f64> = all.iter().map(number).collect::<Result<_, _>>()?;
-        let name = columns.motion.and_then(|place| record.get(place)).unwrap_or_default().to_owned();
-        let fresh = names.last().is_some_and(|last| *last != name);
-        names.push(name);
-        if names.len() > MOST_ROWS {
-            return Err(at(line, &format!("more than {MOST_ROWS} rows: want fewer, such as every second one")));
+    let (mut read, mut last, mut count) = (Split::default(), None::<String>, 0);
+    while let Some(row) = reader.row()? {
+        let numbers = row.numbers(all.iter().copied())?;
+        let name = columns.motion.and_then(|place| row.cell(place)).unwrap_or_default().to_owned();
+        let fresh = last.is_some_and(|last| last != name);
+        last = Some(name);
+        count += 1;
+        if count > MAX_ROWS {
+            return Err(row.error(format!("more than {MAX_ROWS} rows: want fewer, such as every second one")));
         }
-        read.take(row, line, fresh).map_err(|why| at(line, &format!("column {}: {why}", columns.time.name)))?;
+        let taken = read.take(numbers, row.line, fresh);
+        taken.map_err(|why| row.error(format!("column {}: {why}", columns.time.name)))?;
     }
     let mut parts = read.parts();
     if let Some((column, line)) = columns.moving(&parts) {
         let why = format!("column {column}: the base moves: want a measurement on a base that stands still");
-        return Err(at(line, &why));
+        return Err(TableError::at(file, line, why));
     }
     for Part { rows, lines } in &mut parts {
         for (k, column) in columns.q.iter().enumerate() {
-            let broken = continuous_angle(rows, 1 + k, &column.name, column.has_unit);
-            broken.map_err(|broken| at(lines[broken.row], &broken.why(|row| lines[row])))?;
+            let turns = continuous_angle(rows, 1 + k, &column.name, column.has_unit);
+            turns.map_err(|broken| TableError::at(file, lines[broken.row], broken.why(lines)))?;
         }
     }
     if parts.is_empty() {
-        return Err(Failure::wrong_input(format!("{file}: no rows of numbers: want motions that were measured")));
+        return Err(TableError::whole(file, "no rows of numbers: want motions that were measured"));
     }
     Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
 }
@@ -162,7 +140,7 @@ impl Split {
             let usual = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
             let mut own = Part::default();
             for (row, line) in part.rows.into_iter().zip(part.lines) {
-                if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP * usual) {
+                if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP_FACTOR * usual) {
                     parts.push(std::mem::take(&mut own));
                 }
                 own.rows.push(row);
@@ -180,7 +158,6 @@ impl Columns {
             let cells: Vec<_> = head.iter().map(|cell| name_and_unit(cell, units)).collect();
             Column::find(&cells, names, units)
         };
-        let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let missing = |name: &str| no_column(name, head, &head_wanted(machine));
         let drives = machine.drives();
         let each = |short: [&str; 2], long: &str, units: Units| -> Result<Vec<Option<Column>>, String> {
@@ -237,7 +214,7 @@ impl Columns {
         let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));
         let (first, _) = rows().next()?;
         self.base.iter().enumerate().find_map(|(i, column)| {
-            let (_, line) = rows().find(|(row, _)| (row[from + i] - first[from + i]).abs() > FIXED)?;
+            let (_, line) = rows().find(|(row, _)| (row[from + i] - first[from + i]).abs() > MAX_BASE_MOTION)?;
             Some((column.name.clone(), *line))
         })
     }

@@ -1,0 +1,69 @@
+//! [`Column`]: a column of a table, found by its name, with its unit.
+
+use std::f64::consts::PI;
+
+use crate::settings::range::{clipped, shortened};
+
+/// Words for units, and what one of them is in SI units.
+pub(super) type Units = &'static [(&'static str, f64)];
+
+pub(super) const DEGREE: f64 = PI / 180.0;
+pub(super) const TIME: Units = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
+pub(super) const ANGLE: Units = &[("rad", 1.0), ("radians", 1.0), ("deg", DEGREE), ("degrees", DEGREE), ("°", DEGREE)];
+
+/// A column of a table.
+pub(super) struct Column {
+    /// Counted from 0.
+    pub place: usize,
+    pub name: String,
+    /// What a number of it is in SI units.
+    pub scale: f64,
+    /// Whether its head says its unit.
+    pub has_unit: bool,
+}
+
+impl Column {
+    /// The one of these names among heads with their units; none if there is none.
+    ///
+    /// # Errors
+    /// If there are two, or its unit is none of those known.
+    pub fn find(cells: &[(String, Option<String>)], names: &[String], units: Units) -> Result<Option<Self>, String> {
+        let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
+        let Some((place, (name, unit))) = found.next() else { return Ok(None) };
+        if let Some((other, _)) = found.next() {
+            return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
+        }
+        let scale = match unit {
+            None => 1.0,
+            Some(unit) => {
+                let known = units.iter().find(|(known, _)| known == unit);
+                known.map(|known| known.1).ok_or_else(|| {
+                    let all: Vec<&str> = units.iter().map(|u| u.0).collect();
+                    format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
+                })?
+            }
+        };
+        Ok(Some(Self { place, name: name.clone(), scale, has_unit: unit.is_some() }))
+    }
+}
+
+/// That a column is missing among those of a table.
+pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> String {
+    let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
+    format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
+}
+
+/// `q1 (deg)` or `q1 [deg]`, trimmed and in small letters.
+pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
+    let bracketed = |open: char, close: char| {
+        let (name, rest) = cell.split_once(open)?;
+        Some((name.trim().to_owned(), rest.trim().strip_suffix(close)?.trim().to_owned()))
+    };
+    let (name, unit) = bracketed('(', ')').or_else(|| bracketed('[', ']'))?;
+    Some((name, Some(unit).filter(|unit| !unit.is_empty())))
+}
+
+/// Names as they stand.
+pub(super) fn named(all: &[&str]) -> Vec<String> {
+    all.iter().map(|name| (*name).to_owned()).collect()
+}

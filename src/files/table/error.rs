@@ -1,0 +1,37 @@
+//! [`TableError`]: why text is not the table that is wanted.
+
+use std::fmt::{self, Display};
+
+/// Why text is not the table that is wanted: where, and what was expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableError {
+    /// What the text is called.
+    pub file: String,
+    /// Line, counted from 1; none if the whole text is wrong.
+    pub line: Option<u64>,
+    /// What is wrong, by column where it is one, and what was expected.
+    pub why: String,
+}
+
+impl TableError {
+    /// Of a line, counted from 1.
+    pub(super) fn at(file: &str, line: u64, why: impl Display) -> Self {
+        Self { line: Some(line), ..Self::whole(file, why) }
+    }
+
+    /// Of the whole text.
+    pub(super) fn whole(file: &str, why: impl Display) -> Self {
+        Self { file: file.to_owned(), line: None, why: why.to_string() }
+    }
+}
+
+impl Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            Some(line) => write!(f, "{}:{line}: {}", self.file, self.why),
+            None => write!(f, "{}: {}", self.file, self.why),
+        }
+    }
+}
+
+impl std::error::Error for TableError {}

@@ -1,0 +1,155 @@
+//! [`Reader`]: a header, and rows of numbers with their lines.
+
+use super::column::Column;
+use super::error::TableError;
+use crate::settings::range::clipped;
+
+/// The largest number, in SI units.
+const MAX_NUMBER: f64 = 1e11;
+/// The most columns of a table.
+const MAX_COLUMNS: usize = 1000;
+
+/// Reads the rows of a table, one after the other.
+pub(super) struct Reader<'a> {
+    /// What errors call it.
+    file: &'a str,
+    head: csv::StringRecord,
+    records: csv::StringRecordsIntoIter<&'a [u8]>,
+}
+
+/// A row, and its line, counted from 1.
+pub(super) struct Row<'a> {
+    file: &'a str,
+    pub line: u64,
+    cells: csv::StringRecord,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads the header; `want` says which one is wanted. By the first line that tells, cells are parted by semicolons,
+    /// tabs or commas.
+    ///
+    /// # Errors
+    /// If there is none, or a row has too many columns, before any of them takes memory.
+    pub fn new(text: &'a str, file: &'a str, want: &str) -> Result<Self, TableError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
+        let delimiter = [b';', b'\t'].into_iter().find(|d| first.bytes().any(|b| b == *d)).unwrap_or(b',');
+        if let Some(line) = too_wide(text, delimiter) {
+            let why = format!("more than {MAX_COLUMNS} columns: want at most {MAX_COLUMNS}");
+            return Err(TableError::at(file, line, why));
+        }
+        let records = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .delimiter(delimiter)
+            .from_reader(text.as_bytes())
+            .into_records();
+        let mut reader = Self { file, head: csv::StringRecord::new(), records };
+        let Some(head) = reader.row()? else {
+            return Err(TableError::at(file, 1, format!("nothing here: want {want}")));
+        };
+        if head.cells.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+            return Err(head.error(format!("no header: want {want}")));
+        }
+        reader.head = head.cells;
+        Ok(reader)
+    }
+
+    /// Cells of the header.
+    pub fn head(&self) -> &csv::StringRecord {
+        &self.head
+    }
+
+    /// That the header is wrong.
+    pub fn head_error(&self, why: impl std::fmt::Display) -> TableError {
+        TableError::at(self.file, line_of(&self.head), why)
+    }
+
+    /// The next row; none after the last.
+    ///
+    /// # Errors
+    /// If it is no CSV.
+    pub fn row(&mut self) -> Result<Option<Row<'a>>, TableError> {
+        let Some(cells) = self.records.next() else { return Ok(None) };
+        let cells = cells.map_err(|e| TableError::whole(self.file, format!("{e}: want a CSV file")))?;
+        Ok(Some(Row { file: self.file, line: line_of(&cells), cells }))
+    }
+}
+
+impl Row<'_> {
+    /// What stands in a column, as text.
+    pub fn cell(&self, place: usize) -> Option<&str> {
+        self.cells.get(place)
+    }
+
+    /// The numbers of columns, in SI units.
+    ///
+    /// # Errors
+    /// If one is missing, or no number within ±1e11.
+    pub fn numbers<'c>(&self, columns: impl IntoIterator<Item = &'c Column>) -> Result<Vec<f64>, TableError> {
+        columns.into_iter().map(|column| self.number(column)).collect()
+    }
+
+    fn number(&self, column: &Column) -> Result<f64, TableError> {
+        let name = &column.name;
+        let Some(cell) = self.cell(column.place).filter(|cell| !cell.is_empty()) else {
+            return Err(self.error(format!("column {name}: nothing there: want a number")));
+        };
+        cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MAX_NUMBER).ok_or_else(|| {
+            let cell = clipped(cell);
+            self.error(format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
+        })
+    }
+
+    /// That this row is wrong.
+    pub fn error(&self, why: impl std::fmt::Display) -> TableError {
+        TableError::at(self.file, self.line, why)
+    }
+}
+
+fn line_of(record: &csv::StringRecord) -> u64 {
+    record.position().map_or(0, csv::Position::line)
+}
+
+/// Where a cell is while it is read.
+#[derive(Clone, Copy, PartialEq)]
+enum Cell {
+    /// At its first byte, that of a row too or not.
+    Fresh {
+        of_row: bool,
+    },
+    Bare,
+    Quoted,
+    /// After a quote in quotes: two are one, one ends them.
+    Closed,
+    Comment,
+}
+
+/// The line in which a row ends that has too many columns, by the rules of the reader.
+fn too_wide(text: &str, delimiter: u8) -> Option<u64> {
+    let (mut cell, mut columns, mut line) = (Cell::Fresh { of_row: true }, 1, 1);
+    for byte in text.bytes() {
+        line += u64::from(byte == b'\n');
+        cell = match (cell, byte) {
+            (Cell::Quoted, b'"') => Cell::Closed,
+            (Cell::Quoted, _) | (Cell::Closed, b'"') => Cell::Quoted,
+            (_, b'\n' | b'\r') => {
+                columns = 1;
+                Cell::Fresh { of_row: true }
+            }
+            (Cell::Comment, _) | (Cell::Fresh { of_row: true }, b'#') => Cell::Comment,
+            (Cell::Fresh { .. }, b'"') => Cell::Quoted,
+            (_, byte) if byte == delimiter => {
+                columns += 1;
+                if columns > MAX_COLUMNS {
+                    return Some(line);
+                }
+                Cell::Fresh { of_row: false }
+            }
+            _ => Cell::Bare,
+        };
+    }
+    None
+}

@@ -1,0 +1,153 @@
+//! A motion given by samples over time: of the drive angles, or of the end effector.
+
+use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
+use super::column::{ANGLE, Column, TIME, Units, named, no_column, unit_in_brackets};
+use super::error::TableError;
+use super::reader::Reader;
+use crate::mechanics::machine::Machine;
+use crate::planning::curves::given::MAX_SAMPLES;
+use crate::planning::curves::spline::FEWEST;
+use crate::planning::curves::{Coordinates, Samples};
+use crate::settings::number::{Short, counted};
+
+const LENGTH: Units = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
+
+/// Samples that were read.
+#[derive(Debug)]
+pub struct SampleTable {
+    /// What they are of.
+    pub coordinates: Coordinates,
+    /// Times, s, and angles, rad, or coordinates, m.
+    pub samples: Samples,
+    /// Names of the columns beside the time.
+    pub names: Vec<String>,
+    /// For each of these, at how many places a whole turn was taken out.
+    pub unwrapped: Vec<usize>,
+}
+
+/// Reads samples from CSV with a header: `t,q1,q2 …` or `t,x,y`, in any order, with units if wanted, as `q1 (deg)`; other
+/// columns are left alone. `file` is what errors call the text; where it has both, `wanted` says which are taken, by
+/// default the drives; `gaps` lets gaps in time pass.
+///
+/// # Errors
+/// Where what is wrong, and what was expected.
+pub fn samples(
+    text: &str,
+    file: &str,
+    machine: &Machine,
+    wanted: Option<Coordinates>,
+    gaps: bool,
+) -> Result<SampleTable, TableError> {
+    let want = head_wanted(machine);
+    let mut reader = Reader::new(text, file, &want)?;
+    let columns = Columns::of(reader.head(), machine, wanted, &want).map_err(|why| reader.head_error(why))?;
+    let time = &columns.all[0].name;
+    let (mut rows, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
+    while let Some(read) = reader.row()? {
+        let row = read.numbers(&columns.all)?;
+        if let Some(before) = rows.last().map(|row| row[0]).filter(|before| row[0] <= *before) {
+            let (now, before) = (Short(row[0]), Short(before));
+            return Err(read.error(format!("column {time}: {now} s after {before} s: want times that rise")));
+        }
+        rows.push(row);
+        lines.push(read.line);
+        if rows.len() > MAX_SAMPLES {
+            return Err(read.error(format!("more than {MAX_SAMPLES} rows: want fewer, such as every second one")));
+        }
+    }
+    if rows.len() < FEWEST {
+        let why = format!("{} of numbers: want at least {FEWEST}", counted(rows.len(), "row"));
+        return Err(TableError::whole(file, why));
+    }
+    if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
+        let why = format!(
+            "column {time}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or --gaps to have \
+             it bridged by the spline",
+            lines[i - 1]
+        );
+        return Err(TableError::at(file, lines[i], why));
+    }
+    let mut unwrapped = vec![0; columns.all.len() - 1];
+    for (k, Column { name, has_unit, .. }) in columns.all.iter().enumerate().skip(1) {
+        let turns = match columns.coordinates {
+            Coordinates::Drives => continuous_angle(&mut rows, k, name, *has_unit),
+            Coordinates::EndEffector => continuous_length(&rows, k, name).map(|()| 0),
+        };
+        unwrapped[k - 1] = turns.map_err(|broken| TableError::at(file, lines[broken.row], broken.why(&lines)))?;
+    }
+    let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
+    let samples = Samples::new(&rows).map_err(|why| TableError::whole(file, why))?;
+    Ok(SampleTable { coordinates: columns.coordinates, samples, names, unwrapped })
+}
+
+fn head_wanted(machine: &Machine) -> String {
+    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
+    format!("a header t,{} (rad) or t,x,y (m)", drives.join(","))
+}
+
+struct Columns {
+    coordinates: Coordinates,
+    /// The time first.
+    all: Vec<Column>,
+}
+
+impl Columns {
+    fn of(
+        head: &csv::StringRecord,
+        machine: &Machine,
+        wanted: Option<Coordinates>,
+        want: &str,
+    ) -> Result<Self, String> {
+        let cells: Vec<(String, Option<String>)> = head.iter().map(name_and_unit).collect();
+        let find = |names: &[String], units: Units| Column::find(&cells, names, units);
+        let missing = |name: &str| no_column(name, head, want);
+        let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;
+        let drive = |k: usize| {
+            let own = &machine.spec().drives[k].name;
+            find(&[format!("q{}", k + 1), format!("q_{}", k + 1), format!("angle/{}", own.to_lowercase())], ANGLE)
+        };
+        let drives: Vec<Option<Column>> = (0..machine.drives()).map(drive).collect::<Result<_, _>>()?;
+        let tip = [find(&named(&["x", "tip/x"]), LENGTH)?, find(&named(&["y", "tip/y"]), LENGTH)?];
+        let has_drives = drives.iter().any(Option::is_some) || tip.iter().all(Option::is_none);
+        let usual = if has_drives { Coordinates::Drives } else { Coordinates::EndEffector };
+        let coordinates = wanted.unwrap_or(usual);
+        let mut all = vec![time];
+        match coordinates {
+            Coordinates::Drives => {
+                for (k, column) in drives.into_iter().enumerate() {
+                    all.push(column.ok_or_else(|| missing(&format!("q{}", k + 1)))?);
+                }
+            }
+            Coordinates::EndEffector => {
+                for (name, column) in ["x", "y"].into_iter().zip(tip) {
+                    all.push(column.ok_or_else(|| missing(name))?);
+                }
+            }
+        }
+        Ok(Self { coordinates, all })
+    }
+}
+
+/// `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
+fn name_and_unit(cell: &str) -> (String, Option<String>) {
+    let cell = cell.trim().to_lowercase();
+    if let Some(both) = unit_in_brackets(&cell) {
+        return both;
+    }
+    let known = |unit: &str| [TIME, ANGLE, LENGTH].iter().any(|units| units.iter().any(|(known, _)| *known == unit));
+    for separator in [' ', '_', '/'] {
+        if let Some((name, unit)) = cell.rsplit_once(separator).filter(|(_, unit)| known(unit)) {
+            return (name.trim().to_owned(), Some(unit.to_owned()));
+        }
+    }
+    (cell, None)
+}
+
+/// The first time between samples that is far longer than the usual one: at which row, how long, and the usual one, s.
+fn gap(rows: &[Vec<f64>]) -> Option<(usize, f64, f64)> {
+    let steps: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted[sorted.len() / 2];
+    steps.iter().position(|step| *step > GAP_FACTOR * usual).map(|i| (i + 1, steps[i], usual))
+}

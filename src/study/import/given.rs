@@ -1,0 +1,66 @@
+//! [`GivenMotion`]: samples as a motion of a machine takes them.
+
+use std::f64::consts::TAU;
+
+use crate::mechanics::machine::Machine;
+use crate::planning::curves::given::SamplesError;
+use crate::planning::curves::{Coordinates, Samples};
+
+/// A motion given by samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenMotion {
+    /// What the samples are of.
+    pub coordinates: Coordinates,
+    /// Names of their columns beside the time.
+    pub names: Vec<String>,
+    /// Times, s, and drive angles, rad, or coordinates of the end effector, m.
+    pub samples: Samples,
+    /// By how much each drive was lifted, whole turns, so that the relative angles begin within their limits, rad.
+    pub lifted: Vec<f64>,
+    /// The cut-off, Hz, and the greatest change of a sample by smoothing, rad or m.
+    pub smoothing: Option<[f64; 2]>,
+}
+
+impl GivenMotion {
+    /// Samples of a machine's drive angles or end effector. Single drives are lifted by whole turns where that brings the
+    /// first pose within the joint limits, because angles may have been wrapped.
+    pub fn new(machine: &Machine, coordinates: Coordinates, names: Vec<String>, samples: Samples) -> Self {
+        let mut lifted = vec![0.0; samples.columns()];
+        let first = samples.values(0);
+        let angles = if coordinates == Coordinates::Drives { machine.angles() } else { &[] };
+        for angle in angles {
+            let a = first[angle.to] + lifted[angle.to] - first[angle.from] - lifted[angle.from] + angle.offset;
+            let (low, high) = (*angle.limits.start(), *angle.limits.end());
+            let turns = ((low - a) / TAU).ceil() * TAU;
+            if !(low..=high).contains(&a) && a + turns <= high {
+                lifted[angle.to] += turns;
+            }
+        }
+        let row = |i: usize| samples.values(i).iter().zip(&lifted).map(|(q, lift)| q + lift).collect();
+        let samples = match lifted.iter().all(|lift| *lift == 0.0) {
+            true => samples,
+            false => samples.with_values((0..samples.count()).map(row)).unwrap_or(samples),
+        };
+        Self { coordinates, names, samples, lifted, smoothing: None }
+    }
+
+    /// The same smoothed without delay: half of the amplitude is left at the cut-off, Hz.
+    ///
+    /// # Errors
+    /// If the cut-off is not below half of the mean rate.
+    pub fn smoothed(self, cut_off: f64) -> Result<Self, SamplesError> {
+        let samples = self.samples.smoothed(cut_off)?;
+        let all = |samples: &Samples| samples.rows().flat_map(|row| row[1..].to_vec()).collect::<Vec<_>>();
+        let changes = all(&samples).into_iter().zip(all(&self.samples)).map(|(now, before)| (now - before).abs());
+        let smoothing = Some([cut_off, changes.fold(0.0, f64::max)]);
+        Ok(Self { samples, smoothing, ..self })
+    }
+
+    /// Largest second derivative of each column at the samples, its unit/s²; none if times are too close for a spline.
+    pub(super) fn second_derivatives(&self) -> Option<Vec<f64>> {
+        let path = self.samples.path(0.0)?;
+        let per = self.samples.duration().powi(-2);
+        let peak = |k: usize| path.nodes().iter().fold(0.0, |m: f64, node| m.max((node.second[k] * per).abs()));
+        Some((0..self.samples.columns()).map(peak).collect())
+    }
+}

@@ -1,0 +1,133 @@
+//! [`Imported`]: what a given motion does to the base, and what is proposed in its place.
+
+use serde::Serialize;
+
+use super::given::GivenMotion;
+use super::judge::{Account, Judge, Proposal};
+use crate::planning::Motion;
+use crate::planning::curves::Coordinates;
+use crate::session::scenario::Scenario;
+use crate::settings::number::fixed;
+
+/// What a given motion does to the base, and what is proposed in its place.
+#[derive(Clone, Debug, Serialize)]
+pub struct Imported {
+    /// The machine's name.
+    pub machine: String,
+    /// `drives` or `tip`.
+    pub content: &'static str,
+    /// How many samples.
+    pub samples: usize,
+    /// Time of the first, s.
+    pub start: f64,
+    /// From the first to the last, s.
+    pub duration: f64,
+    /// Cut-off of smoothing, Hz.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed_at: Option<f64>,
+    /// Greatest change of a sample by smoothing, rad or m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed_by: Option<f64>,
+    /// How far the second derivative of each column can be trusted, rad/s² or m/s².
+    pub uncertainty: Vec<f64>,
+    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end
+    /// effector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub b_samples: Option<[f64; 2]>,
+    /// The given motion, of the end effector with minimum-norm rates; none where these cannot follow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<Account>,
+    /// Whether there is a proposal.
+    pub feasible: bool,
+    /// Why there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The nearest motion without reactions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proposal: Option<Proposal>,
+    /// What a person should know of the motions, a sentence each.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+    /// The proposal, and the motion as it was given, both to be carried out.
+    #[serde(skip)]
+    pub scenarios: Option<[Scenario; 2]>,
+}
+
+/// A second derivative that is uncertain by more than this fraction of its peak is noted.
+const MAX_UNCERTAINTY: f64 = 0.05;
+/// Smaller peaks of a second derivative, rad/s² or m/s², are rest.
+const MIN_PEAK: f64 = 1e-9;
+/// A motion that ends slower than this fraction of its greatest rate ends at rest.
+const MAX_END_SPEED: f64 = 1e-3;
+
+impl Imported {
+    /// Of a given motion, without a proposal; `given` is the motion of the drives.
+    pub(super) fn of(motion: &GivenMotion, judge: &Judge, given: Option<&Motion>) -> Self {
+        let samples = &motion.samples;
+        let lambda = judge.model.lambda();
+        let b = (0..samples.count()).map(|i| lambda.dot(samples.values(i)));
+        let is_of_drives = motion.coordinates == Coordinates::Drives;
+        let mut imported = Self {
+            machine: judge.machine.name().to_owned(),
+            content: motion.coordinates.name(),
+            samples: samples.count(),
+            start: samples.time(0),
+            duration: samples.duration(),
+            smoothed_at: motion.smoothing.map(|[cut_off, _]| cut_off),
+            smoothed_by: motion.smoothing.map(|[_, change]| change),
+            uncertainty: (0..samples.columns()).map(|k| samples.uncertainty(k)).collect(),
+            b_samples: is_of_drives
+                .then(|| b.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], b| [low.min(b), high.max(b)])),
+            given: given.map(|motion| judge.account(motion)),
+            feasible: false,
+            reason: None,
+            proposal: None,
+            notes: Vec::new(),
+            scenarios: None,
+        };
+        imported.notes = imported.notes_of(motion);
+        imported
+    }
+
+    fn notes_of(&self, motion: &GivenMotion) -> Vec<String> {
+        // Without these there is no spline, and the motion is none.
+        let Some(peaks) = motion.second_derivatives() else { return Vec::new() };
+        let is_of_drives = motion.coordinates == Coordinates::Drives;
+        let unit = if is_of_drives { "rad/s²" } else { "m/s²" };
+        let mut notes = Vec::new();
+        for ((name, uncertainty), peak) in motion.names.iter().zip(&self.uncertainty).zip(peaks) {
+            if *uncertainty > MAX_UNCERTAINTY * peak && peak > MIN_PEAK {
+                notes.push(format!(
+                    "the second derivative of {name} is uncertain by some {} {unit}, of a peak of {}: noise, or too few \
+                     digits or samples{}",
+                    fixed(*uncertainty, 4),
+                    fixed(peak, 4),
+                    if motion.smoothing.is_some() { "" } else { "; --smooth HZ removes higher frequencies" },
+                ));
+            }
+        }
+        let Some(given) = &self.given else { return notes };
+        if given.past_limits > 0.0 {
+            let what = if is_of_drives { "the motion as given" } else { "minimum-norm rates" };
+            let past = fixed(given.past_limits, 4);
+            notes.push(format!("{what}: relative angles pass their limits by up to {past} rad"));
+        }
+        if given.speed_end > MAX_END_SPEED * given.peak_speed.iter().fold(0.0, |m: f64, x| m.max(*x)) {
+            let speed = fixed(given.speed_end, 4);
+            notes.push(format!("the motion does not end at rest ({speed} rad/s): after it control brakes"));
+        }
+        notes
+    }
+
+    /// Takes a proposal, the scenario that carries it out, and that of the motion as it was given.
+    pub(super) fn propose(&mut self, proposal: Proposal, scenarios: [Scenario; 2]) {
+        if let Some((limit, factor)) = &proposal.account.over {
+            let times = fixed(*factor, 2);
+            self.notes.push(format!("the proposal asks for {times} times the {limit}; slower samples, or another --b"));
+        }
+        self.feasible = true;
+        self.reason = None;
+        self.proposal = Some(proposal);
+        self.scenarios = Some(scenarios);
+    }
+}

@@ -1,0 +1,87 @@
+//! Tables of numbers: columns by name and unit, turns taken out, and what is wrong by line and column.
+
+use std::f64::consts::{PI, TAU};
+
+use stillbase::files::table::{SampleTable, TableError, motions, samples};
+use stillbase::mechanics::machine::builtin;
+use stillbase::planning::curves::Coordinates;
+
+/// Twenty rows of a motion over a second, written by `row` of time, s.
+fn table(head: &str, row: impl Fn(f64) -> String) -> String {
+    let rows: Vec<String> = (0..20).map(|i| row(f64::from(i) / 19.0)).collect();
+    format!("{head}\n{}\n", rows.join("\n"))
+}
+
+fn read(text: &str) -> Result<SampleTable, TableError> {
+    samples(text, "in.csv", builtin("nine-link").expect("built in"), None, false)
+}
+
+#[test]
+fn units_separators_and_order_make_no_difference() {
+    let degrees = |x: f64| x * 180.0 / PI;
+    let q = |t: f64| [1.7 - 0.2 * t * t, 3.7 + 0.5 * t * t, 2.2 + 0.9 * t * t];
+    let plain = table("t,q1,q2,q3", |t| format!("{t},{},{},{}", q(t)[0], q(t)[1], q(t)[2]));
+    let other = table("# a remark\nq3 (deg);time [ms];noise;q_1 rad;q2_deg", |t| {
+        format!("{};{};x;{};{}", degrees(q(t)[2]), 1e3 * t, q(t)[0], degrees(q(t)[1]))
+    });
+    let [plain, other] = [plain, other].map(|text| read(&text).expect("samples"));
+    assert_eq!((plain.coordinates, &plain.names[..]), (Coordinates::Drives, &["q1", "q2", "q3"].map(String::from)[..]));
+    let pairs = plain.samples.rows().flatten().zip(other.samples.rows().flatten());
+    assert!(pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) < 1e-12);
+    let tip = read(&table("x (mm),y,t", |t| format!("{},{},{t}", 500.0 + 50.0 * t, 0.5))).expect("samples");
+    assert_eq!((tip.coordinates, tip.samples.point(0).re), (Coordinates::EndEffector, 0.5));
+}
+
+#[test]
+fn whole_turns_are_taken_out() {
+    let q1 = |t: f64| 2.8 + 0.8 * t;
+    let wrapped = |t: f64| if q1(t) > PI { q1(t) - TAU } else { q1(t) };
+    let found = read(&table("t,q1,q2,q3", |t| format!("{t},{},3.7,2.2", wrapped(t)))).expect("samples");
+    assert_eq!(found.unwrapped, [1, 0, 0]);
+    let last = found.samples.count() - 1;
+    assert!((found.samples.values(last)[0] - 3.6).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_wrong_is_said_by_line_and_column() {
+    let good = |t: f64| format!("{t},1.7,3.7,2.2");
+    let worse = |line: usize, row: &str| {
+        let text = table("t,q1,q2,q3", good);
+        text.lines().enumerate().map(|(i, own)| if i + 1 == line { row } else { own }).collect::<Vec<_>>().join("\n")
+    };
+    for (text, line, want) in [
+        (String::new(), Some(1), "nothing here: want a header t,q1,q2,q3"),
+        ("1,2,3,4\n".into(), Some(1), "no header"),
+        (worse(1, "t,q1,q2"), Some(1), "no column q3"),
+        (worse(1, "t,q1,q1,q3"), Some(1), "columns 2 and 3 are both q1"),
+        (worse(1, "t,q1 (ft),q2,q3"), Some(1), "unit \"ft\""),
+        (worse(5, "0.16,1.7,,2.2"), Some(5), "column q2: nothing there"),
+        (worse(5, "0.16,1.7,1e300,2.2"), Some(5), "column q2: \"1e300\""),
+        (worse(5, "0.01,1.7,3.7,2.2"), Some(5), "column t: 0.01 s after"),
+        (worse(5, "0.16,1.7,2.1,2.2"), Some(5), "column q2: a jump of -1.600 rad from line 4"),
+        ("t,q1,q2,q3\n0,1,2,3\n".into(), None, "1 row of numbers"),
+    ] {
+        let why = read(&text).expect_err(want);
+        assert_eq!((&*why.file, why.line), ("in.csv", line), "{why}");
+        assert!(why.why.contains(want), "{why}");
+        let place = line.map_or("in.csv: ".to_owned(), |line| format!("in.csv:{line}: "));
+        assert!(why.to_string().starts_with(&place), "{why}");
+    }
+}
+
+#[test]
+fn motions_part_where_time_leaps_or_begins_anew() {
+    let machine = builtin("two-drive").expect("built in");
+    let at = |time: f64, t: f64| format!("{time},{},1,0.1,0.2,0.3", 0.5 * t);
+    let row = |t: f64| at(t, t);
+    let one = table("t,q1,q2,fx (mN),fy,nz", row);
+    let rows = one.split_once('\n').expect("a head").1;
+    let later = table("", |t| at(t + 30.0, t));
+    let text = format!("{one}{rows}{}", later.trim_start());
+    let found = motions(&text, "in.csv", machine).expect("motions");
+    assert_eq!(found.iter().map(|motion| motion.t.len()).collect::<Vec<_>>(), [20, 20, 20]);
+    assert!((found[2].force[0].re - 1e-4).abs() < 1e-15 && found[0].qd.is_empty());
+    let moving = table("t,q1,q2,fx,fy,nz,base_x", |t| format!("{},{}", row(t), 1e-3 * t));
+    let why = motions(&moving, "in.csv", machine).expect_err("the base moves");
+    assert!(why.line == Some(3) && why.why.starts_with("column base_x: the base moves"), "{why}");
+}

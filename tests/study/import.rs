@@ -1,0 +1,104 @@
+//! Motions given by samples: what they do to the base, and what is proposed in their place.
+
+use std::sync::Arc;
+
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::planning::curves::{Coordinates, Samples};
+use stillbase::query::{Queries, Shared, State, answered};
+use stillbase::session::replay;
+use stillbase::session::scenario::Scenario;
+use stillbase::study::import::{GivenMotion, ImportError, Importing, Keep, Request};
+
+/// From rest to rest over one second, 0 to 1.
+fn eased(s: f64) -> f64 {
+    s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+}
+
+/// Forty spaces of a motion from one row of values to another.
+fn moving(from: &[f64], by: &[f64]) -> Samples {
+    let row = |i: i32| {
+        let s = f64::from(i) / 40.0;
+        let values = from.iter().zip(by).map(|(x, d)| x + d * eased(s));
+        std::iter::once(s).chain(values).collect()
+    };
+    Samples::new(&(0..=40).map(row).collect::<Vec<_>>()).expect("samples")
+}
+
+fn names(samples: &Samples) -> Vec<String> {
+    (1..=samples.columns()).map(|k| format!("column {k}")).collect()
+}
+
+fn request(machine: &Machine, coordinates: Coordinates, samples: Samples) -> Request {
+    let base = Scenario::builtin("case-3").expect("built in");
+    let scenario = Scenario { name: "mine".into(), title: "A table".into(), machine: machine.clone(), ..base };
+    let motion = GivenMotion::new(machine, coordinates, names(&samples), samples);
+    Request { scenario: Shared(scenario.into()), motion: Shared(motion.into()), b: None, keep: None }
+}
+
+/// What already holds b is left as it is; what does not is moved onto a plane, and both scenarios do what is said.
+#[test]
+fn a_motion_is_moved_onto_a_plane() {
+    let machine = builtin("nine-link").expect("built in");
+    let samples = moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]);
+    let found = answered::<Importing>(request(machine, Coordinates::Drives, samples.clone())).expect("a motion");
+    let given = found.given.as_ref().expect("it moves");
+    assert!(found.feasible && found.reason.is_none() && found.content == "drives" && given.peak_base_moment > 0.1);
+    let proposal = found.proposal.as_ref().expect("a proposal");
+    assert!(proposal.reactionless && proposal.way == "same-tip" && proposal.tip_deviation < 1e-7);
+    let lambda = Inertia::of(machine).lambda();
+    let b: Vec<f64> = (0..samples.count()).map(|i| lambda.dot(samples.values(i))).collect();
+    let ends = [b.iter().copied().fold(f64::INFINITY, f64::min), b.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
+    assert_eq!(found.b_samples, Some(ends));
+    let [proposed, as_given] = found.scenarios.as_ref().expect("both");
+    assert_eq!([&*proposed.name, &*as_given.name], ["mine", "mine-given"]);
+    assert_eq!([&*proposed.title, &*as_given.title], ["A table · same-tip", "A table · as given"]);
+    let peaks = |scenario| replay(scenario, |_, _| {}).expect("it runs").frame().peaks;
+    assert!(peaks(proposed).is_reactionless() && peaks(proposed).moment == proposal.simulated_peak_base_moment);
+    assert!((peaks(as_given).moment - given.peak_base_moment).abs() < 1e-3 * given.peak_base_moment);
+}
+
+/// The end effector's motion is carried out on a plane, and compared with minimum-norm rates.
+#[test]
+fn a_motion_of_the_end_effector_is_carried_out() {
+    let machine = builtin("nine-link").expect("built in");
+    let asked = request(machine, Coordinates::EndEffector, moving(&[0.50, 0.50], &[0.05, 0.40]));
+    let found = answered::<Importing>(asked.clone()).expect("a motion");
+    let proposal = found.proposal.as_ref().expect("a proposal");
+    assert!(found.content == "tip" && found.b_samples.is_none() && proposal.way == "on-plane");
+    assert!(proposal.simulated_peak_base_moment < 1e-6 && found.given.expect("it follows").peak_base_moment > 0.1);
+    let refused = answered::<Importing>(Request { keep: Some(Keep::Joints), ..asked }).expect_err("no joints");
+    assert_eq!(refused, ImportError::NoJoints);
+}
+
+/// In portions it comes to the same as at once.
+#[test]
+fn portions_come_to_the_same() {
+    let machine = builtin("nine-link").expect("built in");
+    let asked = request(machine, Coordinates::Drives, moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]));
+    let at_once = answered::<Importing>(asked.clone()).expect("a motion");
+    let queries = Queries::default();
+    queries.work_in_portions();
+    let found = (0..100).find_map(|_| {
+        let asked = queries.ask_beside::<Importing>(&asked);
+        (asked.state == State::Known).then_some(asked.last).flatten()
+    });
+    let found: Arc<_> = found.expect("it ends");
+    let found = found.as_ref().as_ref().expect("a motion");
+    assert_eq!(found.proposal, at_once.proposal);
+    assert_eq!((&found.given, &found.scenarios), (&at_once.given, &at_once.scenarios));
+}
+
+/// Angles that were wrapped begin within the joint limits again, and smoothing says what it moved.
+#[test]
+fn wrapped_angles_are_lifted() {
+    let machine = builtin("nine-link").expect("built in");
+    let turn = std::f64::consts::TAU;
+    let samples = moving(&[1.7, 3.7 - turn, 2.2], &[-0.2, 0.5, 0.9]);
+    let motion = GivenMotion::new(machine, Coordinates::Drives, names(&samples), samples.clone());
+    assert_eq!(motion.lifted, [0.0, turn, 0.0]);
+    assert!((motion.samples.values(0)[1] - 3.7).abs() < 1e-12 && motion.samples.times() == samples.times());
+    let smooth = motion.clone().smoothed(5.0).expect("below half of the rate");
+    let changes = smooth.samples.rows().flatten().zip(motion.samples.rows().flatten()).map(|(a, b)| (a - b).abs());
+    assert_eq!(smooth.smoothing, Some([5.0, changes.fold(0.0, f64::max)]));
+    assert!(motion.smoothed(1e3).is_err());
+}
