@@ -4,21 +4,18 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 use stillbase::files::{text, write_new};
-use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common;
-use stillbase::planning::following::Blocked;
-use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
+use stillbase::planning::common::starting_b;
+use stillbase::planning::off_plane::least_reaction::FixedB;
 use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::reactionless::BSet;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Change, Content, Scenario, Task, TaskKind, content};
-use stillbase::session::{Refusal, Run, settled};
+use stillbase::session::{Run, settled};
 use stillbase::simulation::plant::PlantDifferences;
+use stillbase::study::plan_summary::PlanSummary;
 
 use super::exit::say;
 use super::failure::Failure;
@@ -27,7 +24,6 @@ use super::input::{
     stated, tell_idle, tell_tolerance,
 };
 use super::output::{Format, Table, check_output};
-use super::reach::OfMend;
 use stillbase::settings::number::{counted, fixed};
 use stillbase::settings::word::{Choice, Words};
 
@@ -139,139 +135,6 @@ fn laws() -> PossibleValuesParser {
     }))
 }
 
-#[derive(Serialize)]
-struct Answer {
-    feasible: bool,
-    /// Why there is no plan.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-    scenario: String,
-    /// At the start.
-    b: f64,
-    #[serde(skip)]
-    has_b: bool,
-    b_common: Vec<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    duration: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    q_start: Option<Vec<f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    q_end: Option<Vec<f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    b_range: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    peak_torque: Option<Vec<f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    peak_speed: Option<Vec<f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    peak_base_moment: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    moment_impulse: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    peak_base_force: Option<f64>,
-    /// For the fastest motion: the limit that leads.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    limiting: Option<String>,
-    /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gap: Option<f64>,
-    /// T with corners rounded off, where the motion rests at them because that is faster.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    blended: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    price: Option<OfPrice>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alternatives: Option<OfVerdicts>,
-    /// The limit of a drive that is passed by most, and by what factor.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    over: Option<(String, f64)>,
-    #[serde(skip)]
-    closed: bool,
-    /// The drives at the start and after each cycle.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cycles: Option<Vec<Vec<f64>>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    blocked: Option<OfBlocked>,
-    /// The b nearest to the one asked for at which it can be done.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mending_b: Option<f64>,
-    /// The least move of one point after which all have a b in common.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mend: Option<OfMend>,
-}
-
-/// What a change of b costs.
-#[derive(Serialize)]
-struct OfPrice {
-    delta_b: f64,
-    /// Of any motion in this time.
-    least_peak: f64,
-    /// How much a base given by --base turns.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    base_turn: Option<f64>,
-}
-
-/// Three ways to make the same motion of the end effector.
-#[derive(Serialize)]
-struct OfVerdicts {
-    fixed_b_serves: bool,
-    /// t/T from which on it does not.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fixed_b_until: Option<f64>,
-    least_peak: f64,
-    least_rms: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    minimum_norm_peak: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    minimum_norm_rms: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    minimum_norm_keeps_limits: Option<bool>,
-}
-
-impl From<&Verdicts> for OfVerdicts {
-    fn from(verdicts: &Verdicts) -> Self {
-        let until = match verdicts.fixed {
-            FixedB::Serves => None,
-            FixedB::Leaves { u, .. } => Some(u),
-        };
-        let norm = verdicts.minimum_norm.as_ref().ok();
-        Self {
-            fixed_b_serves: until.is_none(),
-            fixed_b_until: until,
-            least_peak: verdicts.least.peak,
-            least_rms: verdicts.least.rms,
-            minimum_norm_peak: norm.map(|n| n.reaction.peak),
-            minimum_norm_rms: norm.map(|n| n.reaction.rms),
-            minimum_norm_keeps_limits: norm.map(|n| n.keeps_limits),
-        }
-    }
-}
-
-#[derive(Serialize)]
-struct OfBlocked {
-    s: f64,
-    point: [f64; 2],
-    reason: String,
-    leaves_workspace: bool,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    nearest_b: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    longest: Option<[f64; 2]>,
-}
-
-impl From<&Blocked> for OfBlocked {
-    fn from(blocked: &Blocked) -> Self {
-        Self {
-            s: blocked.s,
-            point: [blocked.at.re, blocked.at.im],
-            reason: blocked.stop.to_string(),
-            leaves_workspace: blocked.leaves_workspace,
-            nearest_b: blocked.nearest_b,
-            longest: blocked.longest,
-        }
-    }
-}
-
 impl Plan {
     /// Plans, prints, and writes the scenario if asked.
     pub fn run(&self) -> Result<(), Failure> {
@@ -281,93 +144,22 @@ impl Plan {
         let mut scenario = self.scenario()?;
         // What a machine without a b can do all the same, its plan says.
         let space = pose_space(&scenario.machine).ok();
-        let has_b = space.is_some();
-        let common = space.and_then(|space| common::common(&space, &scenario.task.points()));
-        let common = common.map_or(Vec::new(), |set: BSet| set.intervals);
-        let mut answer = Answer {
-            feasible: true,
-            scenario: scenario.name.clone(),
-            b: scenario.task.b,
-            has_b,
-            reason: None,
-            b_common: common,
-            duration: None,
-            q_start: None,
-            q_end: None,
-            b_range: None,
-            peak_torque: None,
-            peak_speed: None,
-            peak_base_moment: None,
-            moment_impulse: None,
-            peak_base_force: None,
-            limiting: None,
-            gap: None,
-            blended: None,
-            price: None,
-            alternatives: None,
-            over: None,
-            closed: scenario.task.closed,
-            cycles: None,
-            blocked: None,
-            mending_b: None,
-            mend: None,
-        };
-        match Run::new(&scenario) {
-            Ok(run) => {
-                let plan = run.plan();
-                let (forecast, end) = (&plan.forecast, run.planned_time());
-                answer.b = forecast.b_start;
-                answer.duration = Some(forecast.time);
-                answer.q_start = Some(plan.motion.at(0.0).q.to_vec());
-                answer.q_end = Some(plan.motion.at(end).q.to_vec());
-                answer.over = forecast.over.map(|(limit, factor)| (limit.to_string(), factor));
-                answer.b_range = Some(forecast.b);
-                answer.peak_torque = Some(forecast.torque.to_vec());
-                answer.peak_speed = Some(forecast.speed.to_vec());
-                answer.peak_base_moment = Some(forecast.moment);
-                answer.moment_impulse = Some(forecast.impulse);
-                answer.peak_base_force = Some(forecast.force);
-                answer.limiting = plan.pace.and_then(|pace| pace.leading).map(|limit| limit.to_string());
-                answer.alternatives = plan.verdicts.as_ref().map(OfVerdicts::from);
-                answer.cycles = (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect());
-                if let Some(price) = plan.price {
-                    let model = Inertia::of(&run.scenario().machine);
-                    let base_turn = self.base.map(|base| price.base_turn(&model, &base)).transpose();
-                    answer.price = Some(OfPrice {
-                        delta_b: price.delta_b(),
-                        least_peak: price.least_peak(forecast.time),
-                        base_turn: base_turn.map_err(|e| Failure::wrong_input(e).of("--base"))?,
-                    });
-                }
-                answer.gap = plan.pace.and_then(|pace| pace.gap());
-                answer.blended = plan.blended;
-                self.format.print(&answer, table)?;
-                if let Some(file) = &self.output {
-                    // Several plans can stand in one recording or table then.
-                    if scenario.name == NAMELESS {
-                        scenario.name =
-                            file.file_stem().map_or_else(|| NAMELESS.into(), |s| s.to_string_lossy().into());
-                    }
-                    write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-                    say(format!("wrote {}", file.display()));
-                }
-                Ok(())
-            }
-            Err(refusal) => {
-                answer.feasible = false;
-                answer.reason = Some(refusal.to_string());
-                answer.mending_b = refusal.mending_b();
-                match &refusal {
-                    Refusal::Blocked(blocked) => answer.blocked = Some(blocked.as_ref().into()),
-                    Refusal::NoCommonPlane { why, .. } => answer.mend = why.mend.as_ref().map(OfMend::from),
-                    _ => {}
-                }
-                if self.format.json {
-                    self.format.print(&answer, |_| String::new())?;
-                }
-                Err(refusal.into())
-            }
+        let run = Run::new(&scenario);
+        let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());
+        let answer = answer.map_err(|e| Failure::wrong_input(e).of("--base"))?;
+        if run.is_ok() || self.format.json {
+            self.format.print(&answer, table)?;
         }
+        run?;
+        if let Some(file) = &self.output {
+            // Several plans can stand in one recording or table then.
+            if scenario.name == NAMELESS {
+                scenario.name = file.file_stem().map_or_else(|| NAMELESS.into(), |s| s.to_string_lossy().into());
+            }
+            write_new(file, scenario.to_toml().as_bytes(), self.force)?;
+            say(format!("wrote {}", file.display()));
+        }
+        Ok(())
     }
 
     /// Refuses options that the task has no use for, and tells what it leaves out.
@@ -482,12 +274,9 @@ impl Plan {
             tell_idle(&scenario);
         }
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
-            // As far from every end as it gets; what does not serve all points begins in the middle of what serves the
-            // first.
             let machine = &scenario.machine;
             let space = PoseSpace::of(machine).or_else(|_| PoseSpace::nominal(machine)).ok();
-            let middle = |points: &[Vector]| common::middle(space.as_ref()?, points);
-            scenario.task.b = middle(&points).or_else(|| middle(&points[..1])).unwrap_or(0.0);
+            scenario.task.b = space.and_then(|space| starting_b(&space, &points)).unwrap_or(0.0);
         }
         Ok(scenario)
     }
@@ -498,64 +287,59 @@ fn meant(name: &str) -> Option<Content> {
     if Scenario::builtin(name).is_some() { None } else { content(&text::read(Path::new(name)).ok()?) }
 }
 
-fn table(answer: &Answer) -> String {
+fn table(answer: &PlanSummary) -> String {
     let mut table = Table::new(["", "", ""]).with_words(2);
-    let mut row = |name: String, value: Option<f64>, decimals: usize, unit: &str| {
-        if let Some(value) = value {
-            table.row([name, fixed(value, decimals), unit.into()]);
-        }
+    let mut row = |name: &str, value: f64, decimals: usize, unit: &str| {
+        table.row([name.to_owned(), fixed(value, decimals), unit.into()]);
     };
-    row("b".into(), Some(answer.b).filter(|_| answer.has_b), 6, "rad");
+    if answer.has_b {
+        row("b", answer.b, 6, "rad");
+    }
     for [low, high] in &answer.b_common {
-        row("all points from b".into(), Some(*low), 6, "rad");
-        row("            to b".into(), Some(*high), 6, "rad");
+        row("all points from b", *low, 6, "rad");
+        row("            to b", *high, 6, "rad");
     }
-    row("time".into(), answer.duration, 6, "s");
-    for (k, value) in answer.peak_torque.iter().flatten().enumerate() {
-        row(format!("peak |τ_{}|", k + 1), Some(*value), 6, "N m");
+    let Some(cost) = &answer.cost else { return table.to_string().trim_start().to_owned() };
+    row("time", cost.duration, 6, "s");
+    for (k, value) in cost.peak_torque.iter().enumerate() {
+        row(&format!("peak |τ_{}|", k + 1), *value, 6, "N m");
     }
-    for (k, value) in answer.peak_speed.iter().flatten().enumerate() {
-        row(format!("peak |q̇_{}|", k + 1), Some(*value), 6, "rad/s");
+    for (k, value) in cost.peak_speed.iter().enumerate() {
+        row(&format!("peak |q̇_{}|", k + 1), *value, 6, "rad/s");
     }
-    row("peak |n_B|".into(), answer.peak_base_moment, 9, "N m");
-    row("∫ |n_B| dt".into(), answer.moment_impulse, 9, "N m s");
-    row("peak |f_B|".into(), answer.peak_base_force, 9, "N");
-    let mut row = |name: String, value: Option<f64>, unit: &str| {
-        if let Some(value) = value {
-            table.row([name, fixed(value, 6), unit.into()]);
+    row("peak |n_B|", cost.peak_base_moment, 9, "N m");
+    row("∫ |n_B| dt", cost.moment_impulse, 9, "N m s");
+    row("peak |f_B|", cost.peak_base_force, 9, "N");
+    let mut row = |name: &str, value: f64, unit: &str| table.row([name.to_owned(), fixed(value, 6), unit.into()]);
+    if let Some(price) = &cost.price {
+        row("Δb", price.delta_b, "rad");
+        row("least peak |n_B| of any motion", price.least_peak, "N m");
+        price.base_turn.iter().for_each(|turn| row("the base turns by", *turn, "rad"));
+    }
+    if let Some(ways) = &cost.alternatives {
+        row("least reaction: peak |n_B|", ways.least.peak, "N m");
+        row("                root mean square", ways.least.rms, "N m");
+        if let Ok(norm) = &ways.minimum_norm {
+            row("minimum norm: peak |n_B|", norm.reaction.peak, "N m");
+            row("              root mean square", norm.reaction.rms, "N m");
         }
-    };
-    if let Some(price) = &answer.price {
-        row("Δb".into(), Some(price.delta_b), "rad");
-        row("least peak |n_B| of any motion".into(), Some(price.least_peak), "N m");
-        row("the base turns by".into(), price.base_turn, "rad");
-    }
-    if let Some(ways) = &answer.alternatives {
-        row("least reaction: peak |n_B|".into(), Some(ways.least_peak), "N m");
-        row("                root mean square".into(), Some(ways.least_rms), "N m");
-        row("minimum norm: peak |n_B|".into(), ways.minimum_norm_peak, "N m");
-        row("              root mean square".into(), ways.minimum_norm_rms, "N m");
-        row("fixed b: serves until".into(), ways.fixed_b_until, "of T");
-    }
-    if let Some((first, others)) = answer.cycles.iter().flatten().collect::<Vec<_>>().split_first() {
-        for (i, q) in others.iter().enumerate() {
-            if !answer.closed {
-                break;
-            }
-            let drift = q.iter().zip(first.iter()).map(|(q, start)| (q - start).abs()).fold(0.0, f64::max);
-            row(format!("drift after cycle {}", i + 1), Some(drift), "rad");
+        if let FixedB::Leaves { u, .. } = ways.fixed {
+            row("fixed b: serves until", u, "of T");
         }
     }
-    if let Some((limit, factor)) = &answer.over {
-        row(format!("{limit} over its limit"), Some(*factor), "times");
+    for (i, drift) in cost.drift.iter().enumerate() {
+        row(&format!("drift after cycle {}", i + 1), *drift, "rad");
     }
-    let held = answer.limiting.iter().map(|limit| {
-        let gap = answer.gap.filter(|gap| *gap > 5e-4);
+    if let Some((limit, factor)) = &cost.over {
+        row(&format!("{limit} over its limit"), *factor, "times");
+    }
+    let held = cost.limiting.iter().map(|limit| {
+        let gap = cost.gap.filter(|gap| *gap > 5e-4);
         let gap =
             gap.map_or(String::new(), |gap| format!(", {:.1} % over the motion with unlimited jerk", 100.0 * gap));
         format!("\nheld back by the {limit}{gap}\n")
     });
-    let rests = answer.blended.map_or(String::new(), |blended| {
+    let rests = cost.blended.map_or(String::new(), |blended| {
         format!("\nrests at its corners, which is faster: rounded off it would take {blended:.6} s\n")
     });
     format!("{}{}{rests}", table.to_string().trim_start(), held.collect::<String>())

@@ -38,22 +38,7 @@ struct Answer {
     period: f64,
     /// The least move of one point after which all have a b in common, if they have none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    mend: Option<OfMend>,
-}
-
-/// A move of one point, counted from 1.
-#[derive(Serialize)]
-pub struct OfMend {
-    point: usize,
-    to: [f64; 2],
-    distance: f64,
-    b: f64,
-}
-
-impl From<&Mend> for OfMend {
-    fn from(mend: &Mend) -> Self {
-        Self { point: mend.point + 1, to: [mend.to.re, mend.to.im], distance: mend.distance, b: mend.b }
-    }
+    mend: Option<Mend>,
 }
 
 #[derive(Serialize)]
@@ -80,7 +65,7 @@ impl Reach {
             points: self.points.iter().zip(sets).map(of_point).collect(),
             overlap,
             period: space.period(),
-            mend: why.and_then(|why| why.mend).as_ref().map(OfMend::from),
+            mend: why.and_then(|why| why.mend),
         };
         self.format.print(&answer, table)?;
         let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1)));

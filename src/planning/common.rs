@@ -55,6 +55,11 @@ pub fn middle(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
     Some(0.5 * (widest[0] + widest[1]))
 }
 
+/// The b, rad, from which to start a motion through points: the middle of what serves all, or else the first.
+pub fn starting_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
+    middle(space, points).or_else(|| middle(space, points.get(..1)?))
+}
+
 /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
 pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
     let sets: Vec<BSet> = points.iter().map(|p| set_of(space, *p).ok()).collect::<Option<_>>()?;

@@ -1,5 +1,6 @@
 //! Why points are not on a plane, or have no b in common, and what would mend it.
 
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::mechanics::planar::Vector;
@@ -99,9 +100,10 @@ impl ShownMend {
 }
 
 /// A move of one point after which all points have a b in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mend {
-    /// Number of the point.
+    /// Number of the point, counted from 0; serialised from 1, as people count.
+    #[serde(serialize_with = "from_one")]
     pub point: usize,
     /// Where it would go, m.
     pub to: Vector,
@@ -110,5 +112,10 @@ pub struct Mend {
     /// The b that then serves all, rad.
     pub b: f64,
     /// The same as it is printed.
+    #[serde(skip)]
     pub shown: Option<ShownMend>,
+}
+
+fn from_one<S: Serializer>(point: &usize, serializer: S) -> Result<S::Ok, S::Error> {
+    (point + 1).serialize(serializer)
 }

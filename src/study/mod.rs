@@ -8,6 +8,7 @@ pub mod front_point;
 pub mod import;
 pub mod lengths;
 pub mod measures;
+pub mod plan_summary;
 pub mod samples;
 pub mod series;
 pub mod spectrum;

@@ -5,6 +5,7 @@ mod doubt;
 mod equations;
 mod import;
 mod lengths;
+mod plan_summary;
 mod samples;
 mod series;
 mod spectrum;

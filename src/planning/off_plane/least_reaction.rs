@@ -13,6 +13,7 @@
 //!
 //! b′ = 0 at both ends; n_B is continuous in between, linear between even nodes.
 
+use serde::ser::{Serialize, SerializeMap, Serializer};
 use thiserror::Error;
 
 use crate::mechanics::machine::{Chain, Inertia};
@@ -241,6 +242,25 @@ pub struct Verdicts {
     pub minimum_norm: Result<MinimumNorm, PathError>,
     /// The least reaction.
     pub least: Reaction,
+}
+
+/// What each would cost, and how far the first gets: t/T from which on it does not serve.
+impl Serialize for Verdicts {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("fixed_b_serves", &(self.fixed == FixedB::Serves))?;
+        if let FixedB::Leaves { u, .. } = &self.fixed {
+            map.serialize_entry("fixed_b_until", u)?;
+        }
+        map.serialize_entry("least_peak", &self.least.peak)?;
+        map.serialize_entry("least_rms", &self.least.rms)?;
+        if let Ok(norm) = &self.minimum_norm {
+            map.serialize_entry("minimum_norm_peak", &norm.reaction.peak)?;
+            map.serialize_entry("minimum_norm_rms", &norm.reaction.rms)?;
+            map.serialize_entry("minimum_norm_keeps_limits", &norm.keeps_limits)?;
+        }
+        map.end()
+    }
 }
 
 /// Whether the start pose's own b serves the whole motion.

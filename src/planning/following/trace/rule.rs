@@ -1,5 +1,6 @@
 //! What a curve must keep to be followed, and what stops it.
 
+use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::mechanics::planar::Vector;
@@ -27,29 +28,37 @@ pub enum Stop {
 }
 
 /// A curve that cannot be followed on its plane.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error, serde::Serialize)]
 #[error("{}", self.in_words())]
 pub struct Blocked {
     /// b, rad.
+    #[serde(skip)]
     pub b: f64,
     /// How far along the whole curve, 0 to 1 by length.
     pub s: f64,
     /// The first point that cannot be passed, m.
+    #[serde(rename = "point")]
     pub at: Vector,
     /// What stops it there.
+    #[serde(rename = "reason")]
     pub stop: Stop,
     /// Whether no pose of this plane reaches the curve just beyond: it leaves the workspace, not only the sheet.
     pub leaves_workspace: bool,
     /// The pose constant nearest to b at which the whole curve can be followed, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_b: Option<f64>,
     /// The same as it is shown: rounded to where the curve can still be followed.
+    #[serde(skip)]
     pub shown_b: Option<Decimal>,
     /// Whether some b reaches each single point of the curve, if not the curve as a whole.
+    #[serde(skip)]
     pub some_b_reaches_all: bool,
     /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length; one of less than
     /// 0.6 % may be missed.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub longest: Option<[f64; 2]>,
     /// The whole curve, m, to be drawn.
+    #[serde(skip)]
     pub curve: Vec<Vector>,
 }
 
@@ -65,6 +74,13 @@ impl std::fmt::Display for Stop {
             }
             Self::Start => f.write_str("no pose at its first point"),
         }
+    }
+}
+
+/// In words.
+impl Serialize for Stop {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

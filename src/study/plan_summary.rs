@@ -1,0 +1,192 @@
+//! [`PlanSummary`]: what a planned task costs; or why it cannot be planned, and what would do.
+
+use serde::Serialize;
+
+use crate::mechanics::machine::Inertia;
+use crate::planning::common::common;
+use crate::planning::following::Blocked;
+use crate::planning::off_plane::Price;
+use crate::planning::off_plane::least_reaction::Verdicts;
+use crate::planning::off_plane::price::{FloatingBase, PriceError};
+use crate::planning::pose_constant::Mend;
+use crate::planning::pose_space::PoseSpace;
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Run};
+
+/// What a task comes to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlanSummary {
+    /// Whether it can be planned.
+    pub feasible: bool,
+    /// Why not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// At the start, rad.
+    pub b: f64,
+    /// Whether the machine has a b.
+    #[serde(skip)]
+    pub has_b: bool,
+    /// The b that serve all points of the task, rad.
+    pub b_common: Vec<[f64; 2]>,
+    /// What the plan costs.
+    #[serde(flatten)]
+    pub cost: Option<PlanCost>,
+    /// What is in the way.
+    #[serde(flatten)]
+    pub obstacle: Option<Obstacle>,
+}
+
+/// What a planned motion costs, if it is followed exactly.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlanCost {
+    /// T, s.
+    pub duration: f64,
+    /// All drives, rad.
+    pub q_start: Vec<f64>,
+    /// All drives, rad.
+    pub q_end: Vec<f64>,
+    /// Least and greatest b on the way, rad.
+    pub b_range: [f64; 2],
+    /// Largest torque of each motor, either way, N m.
+    pub peak_torque: Vec<f64>,
+    /// Largest rate of each motor, rad/s.
+    pub peak_speed: Vec<f64>,
+    /// Largest |n_B|, N m.
+    pub peak_base_moment: f64,
+    /// ∫ |n_B| dt, N m s.
+    pub moment_impulse: f64,
+    /// Largest dynamic |f_B|, N.
+    pub peak_base_force: f64,
+    /// For the fastest motion: the limit that leads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limiting: Option<String>,
+    /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// T with corners rounded off, s, where the motion rests at them because that is faster.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blended: Option<f64>,
+    /// Of a change of b.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price: Option<PriceOfB>,
+    /// Three ways to make the same motion of the end effector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alternatives: Option<Verdicts>,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub over: Option<(String, f64)>,
+    /// The drives at the start and after each cycle, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<Vec<Vec<f64>>>,
+    /// Largest change of a drive from the start to the end of each cycle of a closed path, rad.
+    #[serde(skip)]
+    pub drift: Vec<f64>,
+}
+
+/// What a change of b costs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PriceOfB {
+    /// rad.
+    pub delta_b: f64,
+    /// Of any motion in this time: its largest |n_B|, N m.
+    pub least_peak: f64,
+    /// How much a base that floats freely turns, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_turn: Option<f64>,
+}
+
+/// What is in the way of a plan, and what would do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Obstacle {
+    /// Where the path is blocked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blocked: Option<Box<Blocked>>,
+    /// The b nearest to the one asked for at which it can be done, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mending_b: Option<f64>,
+    /// The least move of one point after which all have a b in common.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mend: Option<Mend>,
+}
+
+impl PlanSummary {
+    /// Of the task of a scenario, from its run, or from why there is none. `space` is the pose space of its machine, if
+    /// that has a b; a change of b may have a base that floats freely.
+    ///
+    /// # Errors
+    /// If the numbers of the base are wrong.
+    pub fn of(
+        scenario: &Scenario,
+        space: Option<&PoseSpace>,
+        planned: Result<&Run, &Refusal>,
+        base: Option<&FloatingBase>,
+    ) -> Result<Self, PriceError> {
+        let common = space.and_then(|space| common(space, &scenario.task.points()));
+        let (b, cost, obstacle) = match planned {
+            Ok(run) => (run.plan().forecast.b_start, Some(PlanCost::of(run, base)?), None),
+            Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(refusal))),
+        };
+        Ok(Self {
+            feasible: planned.is_ok(),
+            reason: planned.err().map(ToString::to_string),
+            scenario: scenario.name.clone(),
+            b,
+            has_b: space.is_some(),
+            b_common: common.map_or_else(Vec::new, |set| set.intervals),
+            cost,
+            obstacle,
+        })
+    }
+}
+
+impl PlanCost {
+    /// Of the plan of a run.
+    ///
+    /// # Errors
+    /// If the numbers of the base are wrong.
+    pub fn of(run: &Run, base: Option<&FloatingBase>) -> Result<Self, PriceError> {
+        let plan = run.plan();
+        let forecast = &plan.forecast;
+        let model = || Inertia::of(&run.scenario().machine);
+        let price = |price: Price| {
+            Ok(PriceOfB {
+                delta_b: price.delta_b(),
+                least_peak: price.least_peak(forecast.time),
+                base_turn: base.map(|base| price.base_turn(&model(), base)).transpose()?,
+            })
+        };
+        let closed = run.scenario().task.closed;
+        Ok(Self {
+            duration: forecast.time,
+            q_start: plan.motion.at(0.0).q.to_vec(),
+            q_end: plan.motion.at(run.planned_time()).q.to_vec(),
+            b_range: forecast.b,
+            peak_torque: forecast.torque.to_vec(),
+            peak_speed: forecast.speed.to_vec(),
+            peak_base_moment: forecast.moment,
+            moment_impulse: forecast.impulse,
+            peak_base_force: forecast.force,
+            limiting: plan.pace.and_then(|pace| pace.leading).map(|limit| limit.to_string()),
+            gap: plan.pace.and_then(|pace| pace.gap()),
+            blended: plan.blended,
+            price: plan.price.map(price).transpose()?,
+            alternatives: plan.verdicts.clone(),
+            over: forecast.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            cycles: (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect()),
+            drift: if closed { plan.drift().collect() } else { Vec::new() },
+        })
+    }
+}
+
+impl Obstacle {
+    /// Of a refusal.
+    pub fn of(refusal: &Refusal) -> Self {
+        Self {
+            blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },
+            mending_b: refusal.mending_b(),
+            mend: if let Refusal::NoCommonPlane { why, .. } = refusal { why.mend } else { None },
+        }
+    }
+}
