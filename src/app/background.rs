@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::change::{Change, NotOpened, Opened};
 use super::{Activity, Command};
-use crate::query::{AtOnce, Job, Poll, Queries, Ticket, Workers};
+use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
 use crate::study::comparison::{Compared, Ways};
@@ -106,18 +106,32 @@ impl Background {
 
     /// Starts work beside the window.
     pub fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
+        self.start_by(&*self.workers, work)
+    }
+
+    /// The same of work that is done by the next repaint as a rule.
+    pub fn start_short<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
+        self.start_by(&Short(&*self.workers), work)
+    }
+
+    fn start_by<T: Send + 'static>(
+        &self,
+        workers: &dyn Workers,
+        work: impl FnOnce(&Ticket) -> T + Send + 'static,
+    ) -> Job<T> {
         let ctx = self.ctx.clone();
         let wake = move || {
             if let Some(ctx) = ctx {
                 ctx.request_repaint();
             }
         };
-        Job::start(&*self.workers, wake, work)
+        Job::start(workers, wake, work)
     }
 
-    /// Lets go of a session; of a long one where nobody waits for it.
-    pub fn let_go(&self, old: Session) {
-        if old.frames().len() > LONG {
+    /// Lets go of a session in whose place there is another; of a long one that shares nothing where nobody waits for it.
+    pub fn let_go(&self, old: Session, now: &Session) {
+        let shares = now.frames().revision().kept_of(&old.frames().revision().mark()) > 0;
+        if old.frames().len() > LONG && !shares {
             drop(self.start(move |_| drop(old)));
         }
     }

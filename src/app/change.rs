@@ -1,11 +1,10 @@
-//! [`Change`]: what a person does to a session that may take long: it can be made of a copy of the session beside the
-//! window, and of the session itself all the same.
+//! [`Change`]: what a person does to a session. It may take long, so it is made of a copy of the session.
 
 use std::path::{Path, PathBuf};
 
 use super::{LeftOff, RefusedEdit};
 use crate::files::Found;
-use crate::session::scenario::{Scenario, TaskKind};
+use crate::session::scenario::Scenario;
 use crate::session::{Edit, Refusal, Session, Watch};
 use crate::settings::text::brief;
 
@@ -27,12 +26,6 @@ pub(super) enum Change {
     /// Puts the machine back at the start of its planned path.
     BackToPath,
 }
-
-/// Steps that are done again within a few milliseconds.
-const QUICK: u64 = 1000;
-
-/// Points of a path that is planned within a few milliseconds.
-const FEW: usize = 8;
 
 impl Change {
     /// Makes it; what there is to say then.
@@ -83,37 +76,6 @@ impl Change {
         }
         Ok(None)
     }
-
-    /// Whether it is made within a few milliseconds, as far as one can know before.
-    pub fn is_quick(&self, session: &Session) -> bool {
-        let (steps, plans_as_before) = match self {
-            Self::Edit(edit) => {
-                // What is asked of path, plane and machine may be refused, and then a way out is sought.
-                let new = edit.sets_path() || edit.sets_machine() || matches!(edit, Edit::PoseB { .. });
-                (session.steps_again(edit), !new)
-            }
-            Self::Undo => (session.steps_of_undo(), false),
-            Self::Redo => (session.steps_of_redo(), false),
-            Self::Seek(time) => return session.steps_of_seek(*time).is_none_or(|steps| steps <= QUICK),
-            // One of several may be refused: then nothing has changed.
-            Self::GoTo(_) => return false,
-            Self::Branch(branch) => (session.steps_of_branch(*branch), true),
-            Self::BackToPath => (Some(0), false),
-        };
-        steps.is_none_or(|steps| steps <= QUICK && plans_as_before && plans_quickly(session.scenario()))
-    }
-}
-
-/// Whether a plan of it that succeeded before takes a few milliseconds at most: the least reaction, zero momentum over
-/// cycles and the fastest law take longer, and so do many points.
-fn plans_quickly(scenario: &Scenario) -> bool {
-    let task = &scenario.task;
-    let direct = match task.kind {
-        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => true,
-        TaskKind::ChangeB => task.moment_limit.is_none(),
-        TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => false,
-    };
-    direct && task.samples.is_none() && !task.law.is_fastest() && task.points().len() <= FEW
 }
 
 /// Where a session comes from that is to be opened.

@@ -1,11 +1,12 @@
-//! [`Marks`]: what stands on the time line: bookmarks, events, and where branches part. It is made when the run changes;
-//! what lies too close to be told apart is one mark.
+//! [`Marks`]: what stands on the time line: bookmarks, events, and where branches part. What lies too close to be told
+//! apart is one mark.
 
 use std::sync::Arc;
 
-use crate::session::events::{Event, Kind, Watched, gestures};
+use crate::query::{Grown, Queries, Quick, Same, Shared, Whole};
+use crate::session::events::{Event, Gestures, Kind};
 use crate::session::scenario::Bookmark;
-use crate::session::{Fork, Made, Session};
+use crate::session::{Fork, Session};
 use crate::settings::number::significant;
 use crate::study::comparison::{Compared, Comparison};
 
@@ -48,31 +49,6 @@ pub(super) struct Group {
     pub words: String,
 }
 
-/// All of them, and the branches they tell of.
-#[derive(Default)]
-pub(super) struct Marks {
-    watched: Watched,
-    /// What hands did, and in which making of the run.
-    hands: (Option<Made>, Vec<Event>),
-    key: Option<Key>,
-    marks: Vec<Mark>,
-    forks: Vec<Fork>,
-    groups: Vec<Group>,
-    /// What the groups were made for: how long the time line is, s and points.
-    line: [f64; 2],
-}
-
-/// What the marks depend on.
-struct Key {
-    made: Made,
-    events: usize,
-    peak: Option<Event>,
-    bookmarks: Vec<Bookmark>,
-    branches: usize,
-    /// Runs that are laid over.
-    others: Vec<Arc<Compared>>,
-}
-
 /// Marks closer than this are one, points.
 const APART: f64 = 10.0;
 
@@ -82,85 +58,112 @@ const LINES: usize = 6;
 /// Frames that are read in one repaint: they take a few milliseconds.
 const AT_ONCE: usize = 20_000;
 
-impl Marks {
-    /// Finds what has changed, of the session and of the runs beside it; whether that was all.
-    pub fn follow(&mut self, session: &Session, beside: Option<&Comparison>) -> bool {
-        let made = session.made();
-        let all = self.watched.follow(made, session.frames(), session.scenario(), AT_ONCE);
-        let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
-        let same = self.key.as_ref().is_some_and(|key| {
-            key.made == *made
-                && key.events == self.watched.events().len()
-                && key.peak.as_ref().map(|peak| peak.step) == shakes.then(|| self.watched.peak_step())
-                && key.bookmarks == session.bookmarks()
-                && key.branches == session.branch_count()
-                && key.others.iter().map(Arc::as_ptr).eq(laid_over(beside).map(|(_, run)| Arc::as_ptr(run)))
-        });
-        if same {
-            return all;
-        }
-        let step = session.scenario().step;
-        if self.hands.0.as_ref() != Some(made) {
-            self.hands = (Some(made.clone()), gestures(session.script(), step));
-        }
-        let key = Key {
-            made: made.clone(),
-            events: self.watched.events().len(),
-            peak: shakes.then(|| self.watched.peak()),
-            bookmarks: session.bookmarks().to_vec(),
-            branches: session.branch_count(),
-            others: laid_over(beside).map(|(_, run)| run.clone()).collect(),
-        };
-        self.forks = session.forks();
-        let told = self.hands.1.iter().chain(self.watched.events()).chain(&key.peak).filter(|event| event.step > 0);
+/// All marks by time, what matters most first of those at one instant.
+pub(super) struct Marking;
+
+/// What the marks depend on.
+#[derive(Clone, PartialEq)]
+pub(super) struct Marked {
+    /// How long a step lasts, s.
+    step: f64,
+    /// What hands did.
+    gestures: Grown<Gestures>,
+    /// What else has happened.
+    events: Shared<Vec<Event>>,
+    peak: Option<Event>,
+    bookmarks: Shared<Vec<Bookmark>>,
+    forks: Same<Vec<Fork>>,
+    /// Runs that are laid over, with their titles.
+    others: Vec<(String, Same<Compared>)>,
+}
+
+impl Quick for Marking {
+    type Input = Marked;
+    type Answer = Vec<Mark>;
+
+    fn answer(of: &Marked) -> Vec<Mark> {
+        let gestures: Vec<Event> = of.gestures.answer().map_or_else(Vec::new, |all| all.told().collect());
+        let told = gestures.iter().chain(&*of.events.0).chain(&of.peak).filter(|event| event.step > 0);
         let event = |event: &Event| {
             let tone = if matches!(event.kind, Kind::Peak | Kind::Fault) { Tone::Peak } else { Tone::Event };
-            Mark { time: event.step as f64 * step, words: event.words.clone(), tone }
+            Mark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
         };
         let own = |mark: &Bookmark| Mark { time: mark.time, words: mark.name.clone(), tone: Tone::Own };
         let fork =
             |fork: &Fork| Mark { time: fork.from, words: format!("a branch parts: {}", fork.title), tone: Tone::Fork };
-        let worst = laid_over(beside).filter_map(|(title, run)| worst(title, run));
-        self.marks = told
+        let worst = of.others.iter().filter_map(|(title, run)| worst(title, &run.0));
+        let mut marks: Vec<Mark> = told
             .map(event)
             .chain(worst)
-            .chain(key.bookmarks.iter().map(own))
-            .chain(self.forks.iter().map(fork))
+            .chain(of.bookmarks.0.iter().map(own))
+            .chain(of.forks.0.iter().map(fork))
             .collect();
-        self.marks.sort_by(|a, b| a.time.total_cmp(&b.time).then(b.tone.cmp(&a.tone)));
-        self.key = Some(key);
-        self.line = [0.0; 2];
-        all
+        marks.sort_by(|a, b| a.time.total_cmp(&b.time).then(b.tone.cmp(&a.tone)));
+        marks
     }
 
-    /// What tells branches from the run on display.
-    pub fn forks(&self) -> &[Fork] {
-        &self.forks
+    fn let_go(of: &mut Marked) {
+        of.gestures.let_go();
     }
+}
 
-    /// The first mark after the instant on display, or the last before it, s.
-    pub fn beside(&self, session: &Session, on: bool) -> Option<f64> {
-        let (time, step) = (session.frame().time, session.scenario().step);
-        let mut times = self.seen(session.length()).iter().map(|mark| mark.time);
-        match on {
-            true => times.find(|mark| *mark > time + 0.5 * step),
-            false => times.rfind(|mark| *mark < time - 0.5 * step),
-        }
+/// Marks on a time line so long, s, and so wide, points, each group as one.
+struct Grouping;
+
+impl Quick for Grouping {
+    type Input = (Same<Vec<Mark>>, [f64; 2]);
+    type Answer = Vec<Group>;
+
+    fn answer((marks, [length, width]): &Self::Input) -> Vec<Group> {
+        parted(seen(&marks.0, *length), APART / width.max(1.0) * length)
     }
+}
 
-    /// Those on a time line so long, s: a bookmark may stand beyond it.
-    fn seen(&self, length: f64) -> &[Mark] {
-        &self.marks[..self.marks.partition_point(|mark| mark.time <= length + 1e-9)]
+/// Those on a time line so long, s: a bookmark may stand beyond it.
+fn seen(marks: &[Mark], length: f64) -> &[Mark] {
+    &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
+}
+
+/// All of them, as far as the run is read.
+pub(super) struct Marks {
+    queries: Queries,
+    marks: Arc<Vec<Mark>>,
+    /// Whether all frames are read.
+    pub is_whole: bool,
+}
+
+impl Marks {
+    /// Of the session and of the runs beside it.
+    pub fn of(queries: &Queries, session: &Session, beside: Option<&Comparison>) -> Self {
+        let watched = session.events(queries, AT_ONCE);
+        let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
+        let marked = Marked {
+            step: session.scenario().step,
+            gestures: session.gestures(queries),
+            events: watched.answer().map_or_else(|| Shared(Arc::default()), |watched| watched.shared_events()),
+            peak: watched.answer().filter(|_| shakes).map(|watched| watched.peak()),
+            bookmarks: session.shared_bookmarks(),
+            forks: Same(session.forks()),
+            others: laid_over(beside).map(|(title, run)| (title.to_owned(), Same(run.clone()))).collect(),
+        };
+        let marks = queries.ask::<Whole<Marking>>(&marked);
+        Self { queries: queries.clone(), marks, is_whole: watched.is_whole }
     }
 
     /// Marks on a time line so long, s, and so wide, points.
-    pub fn on_line(&mut self, length: f64, width: f64) -> &[Group] {
-        if self.line != [length, width] {
-            self.line = [length, width];
-            let near = APART / width.max(1.0) * length;
-            self.groups = parted(self.seen(length), near);
-        }
-        &self.groups
+    pub fn on_line(&self, length: f64, width: f64) -> Arc<Vec<Group>> {
+        self.queries.ask::<Whole<Grouping>>(&(Same(self.marks.clone()), [length, width]))
+    }
+}
+
+/// Of the marks that are shown the first after the instant on display, or the last before it, s.
+pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
+    let (time, step) = (session.frame().time, session.scenario().step);
+    let marks = queries.last::<Whole<Marking>>()?;
+    let mut times = seen(&marks, session.length()).iter().map(|mark| mark.time);
+    match on {
+        true => times.find(|mark| *mark > time + 0.5 * step),
+        false => times.rfind(|mark| *mark < time - 0.5 * step),
     }
 }
 

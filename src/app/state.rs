@@ -9,7 +9,7 @@ use super::background::{Background, File, Opening};
 use super::change::{Change, Source};
 use super::command::DesignCommand;
 use super::facts::Facts;
-use super::marks::Marks;
+use super::marks::{self, Marks};
 use super::pace::Pace;
 use super::saving::{self, Saving};
 use super::tour::Tour;
@@ -28,7 +28,7 @@ use crate::session::design::weights_of;
 use crate::session::scenario::Scenario;
 use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
-use crate::simulation::signals::{Signal, signals};
+use crate::simulation::signals::{Signal, SignalsOf};
 use crate::study::comparison::Comparison;
 
 /// A session on display.
@@ -37,7 +37,6 @@ pub struct AppState {
     /// The views as they were made, and as base, payload and outline are now.
     made: Arc<Views>,
     views: Arc<Views>,
-    signals: Vec<Signal>,
     /// The machine before the change under way in that view.
     designed_from: Option<Machine>,
     view_state: ViewState,
@@ -53,14 +52,12 @@ pub struct AppState {
     /// Wall time not yet turned into steps, s.
     owed: f64,
     pace: Pace,
-    /// What stands on the time line.
-    marks: Marks,
     /// What there is to say of a branch that the gesture under way has left.
     parted: Option<String>,
     dressed: Option<Theme>,
     fonts: bool,
-    /// What plots show of the runs on display.
-    prepared: plots::Prepared,
+    /// A signal is to be sought in the next pass.
+    looks: bool,
 }
 
 /// How soon progress is shown again, s.
@@ -84,7 +81,6 @@ impl AppState {
         let views = Views::clone(&made);
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
-            signals: signals(&session.scenario().machine),
             made,
             designed_from: None,
             views: Arc::new(views),
@@ -97,11 +93,10 @@ impl AppState {
             background,
             owed: 0.0,
             pace: Pace::default(),
-            marks: Marks::default(),
             parted: None,
             dressed: None,
             fonts: false,
-            prepared: plots::Prepared::default(),
+            looks: false,
         };
         app_state.foresee();
         app_state
@@ -352,7 +347,9 @@ impl AppState {
         }
         let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let beside = beside.and_then(Intro::beside_it).or(self.comparison.as_ref());
-        if !self.marks.follow(&self.session, beside) {
+        let queries = self.queries().clone();
+        let marks = Marks::of(&queries, &self.session, beside);
+        if !marks.is_whole {
             ui.ctx().request_repaint();
         }
         let mut commands = Vec::new();
@@ -361,14 +358,13 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.layout == Layout::Present;
-        let queries = self.queries().clone();
         let facts = Facts::of(&queries, &self.session);
         if !presents {
-            let (known, line) = ((&facts, &self.saving.recent[..]), (&mut self.marks, self.pace.behind()));
+            let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.behind()));
             top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
-            rail::show(ui, &self.session, self.marks.forks(), &self.view_state, &mut commands);
+            rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
         }
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
@@ -401,9 +397,12 @@ impl AppState {
         self.view_state.lit_links = place::lit_links(ui.ctx());
         if self.view_state.plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
-            let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
+            if std::mem::take(&mut self.looks) {
+                plots::focus(ui.ctx());
+            }
+            let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
             let what = plots::Shown { session, queries: &queries, signals, comparison: beside, view_state };
-            self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
+            self.view_state.plots.width = plots::show(ui, &what, &mut commands);
         }
         let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
         let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
@@ -566,7 +565,7 @@ impl AppState {
             }
             Command::NameBookmark(time) => self.name_bookmark(time)?,
             Command::ToMark(on) => {
-                if let Some(time) = self.marks.beside(&self.session, on) {
+                if let Some(time) = marks::beside(self.queries(), &self.session, on) {
                     self.change(Change::Seek(time));
                 }
             }
@@ -660,7 +659,7 @@ impl AppState {
             Command::Charts(change) => self.view_state.charts.change(change),
             Command::LookFor => {
                 self.view_state.plots.shown = true;
-                self.prepared.look_for();
+                self.looks = true;
             }
             Command::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
             Command::TakeElsewhere(path) => self.take_elsewhere(&path)?,
@@ -682,6 +681,11 @@ impl AppState {
             Command::Replace(file) => self.saving.replaces = Some(file),
         }
         Ok(None)
+    }
+
+    /// The signals of the machine on display.
+    fn signals(&self) -> Arc<Vec<Signal>> {
+        self.queries().ask::<Whole<SignalsOf>>(&self.session.scenario().machine)
     }
 
     fn show_view(&mut self, view: ViewKind) {
@@ -731,7 +735,6 @@ impl AppState {
                 self.view_state.view = ViewKind::Flat;
             }
             (self.views, self.made) = (Arc::new(views), made);
-            self.signals = signals(&self.session.scenario().machine);
         }
         let views = Arc::make_mut(&mut self.views);
         views.refresh(self.session.run());

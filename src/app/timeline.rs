@@ -19,7 +19,7 @@ const BELOW: f32 = 32.0;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    (marks, behind): (&mut Marks, Option<f64>),
+    (marks, behind): (&Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -43,7 +43,7 @@ pub fn show(
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
     let asked = view_state.naming.filter(|time| session.bookmark_at(*time).is_some());
     let mut named = false;
-    for group in marks.on_line(length, f64::from(line.width())) {
+    for group in marks.on_line(length, f64::from(line.width())).iter() {
         let x = line.left() + line.width() * (group.time / length) as f32;
         let response = mark(ui, &p, group, [x, line.top()], commands);
         let near = 0.5 * session.scenario().step;

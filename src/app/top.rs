@@ -22,7 +22,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     (facts, recent): (&Facts<'_>, &[PathBuf]),
-    line: (&mut Marks, Option<f64>),
+    line: (&Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {

@@ -67,14 +67,13 @@ impl Seen {
 
     /// What was done to the session since, the newest first.
     fn newest<'a>(&self, session: &'a Session) -> impl Iterator<Item = &'a TimedEdit> {
-        session.script()[self.edits..].iter().rev()
+        session.script().iter().rev().take(session.script().len().saturating_sub(self.edits))
     }
 
     /// The largest |n_B| since an edit, N m.
     fn moment(session: &Session, since: &TimedEdit) -> f64 {
-        let frames = session.frames();
-        let from = frames.partition_point(|frame| frame.step <= since.step);
-        frames[from..].iter().rev().take(MAX_LOOKS).map(|frame| frame.base_moment().abs()).fold(0.0, f64::max)
+        let newest = session.frames().iter().rev().take_while(|frame| frame.step > since.step);
+        newest.take(MAX_LOOKS).map(|frame| frame.base_moment().abs()).fold(0.0, f64::max)
     }
 }
 

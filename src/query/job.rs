@@ -9,6 +9,20 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 pub trait Workers {
     /// Has it done, at once or beside.
     fn start(&self, work: Box<dyn FnOnce() + Send>);
+
+    /// The same of work that is short as a rule: who reads a clock may wait for its end, as long as nobody sees it.
+    fn start_short(&self, work: Box<dyn FnOnce() + Send>) {
+        self.start(work);
+    }
+}
+
+/// The same who take all that is given to them for short.
+pub struct Short<'a>(pub &'a dyn Workers);
+
+impl Workers for Short<'_> {
+    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+        self.0.start_short(work);
+    }
 }
 
 /// No threads: every job is done when it starts, as in a browser and in tests.

@@ -1,13 +1,15 @@
 //! [`Queries`]: where answers are kept.
 
-use std::any::{Any, TypeId};
+use std::any::TypeId;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use super::asked::Asked;
+use super::growing::{Growing, Grown, Growth, Growths};
 use super::job::{AtOnce, Workers};
 use super::question::{Query, answered};
+use super::sequence::Sequence;
 use super::slot::{Kept, Slot, Working};
 
 /// Answers that are known, and the work on others. Copies share both.
@@ -32,7 +34,7 @@ impl fmt::Debug for Asking {
 }
 
 struct Store {
-    /// One for each query that was asked.
+    /// One for each query that was asked, by its own type.
     slots: Mutex<HashMap<TypeId, Box<dyn Kept>>>,
     place: Mutex<Place>,
 }
@@ -146,17 +148,36 @@ impl Queries {
 
     /// Stops work and forgets the answer.
     pub fn forget<Q: Query>(&self) {
-        self.slots().remove(&TypeId::of::<Q>());
+        self.slots().remove(&TypeId::of::<Slot<Q>>());
+    }
+
+    /// The answer that grows with a sequence, once it has taken what there is more than before, so many items at most.
+    /// Nothing is copied while nobody else keeps the answer.
+    pub fn grow<G: Growing>(&self, input: &G::Input, items: &Sequence<G::Item>, at_most: usize) -> Grown<G> {
+        let known = self.kept(|growths: &mut Growths<G>| growths.take(items.revision()));
+        let mut growth = known.unwrap_or_else(|| Growth::begin(items.revision(), input));
+        growth.follow(input, items, at_most);
+        let grown = growth.grown(items.len());
+        self.kept(|growths: &mut Growths<G>| growths.keep(growth));
+        grown
+    }
+
+    /// How many answers are kept: of a growing one, one for each sequence.
+    pub fn count(&self) -> usize {
+        self.slots().values().map(|slot| slot.count()).sum()
     }
 
     fn slot<Q: Query, T>(&self, with: impl FnOnce(&mut Slot<Q>) -> T) -> T {
+        self.kept(with)
+    }
+
+    fn kept<S: Kept + Default, T>(&self, with: impl FnOnce(&mut S) -> T) -> T {
         let mut slots = self.slots();
-        let slot = slots.entry(TypeId::of::<Q>()).or_insert_with(|| Box::new(Slot::<Q>::default()));
-        let slot: &mut dyn Any = &mut **slot;
-        match slot.downcast_mut() {
+        let slot = slots.entry(TypeId::of::<S>()).or_insert_with(|| Box::new(S::default()));
+        match slot.as_any().downcast_mut() {
             Some(slot) => with(slot),
             // Of its own type there is no other.
-            None => with(&mut Slot::default()),
+            None => with(&mut S::default()),
         }
     }
 

@@ -17,6 +17,9 @@ pub trait Query: Send + Sized + 'static {
     /// Does a portion of it, best of some milliseconds at most. One that takes longer tells how much is done of all of
     /// it, from 0 to 1, and hears whether the rest is still wanted.
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer>;
+
+    /// Takes out of an input that was answered what it is not compared by: see [`Grown::let_go`](super::Grown::let_go).
+    fn let_go(_: &mut Self::Input) {}
 }
 
 /// Told how much is done, from 0 to 1; says whether the rest is still wanted.
@@ -53,6 +56,9 @@ pub trait Quick: 'static {
 
     /// The answer.
     fn answer(input: &Self::Input) -> Self::Answer;
+
+    /// As [`Query::let_go`].
+    fn let_go(_: &mut Self::Input) {}
 }
 
 /// The work of a quick query.
@@ -70,5 +76,9 @@ impl<Q: Quick> Query for Whole<Q> {
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Q::Answer> {
         Portion::Done(Q::answer(&self.0))
+    }
+
+    fn let_go(input: &mut Q::Input) {
+        Q::let_go(input);
     }
 }

@@ -25,12 +25,26 @@ impl<Q: Query> Default for Slot<Q> {
 pub(super) trait Kept: Any + Send {
     /// Whether work is under way.
     fn works(&mut self) -> bool;
+
+    /// How many answers are kept.
+    fn count(&self) -> usize;
+
+    /// To be told from others.
+    fn as_any(&mut self) -> &mut dyn Any;
 }
 
 impl<Q: Query> Kept for Slot<Q> {
     fn works(&mut self) -> bool {
         self.collect();
         self.working.is_some()
+    }
+
+    fn count(&self) -> usize {
+        usize::from(self.known.is_some())
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        self
     }
 }
 
@@ -106,8 +120,9 @@ impl<Q: Query> Slot<Q> {
     }
 
     /// Takes an answer; work on the same is wanted no more.
-    pub fn keep(&mut self, of: Q::Input, answer: Arc<Q::Answer>) {
+    pub fn keep(&mut self, mut of: Q::Input, answer: Arc<Q::Answer>) {
         self.working = self.working.take().filter(|working| working.of != of);
+        Q::let_go(&mut of);
         self.known = Some((of, answer));
         self.left = None;
     }
@@ -139,7 +154,7 @@ impl<Q: Query> Slot<Q> {
 
     /// Takes what work has come to.
     pub fn collect(&mut self) {
-        let Some(Working { of, by }) = self.working.take() else { return };
+        let Some(Working { mut of, by }) = self.working.take() else { return };
         let by = match by {
             By::Job(job) => match job.poll() {
                 Poll::Working => By::Job(job),
@@ -153,7 +168,10 @@ impl<Q: Query> Slot<Q> {
             by => by,
         };
         match by {
-            By::Done(answer) => self.known = Some((of, Arc::new(answer))),
+            By::Done(answer) => {
+                Q::let_go(&mut of);
+                self.known = Some((of, Arc::new(answer)));
+            }
             by => self.working = Some(Working { of, by }),
         }
     }

@@ -7,6 +7,7 @@ use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{brief, colour, under};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::Palette;
+use crate::query::Growing;
 use crate::session::events::{Event, Kind, Watched, bookmarked, gestures};
 use crate::session::scenario::{Scenario, Task};
 use crate::session::verdict::Verdict;
@@ -35,7 +36,8 @@ struct Row {
 impl Events {
     /// Nothing has happened yet.
     pub fn new(prefix: String, palette: Palette) -> Self {
-        Self { prefix, palette, rows: Vec::new(), phases: Track::new(), watched: Watched::default() }
+        let watched = Watched::begin(&Default::default());
+        Self { prefix, palette, rows: Vec::new(), phases: Track::new(), watched }
     }
 
     fn add(&mut self, at: Instant, text: String, level: &'static str, rgba: Rgba) {
@@ -55,7 +57,7 @@ impl Events {
     /// What an instant brings.
     pub fn note(&mut self, at: Instant, frame: &Frame, scenario: &Scenario) {
         self.phases.push(at, frame.phase);
-        self.watched.note(frame, scenario);
+        self.watched.see(frame, (scenario.step, &scenario.machine));
     }
 
     fn tell(&mut self, event: &Event, dt: f64) {

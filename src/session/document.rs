@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use super::changes::Failed;
 use super::edit::{Edit, TimedEdit};
+use super::machines::Machines;
 use super::replay;
 use super::run::Run;
 use super::script::Script;
+use crate::query::Sequence;
 use crate::session::scenario::{Bookmark, Scenario};
 use crate::simulation::frame::Frame;
 
@@ -40,6 +42,15 @@ pub(super) struct Document {
     pub branches: Arc<Vec<Left>>,
 }
 
+/// What a document comes to.
+pub(super) struct Performed {
+    /// At its end.
+    pub run: Run,
+    /// One a step.
+    pub frames: Sequence<Frame>,
+    pub machines: Machines,
+}
+
 /// A branch that was left: the same scenario with another script.
 #[derive(Clone, Debug)]
 pub(super) struct Left {
@@ -65,20 +76,16 @@ impl Document {
     }
 
     /// Runs it from its start to its end.
-    pub fn perform(
-        &self,
-        known: Option<&Run>,
-        patient: bool,
-        watch: Watch<'_>,
-    ) -> Result<(Run, Arc<Vec<Frame>>), Failed> {
-        let mut frames = Vec::with_capacity(self.end as usize + 1);
-        let see = |_: &Run, frame: &Frame| {
+    pub fn perform(&self, known: Option<&Run>, patient: bool, watch: Watch<'_>) -> Result<Performed, Failed> {
+        let (mut frames, mut machines) = (Sequence::default(), Machines::default());
+        let see = |run: &Run, frame: &Frame| {
             frames.push(*frame);
+            machines.hold(frame.step, &run.scenario().machine);
             !frames.len().is_multiple_of(WORD) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
         let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
-        Ok((run, Arc::new(frames)))
+        Ok(Performed { run, frames, machines })
     }
 
     /// With an edit before the first step.

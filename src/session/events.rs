@@ -2,11 +2,14 @@
 //! window and a recording tell the same.
 
 use std::mem::discriminant;
+use std::sync::Arc;
 
 use super::edit::{Edit, TimedEdit};
-use super::made::Made;
+use super::machines::Machines;
 use super::verdict::PAST;
-use crate::session::scenario::{Bookmark, Scenario};
+use crate::mechanics::machine::Machine;
+use crate::query::{Growing, Shared};
+use crate::session::scenario::Bookmark;
 use crate::settings::number::{Short, significant};
 use crate::simulation::frame::{Frame, Phase, Reach};
 
@@ -55,39 +58,84 @@ const AT_LIMIT: [f64; 2] = [0.999, 0.98];
 pub fn gestures(edits: &[TimedEdit], step: f64) -> Vec<Event> {
     let mut order: Vec<&TimedEdit> = edits.iter().collect();
     order.sort_by_key(|timed| timed.step);
-    grouped(&order, step).iter().map(|gesture| gesture.told(step)).collect()
+    grouped(order, step).told().collect()
 }
 
 /// The first of them, of edits in the order of steps.
 pub(super) fn first_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
-    Some(grouped(edits, step).first()?.told(step))
+    grouped(edits.iter().copied(), step).told().next()
 }
 
 /// The last of them.
 pub(super) fn last_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
-    Some(grouped(edits, step).last()?.told(step))
+    grouped(edits.iter().copied(), step).told().next_back()
 }
 
-fn grouped<'a>(edits: &[&'a TimedEdit], step: f64) -> Vec<Gesture<'a>> {
-    let mut all: Vec<Gesture<'_>> = Vec::new();
-    for timed in edits {
-        match all.last_mut().filter(|gesture| gesture.goes_on(timed, step)) {
-            Some(gesture) => {
-                gesture.last = timed;
-                gesture.push = gesture.push.max(force(&timed.edit));
-            }
-            None => all.push(Gesture { first: timed.step, last: timed, push: force(&timed.edit) }),
-        }
-    }
+fn grouped<'a>(edits: impl IntoIterator<Item = &'a TimedEdit>, step: f64) -> Gestures {
+    let mut all = Gestures::begin(&step);
+    edits.into_iter().for_each(|timed| all.see(timed));
     all
 }
 
+/// The gestures of edits that come in the order of steps.
+#[derive(Clone, Debug)]
+pub struct Gestures {
+    /// How long a step lasts, s.
+    step: f64,
+    all: Vec<Gesture>,
+    /// The last of them before the newest edit, if that goes on with it.
+    before: Option<Gesture>,
+}
+
+impl Gestures {
+    /// What they are, one after the other.
+    pub fn told(&self) -> impl DoubleEndedIterator<Item = Event> {
+        self.all.iter().map(|gesture| gesture.told(self.step))
+    }
+
+    fn see(&mut self, timed: &TimedEdit) {
+        let count = self.count() + 1;
+        self.before = self.all.pop_if(|last| last.goes_on(timed, self.step));
+        self.all.push(match &self.before {
+            Some(last) => Gesture { last: timed.clone(), push: last.push.max(force(&timed.edit)), count, ..*last },
+            None => Gesture { first: timed.step, last: timed.clone(), push: force(&timed.edit), count },
+        });
+    }
+}
+
+impl Growing for Gestures {
+    type Item = TimedEdit;
+    /// How long a step lasts, s.
+    type Input = f64;
+
+    fn begin(step: &f64) -> Self {
+        Self { step: *step, all: Vec::new(), before: None }
+    }
+
+    fn count(&self) -> usize {
+        self.all.last().map_or(0, |last| last.count)
+    }
+
+    fn take(&mut self, edits: &[TimedEdit]) {
+        edits.iter().for_each(|timed| self.see(timed));
+    }
+
+    fn cut(&mut self, count: usize) {
+        while self.all.pop_if(|last| last.count > count).is_some() {
+            self.all.extend(self.before.take());
+        }
+    }
+}
+
 /// Edits that are one: a push until it is let go, a drag until the pointer rests.
-struct Gesture<'a> {
+#[derive(Clone, Debug)]
+struct Gesture {
     first: u64,
-    last: &'a TimedEdit,
+    last: TimedEdit,
     /// The largest push, N.
     push: f64,
+    /// Edits up to its last.
+    count: usize,
 }
 
 fn force(edit: &Edit) -> f64 {
@@ -97,7 +145,7 @@ fn force(edit: &Edit) -> f64 {
     }
 }
 
-impl Gesture<'_> {
+impl Gesture {
     fn goes_on(&self, next: &TimedEdit, step: f64) -> bool {
         let last = &self.last.edit;
         // A push lasts until it is let go, however still the hand is.
@@ -109,12 +157,12 @@ impl Gesture<'_> {
     }
 
     fn told(&self, step: f64) -> Event {
-        let TimedEdit { step: last, edit } = self.last;
+        let TimedEdit { step: last, edit } = &self.last;
         let words = match edit {
             Edit::Push { .. } if *last > self.first => format!("push with up to {:.2} N", self.push),
             edit => edit.title(),
         };
-        let words = match last - self.first {
+        let words = match *last - self.first {
             0 => words,
             steps => format!("{words}, within {:.3} s", steps as f64 * step),
         };
@@ -132,11 +180,13 @@ pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
     bookmarks.iter().map(event).collect()
 }
 
-/// What frames tell, read one after the other.
-#[derive(Clone, Debug, Default)]
+/// What frames tell, read one after the other, one a step from the start on.
+#[derive(Clone, Debug)]
 pub struct Watched {
-    made: Option<Made>,
-    events: Vec<Event>,
+    /// How long a step lasts, s.
+    step: f64,
+    machines: Machines,
+    events: Arc<Vec<Event>>,
     now: Seen,
     /// Before the newest frame, which an edit may change.
     before: Seen,
@@ -162,44 +212,71 @@ struct Seen {
     peak: (u64, f64),
 }
 
-impl Watched {
-    /// Reads what frames there are more than before, so many at most; frames that have changed are read again. Whether
-    /// that was all of them.
-    pub fn follow(&mut self, made: &Made, frames: &[Frame], scenario: &Scenario, most: usize) -> bool {
-        let kept = self.made.as_ref().map_or(0, |known| made.kept_of(known));
-        if self.made.as_ref() != Some(made) {
-            self.made = Some(made.clone());
-        }
-        if kept < self.now.frames || frames.len() < self.now.frames {
-            let known = kept.min(frames.len());
-            self.now = if self.before.frames <= known { self.before } else { Seen::default() };
-            self.events.truncate(self.now.events);
-        }
-        let until = frames.len().min(self.now.frames.saturating_add(most));
-        for frame in &frames[self.now.frames..until] {
-            self.note(frame, scenario);
-        }
-        until == frames.len()
+impl Growing for Watched {
+    type Item = Frame;
+    /// How long a step lasts, s, and which machine there was when.
+    type Input = (f64, Machines);
+
+    fn begin((step, machines): &Self::Input) -> Self {
+        let (now, before) = (Seen::default(), Seen::default());
+        Self { step: *step, machines: machines.clone(), events: Arc::default(), now, before }
     }
 
+    fn count(&self) -> usize {
+        self.now.frames
+    }
+
+    fn take(&mut self, frames: &[Frame]) {
+        let machines = self.machines.clone();
+        for frame in frames {
+            self.note(frame, machines.at(frame.step));
+        }
+    }
+
+    fn cut(&mut self, count: usize) {
+        if count < self.now.frames {
+            self.now = if self.before.frames <= count { self.before } else { Seen::default() };
+            Arc::make_mut(&mut self.events).truncate(self.now.events);
+        }
+    }
+
+    fn turn_to(&mut self, input: &Self::Input) {
+        let (step, machines) = input;
+        if self.step != *step {
+            *self = Self::begin(input);
+            return;
+        }
+        // There is a frame a step.
+        self.cut(usize::try_from(self.machines.differ_from(machines)).unwrap_or(usize::MAX));
+        self.machines = machines.clone();
+    }
+}
+
+impl Watched {
     /// What has happened, apart from what hands did.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// The step at which the arm exerted most on its base.
-    pub fn peak_step(&self) -> u64 {
-        self.now.peak.0
+    /// The same, to be kept.
+    pub fn shared_events(&self) -> Shared<Vec<Event>> {
+        Shared(self.events.clone())
     }
 
-    /// The same as an event.
+    /// When the arm exerted most on its base.
     pub fn peak(&self) -> Event {
         let (step, moment) = self.now.peak;
         Event { step, words: format!("peak |n_B| {} N m", significant(moment)), kind: Kind::Peak }
     }
 
-    /// What one more instant brings.
-    pub fn note(&mut self, frame: &Frame, scenario: &Scenario) {
+    /// Takes one more instant of a run whose frames are not kept. Steps last so long, s, and it has this machine by then.
+    pub fn see(&mut self, frame: &Frame, (step, machine): (f64, &Machine)) {
+        self.step = step;
+        self.machines.hold(frame.step, machine);
+        self.note(frame, Some(machine));
+    }
+
+    fn note(&mut self, frame: &Frame, machine: Option<&Machine>) {
         self.before = self.now;
         let step = frame.step;
         if frame.peaks.arm_moment > self.now.peak.1 {
@@ -211,15 +288,17 @@ impl Watched {
             _ => {}
         }
         self.carried(frame);
-        self.limits(frame, scenario);
-        self.base(frame, scenario.step);
+        if let Some(machine) = machine {
+            self.limits(frame, machine);
+        }
+        self.base(frame, self.step);
         self.target(frame);
         self.now.frames += 1;
         self.now.events = self.events.len();
     }
 
     fn add(&mut self, step: u64, kind: Kind, words: impl Into<String>) {
-        self.events.push(Event { step, words: words.into(), kind });
+        Arc::make_mut(&mut self.events).push(Event { step, words: words.into(), kind });
     }
 
     /// What becomes of payload and wheel, and the first time that an audit fails.
@@ -247,8 +326,8 @@ impl Watched {
     }
 
     /// Motors that come to their limits, and the first joint that passes its own.
-    fn limits(&mut self, frame: &Frame, scenario: &Scenario) {
-        let drives = &scenario.machine.spec().drives;
+    fn limits(&mut self, frame: &Frame, machine: &Machine) {
+        let drives = &machine.spec().drives;
         for (k, (torque, drive)) in frame.torque.iter().zip(drives).enumerate() {
             let (Some(limit), bit) = (drive.torque_limit, 1 << k) else { continue };
             let share = torque.abs() / limit;
@@ -263,7 +342,7 @@ impl Watched {
         let (by, angle) = frame.peaks.past_limit;
         if by > PAST && !self.now.past {
             self.now.past = true;
-            let angle = scenario.machine.angles().get(angle).map_or("a joint", |angle| &angle.name);
+            let angle = machine.angles().get(angle).map_or("a joint", |angle| &angle.name);
             self.add(frame.step, Kind::Warning, format!("{angle} passes its limit"));
         }
     }

@@ -1,7 +1,9 @@
 //! [`Fork`]: what tells two courses of one scenario apart.
 
+use super::document::Left;
 use super::edit::TimedEdit;
 use super::events::{first_gesture, last_gesture};
+use crate::query::{Quick, Same, Sequence};
 
 /// What tells a branch from the run on display.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,12 +16,42 @@ pub struct Fork {
     pub to: f64,
 }
 
+impl Left {
+    /// What tells it from a run with other edits, which ends after so many steps.
+    pub(super) fn beside(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
+        Fork::of((&self.script.in_order(), self.end, self.script.is_led()), (edits, end), self.step)
+    }
+}
+
+/// What tells branches from a run, given its edits and how many steps it has done; the oldest first. No two have the
+/// same title.
+#[derive(Debug)]
+pub(super) struct Forks;
+
+impl Quick for Forks {
+    type Input = (Same<Vec<Left>>, Sequence<TimedEdit>, u64);
+    type Answer = Vec<Fork>;
+
+    fn answer((branches, edits, end): &Self::Input) -> Vec<Fork> {
+        let mut forks: Vec<Fork> = branches.0.iter().map(|left| left.beside(edits, *end)).collect();
+        for i in 1..forks.len() {
+            let title = forks[i].title.clone();
+            let taken = |name: &String| forks[..i].iter().any(|fork| fork.title == *name);
+            let another = (2..).map(|n| format!("{title} ({n})")).find(|name| !taken(name));
+            if taken(&title) {
+                forks[i].title = another.unwrap_or(title);
+            }
+        }
+        forks
+    }
+}
+
 impl Fork {
     /// Of edits with the step at which they end, beside others; steps last so long, s. `led`: by then somebody has led
     /// the machine off its planned motion.
     pub fn of(
         (edits, end, led): (&[&TimedEdit], u64, bool),
-        (others, other_end): (&[TimedEdit], u64),
+        (others, other_end): (&Sequence<TimedEdit>, u64),
         step: f64,
     ) -> Self {
         let same = edits.iter().zip(others).take_while(|(own, other)| **own == *other).count();

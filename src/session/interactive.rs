@@ -10,12 +10,14 @@ mod branches;
 use std::sync::Arc;
 
 use super::changes::{Failed, in_order};
-use super::document::{Document, Kept, WORD, Watch};
+use super::document::{Document, Kept, Performed, WORD, Watch};
 use super::edit::{Edit, TimedEdit};
-use super::made::Made;
+use super::events::{Gestures, Watched};
+use super::machines::Machines;
 use super::refusal::Refusal;
 use super::run::Run;
 use super::script::Script;
+use crate::query::{Grown, Queries, Sequence};
 use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use crate::simulation::frame::Frame;
 
@@ -45,10 +47,10 @@ impl Change {
 pub struct Session {
     document: Document,
     /// The script of the document, one after the other.
-    edits: Arc<Vec<TimedEdit>>,
+    edits: Sequence<TimedEdit>,
     run: Run,
-    frames: Arc<Vec<Frame>>,
-    made: Made,
+    frames: Sequence<Frame>,
+    machines: Machines,
     cursor: usize,
     playing: bool,
     undo: Vec<Arc<Change>>,
@@ -127,14 +129,14 @@ impl Session {
     }
 
     fn of(document: Document, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
-        let (run, frames) = document.perform(None, patient, watch)?;
+        let Performed { run, frames, machines } = document.perform(None, patient, watch)?;
         let cursor = frames.len() - 1;
         Ok(Self {
-            edits: Arc::new(document.script.to_vec()),
+            edits: document.script.to_vec().into_iter().collect(),
             document,
             run,
             frames,
-            made: Made::new(),
+            machines,
             cursor,
             playing: false,
             undo: Vec::new(),
@@ -152,13 +154,13 @@ impl Session {
     }
 
     /// Every frame so far, one a step.
-    pub fn frames(&self) -> &[Frame] {
+    pub fn frames(&self) -> &Sequence<Frame> {
         &self.frames
     }
 
-    /// Which making of the run the frames are of.
-    pub fn made(&self) -> &Made {
-        &self.made
+    /// Which machine it had when.
+    pub fn machines(&self) -> &Machines {
+        &self.machines
     }
 
     /// The scenario with everything that edits have set.
@@ -172,8 +174,18 @@ impl Session {
     }
 
     /// Edits so far.
-    pub fn script(&self) -> &[TimedEdit] {
+    pub fn script(&self) -> &Sequence<TimedEdit> {
         &self.edits
+    }
+
+    /// What hands have done, told by a store of answers.
+    pub fn gestures(&self, queries: &Queries) -> Grown<Gestures> {
+        queries.grow(&self.scenario().step, &self.edits, usize::MAX)
+    }
+
+    /// What has happened apart from that, told by a store of answers that reads so many new frames at most.
+    pub fn events(&self, queries: &Queries, at_most: usize) -> Grown<Watched> {
+        queries.grow(&(self.scenario().step, self.machines.clone()), &self.frames, at_most)
     }
 
     /// Whether time is to pass.
@@ -339,7 +351,7 @@ impl Session {
         self.unedited = None;
         self.run.advance();
         let frame = self.run.frame();
-        Arc::make_mut(&mut self.frames).push(frame);
+        self.frames.push(frame);
         // A session can be opened again only as far as its run has numbers.
         if frame.is_finite() {
             self.document.end = frame.step;
@@ -396,35 +408,6 @@ impl Session {
         }
     }
 
-    /// Whether it takes more than the present step to apply an edit: the task is planned anew, and the run so far is made
-    /// again. How many steps that are.
-    pub fn steps_again(&self, edit: &Edit) -> Option<u64> {
-        match self.concerns_now(edit) {
-            true => (!self.is_at_end()).then_some(self.cursor as u64),
-            false => (!edit.is_aside()).then_some(self.document.end),
-        }
-    }
-
-    /// The same for what undo would do.
-    pub fn steps_of_undo(&self) -> Option<u64> {
-        self.undo.last().and_then(|change| self.steps_of(change, change.inverse.is_some()))
-    }
-
-    /// The same for what redo would do.
-    pub fn steps_of_redo(&self) -> Option<u64> {
-        self.redo.last().and_then(|change| self.steps_of(change, change.edit.is_some()))
-    }
-
-    fn steps_of(&self, change: &Change, appends: bool) -> Option<u64> {
-        let quick = change.beside.is_some() || (appends && self.is_running() && !change.plans());
-        (!quick).then_some(change.before.end)
-    }
-
-    /// The same for showing an instant, s.
-    pub fn steps_of_seek(&self, time: f64) -> Option<u64> {
-        Some(self.steps_to(time) as u64).filter(|steps| *steps > 0)
-    }
-
     /// Whether the newest frame is on display and time passes.
     fn is_running(&self) -> bool {
         self.is_moving() && self.is_at_end()
@@ -450,7 +433,7 @@ impl Session {
             && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
         // An edit that replaces the one before starts from the run before that one, so that it leaves no trace.
         let unedited = match (&remade, &self.unedited) {
-            (Some((run, _)), _) => run.clone(),
+            (Some(remade), _) => remade.run.clone(),
             (None, Some(run)) if joins => {
                 document.script.pop();
                 run.clone()
@@ -460,12 +443,11 @@ impl Session {
         let inverse = unedited.inverse_of(&timed.edit);
         let mut run = unedited.clone();
         run.apply(&timed.edit)?;
-        let edits = Arc::make_mut(&mut self.edits);
-        edits.truncate(document.script.len());
-        edits.push(timed.clone());
+        self.edits.truncate(document.script.len());
+        self.edits.push(timed.clone());
         document.script.push(timed.clone());
-        if let Some((_, frames)) = remade {
-            (self.frames, self.made) = (frames, Made::new());
+        if let Some(remade) = remade {
+            (self.frames, self.machines) = (remade.frames, remade.machines);
         }
         (self.document, self.run, self.unedited, self.partings) = (document, run, Some(unedited), partings);
         self.show_present();
@@ -490,7 +472,7 @@ impl Session {
         match &timed.edit {
             edit if edit.is_aside() => {
                 self.run.apply(&timed.edit)?;
-                self.edits = Arc::new(document.script.to_vec());
+                self.edits = document.script.to_vec().into_iter().collect();
                 self.document = document;
             }
             edit => {
@@ -505,10 +487,9 @@ impl Session {
 
     /// The newest frame once more, after an edit.
     fn show_present(&mut self) {
-        if let Some(last) = Arc::make_mut(&mut self.frames).last_mut() {
-            *last = self.run.frame();
-        }
-        self.made = self.made.changed_after(self.frames.len() - 1);
+        let frame = self.run.frame();
+        self.machines.hold(frame.step, &self.scenario().machine.clone());
+        self.frames.replace_last(frame);
     }
 
     fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
@@ -632,7 +613,7 @@ impl Session {
         }
         self.run.apply(&edit)?;
         let timed = TimedEdit { step: self.document.end, edit };
-        Arc::make_mut(&mut self.edits).push(timed.clone());
+        self.edits.push(timed.clone());
         self.document.script.push(timed);
         self.show_present();
         Ok(())
@@ -656,11 +637,12 @@ impl Session {
     /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
     /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
     fn restore(&mut self, document: Document, patient: bool, watch: Watch<'_>) -> Result<(), Refusal> {
-        let (run, frames) = document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
+        let Performed { run, frames, machines } =
+            document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
         self.playing &= run.waiting().is_none();
-        self.edits = Arc::new(document.script.to_vec());
+        self.edits = document.script.to_vec().into_iter().collect();
         (self.document, self.run, self.unedited) = (document, run, None);
-        (self.frames, self.made) = (frames, Made::new());
+        (self.frames, self.machines) = (frames, machines);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
     }
@@ -693,7 +675,7 @@ impl Session {
     /// motion.
     pub fn to_scenario(&self) -> Scenario {
         let mut scenario = Scenario::clone(&self.document.scenario);
-        scenario.edits.clone_from(&*self.edits);
+        scenario.edits = self.edits.to_vec();
         scenario.bookmarks.clone_from(&self.document.bookmarks);
         scenario.branches = self.kept_branches();
         scenario.duration = match self.document.end {

@@ -3,6 +3,7 @@
 use crate::mechanics::joint_forces::{self, Joints, KEPT};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
+use crate::query::Quick;
 use crate::settings::number::subscript;
 use crate::simulation::frame::Frame;
 
@@ -28,6 +29,18 @@ enum Quantity {
     Whole(fn(&Frame) -> f64),
 }
 
+/// By what they are called, and by their place among the drives, angles or pins of a machine: the same path may stand
+/// for another drive of another machine.
+impl PartialEq for Signal {
+    fn eq(&self, other: &Self) -> bool {
+        let place = |signal: &Self| match signal.quantity {
+            Quantity::PerIndex(k, _) => Some(k),
+            Quantity::Whole(_) => None,
+        };
+        self.path == other.path && place(self) == place(other)
+    }
+}
+
 impl Signal {
     /// Its value at one instant.
     #[inline]
@@ -41,6 +54,19 @@ impl Signal {
     /// The first part of the path: signals of one group share a plot and a unit.
     pub fn group(&self) -> &str {
         self.path.split('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// The signals of a machine.
+#[derive(Debug)]
+pub struct SignalsOf;
+
+impl Quick for SignalsOf {
+    type Input = Machine;
+    type Answer = Vec<Signal>;
+
+    fn answer(machine: &Machine) -> Vec<Signal> {
+        signals(machine)
     }
 }
 

@@ -4,62 +4,73 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::series::{Series, Statistics};
-use crate::session::Made;
+use crate::query::Growing;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 
-/// The samples of some signals of one run.
+/// The samples of some signals of one run. One that is wanted anew has fewer for a while.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
-    /// Which making of the run they are of.
-    made: Option<Made>,
     times: Vec<f64>,
+    /// By path.
     series: Vec<(String, Series)>,
+    /// The signal of each series, where it grows.
+    signals: Vec<Signal>,
+}
+
+impl Growing for Samples {
+    type Item = Frame;
+    /// The signals that are wanted.
+    type Input = Vec<Signal>;
+
+    fn begin(wanted: &Vec<Signal>) -> Self {
+        let mut samples = Self::default();
+        samples.turn_to(wanted);
+        samples
+    }
+
+    fn count(&self) -> usize {
+        self.series.iter().map(|(_, series)| series.values().len()).fold(self.times.len(), usize::min)
+    }
+
+    fn take(&mut self, frames: &[Frame]) {
+        let count = self.count();
+        // A frame is large: it is read once for all signals.
+        for (place, frame) in (count..).zip(frames) {
+            if self.times.len() == place {
+                self.times.push(frame.time);
+            }
+            for (signal, (_, series)) in self.signals.iter().zip(&mut self.series) {
+                if series.values().len() == place {
+                    series.push(signal.value(frame));
+                }
+            }
+        }
+    }
+
+    fn cut(&mut self, count: usize) {
+        self.times.truncate(count);
+        self.series.iter_mut().for_each(|(_, series)| series.truncate(count));
+    }
+
+    /// Series of signals that are still wanted stay.
+    fn turn_to(&mut self, wanted: &Vec<Signal>) {
+        let mut known: Vec<(Signal, (String, Series))> =
+            std::mem::take(&mut self.signals).into_iter().zip(std::mem::take(&mut self.series)).collect();
+        for signal in wanted {
+            let place = known.iter().position(|(known, _)| known == signal);
+            let kept = place.map(|place| known.swap_remove(place).1);
+            self.series.push(kept.unwrap_or_else(|| (signal.path.clone(), Series::default())));
+        }
+        self.signals.clone_from(wanted);
+    }
 }
 
 impl Samples {
-    /// Signals by path, whose samples were taken at times, s.
+    /// Signals by path, whose samples were taken at times, s; those with another number of samples are left out.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
-        Self { made: None, times, series }
-    }
-
-    /// Takes what the frames have more than before; what has changed is taken again. Signals that are not wanted
-    /// any more are let go.
-    pub fn follow(&mut self, made: &Made, frames: &[Frame], wanted: &[&Signal]) {
-        self.follow_some(made, frames, wanted, usize::MAX);
-    }
-
-    /// The same with so many more frames at most; whether that was all of them. A long run that is new takes longer
-    /// than a repaint may.
-    pub fn follow_some(&mut self, made: &Made, frames: &[Frame], wanted: &[&Signal], most: usize) -> bool {
-        let kept = self.made.as_ref().map_or(0, |known| made.kept_of(known));
-        self.made = Some(made.clone());
-        self.series.retain(|(path, _)| wanted.iter().any(|signal| signal.path == *path));
-        let known = kept.min(self.times.len()).min(frames.len());
-        self.times.truncate(known);
-        let until = frames.len().min(known.saturating_add(most));
-        let mut places = Vec::with_capacity(wanted.len());
-        for signal in wanted {
-            let place = self.series.iter().position(|(path, _)| *path == signal.path).unwrap_or_else(|| {
-                self.series.push((signal.path.clone(), Series::default()));
-                self.series.len() - 1
-            });
-            let series = &mut self.series[place].1;
-            series.truncate(known);
-            for frame in &frames[series.values().len()..known] {
-                series.push(signal.value(frame));
-            }
-            places.push((place, signal));
-        }
-        // A frame is large: it is read once for all signals.
-        for frame in &frames[known..until] {
-            self.times.push(frame.time);
-            for (place, signal) in &places {
-                self.series[*place].1.push(signal.value(frame));
-            }
-        }
-        until == frames.len()
+        Self { times, series, signals: Vec::new() }
     }
 
     /// The samples of a signal.
@@ -90,7 +101,7 @@ impl Samples {
     pub fn line(&self, path: &str, shown: [f64; 2], columns: usize) -> Vec<[f64; 2]> {
         let Some(series) = self.series(path) else { return Vec::new() };
         let range = self.beyond(shown);
-        let point = |i: usize| Some([self.times[i], series.values()[i]]).filter(|p| p[1].is_finite());
+        let point = |i: usize| Some([self.times[i], *series.values().get(i)?]).filter(|p| p[1].is_finite());
         if range.len() <= 4 * columns.max(1) || shown[1] <= shown[0] {
             return range.filter_map(point).collect();
         }
@@ -113,7 +124,8 @@ impl Samples {
     pub fn line_against(&self, across: &str, path: &str, shown: [f64; 2], most: usize) -> Vec<[f64; 2]> {
         let (Some(x), Some(y)) = (self.series(across), self.series(path)) else { return Vec::new() };
         let range = self.within(shown);
-        let point = |i: usize| Some([x.values()[i], y.values()[i]]).filter(|p| p.iter().all(|x| x.is_finite()));
+        let point =
+            |i: usize| Some([*x.values().get(i)?, *y.values().get(i)?]).filter(|p| p.iter().all(|x| x.is_finite()));
         if range.len() <= most {
             return range.filter_map(point).collect();
         }
@@ -142,21 +154,18 @@ impl Samples {
     }
 
     /// Every sample of a time as CSV, in SI units, with the head that `simulate` writes.
-    pub fn csv(&self, signals: &[&Signal], shown: [f64; 2]) -> String {
+    pub fn csv(&self, shown: [f64; 2]) -> String {
         let mut text = String::from("time s");
-        let mut columns = Vec::new();
-        for signal in signals {
-            if let Some(series) = self.series(&signal.path) {
-                // Paths and units hold neither commas nor quotes.
-                let _ = write!(text, ",{} {}", signal.path, signal.unit);
-                columns.push(series.values());
-            }
+        for signal in &self.signals {
+            // Paths and units hold neither commas nor quotes.
+            let _ = write!(text, ",{} {}", signal.path, signal.unit);
         }
         text.push('\n');
-        for i in self.within(shown) {
+        let taken = self.count();
+        for i in self.within(shown).take_while(|i| *i < taken) {
             let _ = write!(text, "{}", self.times[i] + 0.0);
-            for column in &columns {
-                let _ = write!(text, ",{}", column[i] + 0.0);
+            for (_, series) in &self.series {
+                let _ = write!(text, ",{}", series.values()[i] + 0.0);
             }
             text.push('\n');
         }

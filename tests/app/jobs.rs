@@ -41,19 +41,34 @@ pub const TESTS: &[Test] = tests![
 
 /// Does nothing until it is told to.
 #[derive(Clone, Default)]
-struct Waiting(Arc<Mutex<Vec<Work>>>);
+struct Waiting {
+    works: Arc<Mutex<Vec<Work>>>,
+    /// Whether even what is short as a rule takes long.
+    is_slow: bool,
+}
 
 type Work = Box<dyn FnOnce() + Send>;
 
 impl Workers for Waiting {
     fn start(&self, work: Box<dyn FnOnce() + Send>) {
-        self.0.lock().expect("nobody panicked").push(work);
+        self.works.lock().expect("nobody panicked").push(work);
+    }
+
+    fn start_short(&self, work: Work) {
+        match self.is_slow {
+            true => self.start(work),
+            false => work(),
+        }
     }
 }
 
 impl Waiting {
+    fn slow() -> Self {
+        Self { is_slow: true, ..Self::default() }
+    }
+
     fn work(&self) -> usize {
-        let all = std::mem::take(&mut *self.0.lock().expect("nobody panicked"));
+        let all = std::mem::take(&mut *self.works.lock().expect("nobody panicked"));
         let count = all.len();
         all.into_iter().for_each(|work| work());
         count
@@ -278,7 +293,7 @@ fn work_all(h: &mut Window, workers: &Waiting) {
 
 /// A window that closes meanwhile would lose it.
 fn a_change_that_is_being_made_is_asked_for() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
     assert!(h.state().app_state().may_leave());
@@ -294,7 +309,7 @@ fn a_change_that_is_being_made_is_asked_for() {
 }
 
 fn a_change_that_takes_long_is_made_beside_the_window() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
     let time = |h: &Window| session(h).scenario().task.time;
@@ -329,7 +344,7 @@ fn a_change_that_takes_long_is_made_beside_the_window() {
 }
 
 fn of_a_drag_the_newest_edit_counts() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
     let to = session(&h).scenario().task.points()[1];
@@ -349,7 +364,7 @@ fn of_a_drag_the_newest_edit_counts() {
 }
 
 fn a_drag_that_is_given_up_takes_back_what_it_did() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
     tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
@@ -526,6 +541,6 @@ fn jobs_end_break_off_and_are_stopped() {
     assert_eq!(*heard.lock().expect("nobody panicked"), Some(false));
     // Work that is thrown away has no result.
     let job: Job<i32> = Job::start(&waiting, wake(), |_| 1);
-    waiting.0.lock().expect("nobody panicked").clear();
+    waiting.works.lock().expect("nobody panicked").clear();
     assert!(matches!(job.poll(), Poll::Broken));
 }

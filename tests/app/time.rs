@@ -203,7 +203,7 @@ fn a_branch_is_shown_compared_and_removed() {
     h.get_by_label_contains("Branch 1: drag target to 0.500, 0.620 m, parts at 0.500 s");
     press(&mut h, PLAIN, Key::Escape);
     press(&mut h, PLAIN, Key::G);
-    assert!(session(&h).frames() == here, "G shows the newest branch: the run before");
+    assert!(*session(&h).frames() == here, "G shows the newest branch: the run before");
     press(&mut h, SHIFT, Key::G);
     let comparison = h.state().app_state().comparison().expect("runs side by side");
     let kept: Vec<_> = comparison.entries().iter().filter(|entry| entry.kept).collect();
@@ -237,7 +237,7 @@ fn another_path_keeps_what_a_hand_did() {
     h.snapshot("kept-by-hand-dark");
     h.get_by_label("Show the branch").click();
     h.run_steps(4);
-    assert!(session(&h).is_led() && session(&h).frames() == led, "here it is again");
+    assert!(session(&h).is_led() && *session(&h).frames() == led, "here it is again");
     assert!(h.query_by_label("Show the branch").is_none());
 }
 

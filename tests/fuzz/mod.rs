@@ -489,7 +489,7 @@ fn sessions() {
         // What was done by hand is replayed to the same frames, unless the numbers blow up.
         let mut frames = Vec::new();
         match replay(&read, |_, frame| frames.push(*frame)) {
-            Ok(_) if session.frames().len() > 1 && frames[..] != *session.frames() => {
+            Ok(_) if session.frames().len() > 1 && *session.frames() != frames => {
                 Err("replayed to other frames".into())
             }
             Ok(_) => Ok(()),

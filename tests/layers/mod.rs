@@ -91,6 +91,7 @@ const EDGES: &[(&str, &[&str])] = &[
         "std::time",
         &[
             "picture/render/shader.rs",
+            "app/jobs.rs",
             "app/window/chooser/portal.rs",
             "app/window/guest.rs",
             "app/window/keeper.rs",

@@ -167,9 +167,8 @@ fn a_drawing_holds_what_the_plot_shows() {
     choice.change(Change::Show("Torque".into(), "torque/2".into(), false));
     choice.change(Change::Plot("transmission/12".into()));
     let plots = choice.plots(session.scenario(), &table, false);
-    let mut samples = Samples::default();
-    let wanted: Vec<&Signal> = plots.iter().flat_map(|plot| plot.curves.iter().map(|c| c.signal)).collect();
-    samples.follow(session.made(), session.frames(), &wanted);
+    let wanted: Vec<Signal> = plots.iter().flat_map(|plot| plot.curves.iter().map(|c| c.signal.clone())).collect();
+    let samples: Samples = stillbase::query::grown(&wanted, session.frames());
     let p = palette(Theme::Light);
     let look = Look { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
     for plot in [&plots[0], plots.last().expect("one's own")] {

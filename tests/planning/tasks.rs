@@ -161,7 +161,7 @@ fn planning_is_done_by_edits() {
     let frames = session.frames().to_vec();
     let refusal = session.apply(Edit::of("task", outside)).expect_err("outside of every plane of A");
     assert!(matches!(refusal, Refusal::NoCommonPlane { .. } | Refusal::Unreachable { .. }), "{refusal}");
-    assert_eq!((session.frames(), &session.scenario().task), (&frames[..], &task));
+    assert_eq!((session.frames().to_vec(), &session.scenario().task), (frames, &task));
     let nonsense = session.apply(Edit::set("task.shape", "square")).expect_err("no such shape").to_string();
     assert!(nonsense.contains("square") && nonsense.contains("spline"), "{nonsense}");
 
@@ -174,12 +174,12 @@ fn planning_is_done_by_edits() {
     let read = Scenario::parse(&saved.to_toml(), "saved.toml", None).expect("reads");
     assert_eq!(read, saved);
     let (_, replayed) = run(&read);
-    assert_eq!(replayed, session.frames());
+    assert_eq!(replayed, session.frames().to_vec());
 
     session.undo().expect("taken back");
     session.undo().expect("taken back");
     assert_eq!(session.scenario().task, scenario().task);
-    assert_eq!(&session.frames()[..300], &before[..300]);
+    assert_eq!(session.frames().to_vec()[..300], before[..300]);
 }
 
 /// Who plans again takes the machine back from the hand that led it.

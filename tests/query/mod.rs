@@ -3,7 +3,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use stillbase::query::{Asked, Portion, Queries, Query, Quick, Same, Shared, State, Watch, Whole, Workers, answered};
+use stillbase::query::{
+    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Workers,
+    answered,
+};
 
 /// How often something was made: each test has its own.
 type Counter = Same<AtomicUsize>;
@@ -220,4 +223,187 @@ fn shared_inputs_are_compared_by_what_they_hold_and_same_ones_are_not() {
     let [one, other] = [(); 2].map(|()| Arc::new(vec![1.0, 2.0]));
     assert!(Shared(one.clone()) == Shared(other.clone()) && Shared(one.clone()) != Shared(Arc::new(vec![1.0])));
     assert!(Same(one.clone()) == Same(one.clone()) && Same(one) != Same(other));
+}
+
+/// Sums of the first so many numbers, with an input that they are multiplied by; how many it was given in all.
+#[derive(Clone)]
+struct Sums {
+    input: (Counter, u64),
+    sums: Vec<u64>,
+}
+
+impl Growing for Sums {
+    type Item = u64;
+    type Input = (Counter, u64);
+
+    fn begin(input: &Self::Input) -> Self {
+        Self { input: input.clone(), sums: Vec::new() }
+    }
+
+    fn count(&self) -> usize {
+        self.sums.len()
+    }
+
+    fn take(&mut self, items: &[u64]) {
+        self.input.0.0.fetch_add(items.len(), Ordering::Relaxed);
+        for item in items {
+            self.sums.push(self.sums.last().unwrap_or(&0) + self.input.1 * item);
+        }
+    }
+
+    fn cut(&mut self, count: usize) {
+        // It may go back further than is asked.
+        self.sums.truncate(count / 3 * 3);
+    }
+}
+
+fn sums(grown: &Grown<Sums>) -> Vec<u64> {
+    grown.answer().expect("it was not let go").sums.clone()
+}
+
+#[test]
+fn a_growing_answer_takes_each_item_once() {
+    let (queries, made) = (Queries::default(), counter());
+    let input = (made.clone(), 1);
+    let mut items: Sequence<u64> = (1..=1000).collect();
+    let first = queries.grow::<Sums>(&input, &items, 300);
+    assert_eq!((sums(&first).len(), first.is_whole, count(&made)), (300, false, 300), "no more than so many");
+    let where_it_is = Arc::as_ptr(first.answer().expect("it was not let go"));
+    drop(first);
+    let mut portions = 1;
+    while !queries.grow::<Sums>(&input, &items, 300).is_whole {
+        portions += 1;
+    }
+    assert_eq!((portions, count(&made)), (3, 1000));
+    for i in 1001..=1100 {
+        items.push(i);
+        let grown = queries.grow::<Sums>(&input, &items, 1);
+        assert_eq!((grown.is_whole, sums(&grown)[i as usize - 1]), (true, i * (i + 1) / 2));
+        assert_eq!(Arc::as_ptr(grown.answer().expect("it was not let go")), where_it_is, "nothing is copied");
+    }
+    assert_eq!(count(&made), 1100);
+    let [one, same] = [(); 2].map(|()| queries.grow::<Sums>(&input, &items, 10));
+    assert!(one == same, "nothing has changed");
+    items.replace_last(0);
+    let other = queries.grow::<Sums>(&input, &items, 10);
+    assert!(one != other && sums(&one)[1099] == 1100 * 1101 / 2 && sums(&other)[1099] == 1099 * 1100 / 2);
+    assert!(count(&made) <= 1103, "only the last is taken again");
+    // Of another input all is.
+    let twice = queries.grow::<Sums>(&(made.clone(), 2), &items, usize::MAX);
+    assert_eq!((sums(&twice)[1098], count(&made) > 2100), (1099 * 1100, true));
+}
+
+/// Copies of a sequence go on in ways of their own, each with an answer of its own.
+#[test]
+fn copies_of_a_sequence_part() {
+    let (queries, made) = (Queries::default(), counter());
+    let input = (made.clone(), 1);
+    for length in [255, 256, 257, 512, 700] {
+        let mut one: Sequence<u64> = (0..length).collect();
+        let _ = queries.grow::<Sums>(&input, &one, usize::MAX);
+        let mut other = one.clone();
+        let before = count(&made);
+        for i in 0..5 {
+            one.push(i);
+            other.push(10 * i);
+            assert!(one != other || i == 0);
+            for sequence in [&one, &other] {
+                let (grown, fresh) = (queries.grow::<Sums>(&input, sequence, usize::MAX), sequence.to_vec());
+                let want: Vec<u64> = grown_sums(&fresh);
+                assert_eq!(sums(&grown), want);
+            }
+        }
+        assert!(count(&made) - before < 2 * length as usize, "what both begin with is taken twice at most");
+        assert_eq!(one.len(), length as usize + 5);
+    }
+    let all: Sequence<u64> = (0..2000).collect();
+    for i in [0, 1, 255, 256, 257, 1999, 2000] {
+        assert_eq!(all.partition_point(|x| *x < i), i as usize);
+        assert_eq!(all.get(i as usize).copied(), Some(i).filter(|i| *i < 2000));
+    }
+    assert!(all.iter().rev().copied().eq((0..2000).rev()) && all == (0..2000).collect::<Vec<_>>());
+    assert!((&all).into_iter().count() == 2000 && all.from(2000).is_empty() && all[300] == 300);
+    assert!(queries.count() <= 2, "of sequences that are gone nothing is kept: {}", queries.count());
+}
+
+fn grown_sums(items: &[u64]) -> Vec<u64> {
+    let add = |sum: &mut u64, x: &u64| {
+        *sum += x;
+        Some(*sum)
+    };
+    items.iter().scan(0, add).collect()
+}
+
+/// The largest sum, which depends on a growing answer.
+struct Largest;
+
+impl Quick for Largest {
+    type Input = (Counter, Grown<Sums>);
+    type Answer = u64;
+
+    fn answer((counter, grown): &Self::Input) -> u64 {
+        counter.0.fetch_add(1, Ordering::Relaxed);
+        grown.answer().and_then(|sums| sums.sums.last().copied()).unwrap_or(0)
+    }
+
+    fn let_go((_, grown): &mut Self::Input) {
+        grown.let_go();
+    }
+}
+
+#[test]
+fn answers_build_on_growing_ones_without_keeping_them() {
+    let (queries, made) = (Queries::default(), counter());
+    let input = (counter(), 1);
+    let mut items: Sequence<u64> = (1..=10).collect();
+    let largest = |items: &Sequence<u64>| {
+        let grown = queries.grow::<Sums>(&input, items, usize::MAX);
+        let place = Arc::as_ptr(grown.answer().expect("it was not let go"));
+        (*queries.ask::<Whole<Largest>>(&(made.clone(), grown)), place)
+    };
+    let (first, place) = largest(&items);
+    assert_eq!((first, largest(&items).0, count(&made)), (55, 55, 1));
+    items.push(11);
+    assert_eq!((largest(&items), count(&made)), ((66, place), 2));
+    items.replace_last(1);
+    assert_eq!((largest(&items), count(&made)), ((56, place), 3));
+}
+
+/// A sequence at random, changed at random: the answer is always that of its items.
+#[test]
+fn whatever_becomes_of_a_sequence_its_answer_is_that_made_afresh() {
+    use proptest::prelude::*;
+    use proptest::test_runner::{Config, TestRunner};
+    let mut runner = TestRunner::new(Config { cases: 200, failure_persistence: None, ..Config::default() });
+    let steps = prop::collection::vec((0..6_u8, 0..400_usize, 1..4_u64), 1..30);
+    let result = runner.run(&steps, |steps| {
+        let (queries, made) = (Queries::default(), counter());
+        let mut all: Vec<Sequence<u64>> = vec![Sequence::default()];
+        for (what, n, times) in steps {
+            let at = n % all.len();
+            match what {
+                0 | 1 => (0..n as u64).for_each(|i| all[at].push(i)),
+                2 => all[at].replace_last(n as u64),
+                3 => all.push(all[at].clone()),
+                4 if all.len() > 1 => drop(all.swap_remove(at)),
+                4 => all[at] = Sequence::default(),
+                _ => {}
+            }
+            let at = n % all.len();
+            let input = (made.clone(), times);
+            let mut grown = queries.grow::<Sums>(&input, &all[at], 100);
+            while !grown.is_whole {
+                grown = queries.grow::<Sums>(&input, &all[at], 100);
+            }
+            let want: Vec<u64> = all[at].iter().map(|x| times * x).collect();
+            prop_assert_eq!(sums(&grown), grown_sums(&want));
+            prop_assert_eq!(sums(&grown), stillbase::query::grown::<Sums>(&input, &all[at]).sums);
+        }
+        for sequence in &all {
+            let _ = queries.grow::<Sums>(&(made.clone(), 1), sequence, 100);
+        }
+        prop_assert!(queries.count() <= all.len(), "{} of {}", queries.count(), all.len());
+        Ok(())
+    });
+    result.unwrap_or_else(|why| panic!("{why}"));
 }

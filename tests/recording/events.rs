@@ -150,8 +150,9 @@ fn edits_on_the_way_are_recorded() {
 /// A recording tells what the time line of the window has marks for, in the same words.
 #[test]
 fn the_window_and_a_recording_tell_the_same() {
+    use stillbase::query::{Queries, grown};
     use stillbase::session::Session;
-    use stillbase::session::events::{Watched, bookmarked, gestures};
+    use stillbase::session::events::{Gestures, Watched, bookmarked, gestures};
     use stillbase::session::scenario::Bookmark;
 
     let folder = Folder::new("same");
@@ -165,9 +166,11 @@ fn the_window_and_a_recording_tell_the_same() {
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
     let told = Contents::of(&folder.path("one.rrd")).texts("/case-1/events", "TextLog:text");
     let session = Session::open(scenario).expect("it opens");
-    let mut watched = Watched::default();
-    assert!(watched.follow(session.made(), session.frames(), session.scenario(), usize::MAX));
-    let mut all = gestures(session.script(), 0.001);
+    let of = (session.scenario().step, session.machines().clone());
+    let watched: Watched = grown(&of, session.frames());
+    let mut all = gestures(&session.script().to_vec(), 0.001);
+    let grown: Gestures = grown(&0.001, session.script());
+    assert!(grown.told().eq(all.iter().cloned()));
     all.extend_from_slice(watched.events());
     all.extend(bookmarked(session.bookmarks(), 0.001));
     all.push(watched.peak());
@@ -186,9 +189,11 @@ fn the_window_and_a_recording_tell_the_same() {
         assert!(words.iter().any(|told| told.starts_with(part)), "{part} in {words:?}");
     }
     // Read in portions, and once more after a frame has changed, they are the same.
-    let mut portions = Watched::default();
-    while !portions.follow(session.made(), session.frames(), session.scenario(), 7) {}
-    let changed = session.made().changed_after(session.frames().len() - 1);
-    assert!(portions.follow(&changed, session.frames(), session.scenario(), 1), "only the last is read again");
+    let (queries, mut frames) = (Queries::default(), session.frames().clone());
+    while !queries.grow::<Watched>(&of, &frames, 7).is_whole {}
+    frames.replace_last(frames[frames.len() - 1]);
+    let portions = queries.grow::<Watched>(&of, &frames, 1);
+    assert!(portions.is_whole, "only the last is read again");
+    let portions = portions.answer().expect("just asked");
     assert_eq!((portions.events(), portions.peak()), (watched.events(), watched.peak()));
 }

@@ -1,15 +1,20 @@
 //! What happens in a run, in words.
 
+use stillbase::query::{Queries, grown};
 use stillbase::session::events::{Event, Kind, Watched, gestures};
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Edit, Session, TimedEdit};
+use stillbase::session::{Edit, Run, Session, TimedEdit, replay};
+use stillbase::simulation::frame::Frame;
 
 use super::{coarse, do_it, drag, open, settle, slide};
 
+/// What its frames tell, read afresh.
+fn afresh(session: &Session) -> Watched {
+    grown(&(session.scenario().step, session.machines().clone()), session.frames())
+}
+
 fn watched(session: &Session) -> Vec<Event> {
-    let mut watched = Watched::default();
-    assert!(watched.follow(session.made(), session.frames(), session.scenario(), usize::MAX));
-    watched.events().to_vec()
+    afresh(session).events().to_vec()
 }
 
 fn told(events: &[Event]) -> Vec<&str> {
@@ -77,7 +82,7 @@ fn payload_limits_and_reach_are_told() {
 #[test]
 fn events_follow_a_run_that_changes() {
     let mut session = open(coarse());
-    let mut kept = Watched::default();
+    let queries = Queries::default();
     session.play();
     for i in 0..60u32 {
         match i {
@@ -89,11 +94,39 @@ fn events_follow_a_run_that_changes() {
             _ => {}
         }
         session.tick(3);
-        while !kept.follow(session.made(), session.frames(), session.scenario(), 5) {}
-        let mut fresh = Watched::default();
-        assert!(fresh.follow(session.made(), session.frames(), session.scenario(), usize::MAX));
+        while !session.events(&queries, 5).is_whole {}
+        let (grown, fresh) = (session.events(&queries, 0), afresh(&session));
+        let kept = grown.answer().expect("just asked");
         assert_eq!((kept.events(), kept.peak()), (fresh.events(), fresh.peak()), "after {i}");
     }
+}
+
+/// A torque limit that is set in motion counts from then on, not for what was before; a recording says the same.
+#[test]
+fn limits_are_those_of_the_time() {
+    let mut session = open(coarse());
+    let queries = Queries::default();
+    session.play();
+    session.tick(40);
+    let most = session.frames().iter().map(|frame| frame.torque[0].abs()).fold(0.0, f64::max);
+    assert!(most > 0.0);
+    let limits = |session: &Session| {
+        let grown = session.events(&queries, usize::MAX);
+        let events = grown.answer().expect("just asked").events().to_vec();
+        assert_eq!(events, watched(session));
+        events.into_iter().filter(|event| event.words.contains("torque limit")).collect::<Vec<_>>()
+    };
+    assert_eq!(limits(&session), []);
+    let set = session.frame().step;
+    do_it(&mut session, Edit::set("drive.1.torque_limit", 0.05 * most));
+    session.end_gesture();
+    session.tick(40);
+    let found = limits(&session);
+    assert!(!found.is_empty() && found.iter().all(|event| event.step >= set), "{found:?}");
+    let mut seen = grown::<Watched>(&Default::default(), &Default::default());
+    let see = |run: &Run, frame: &Frame| seen.see(frame, (run.scenario().step, &run.scenario().machine));
+    replay(&session.to_scenario(), see).expect("it runs again");
+    assert_eq!(seen.events(), watched(&session));
 }
 
 #[test]

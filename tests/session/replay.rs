@@ -134,7 +134,7 @@ fn edits_of_a_file_are_put_in_order() {
     });
     same("scrambled", &one, &two);
     let mut session = open(scrambled);
-    assert_eq!(session.script(), sorted.edits);
+    assert_eq!(*session.script(), sorted.edits);
     same("opened", session.frames(), &one);
     assert_eq!(session.frame().step, 0, "shown from its start");
     session.play();
@@ -222,7 +222,7 @@ fn tolerances_change_no_frame() {
     let spread = toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())]));
     let change = toml::Table::from_iter([("link.*.com".into(), spread), ("moment_limit".into(), 0.02.into())]);
     do_it(&mut session, Edit::of("tolerance", change.clone()));
-    assert_eq!(session.frames(), &before[..]);
+    assert_eq!(session.frames().to_vec(), before);
     let tolerance = &session.scenario().tolerance;
     assert_eq!((tolerance.moment_limit, tolerance.spreads.len()), (Some(0.02), 1));
     let saved = Scenario::parse(&session.to_scenario().to_toml(), "saved", None).expect("valid");

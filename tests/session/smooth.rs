@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use stillbase::planning::pose_space::PoseSpace;
+use stillbase::query::grown;
 use stillbase::session::Edit;
 use stillbase::session::events::{Kind, Watched};
 use stillbase::session::scenario::Scenario;
@@ -161,12 +162,12 @@ fn limits_that_cannot_be_foreseen_are_told() {
     let machine = case.machine.set_all(pairs).expect("an arm that little balances");
     let mut session = open(Scenario { machine, ..case });
     let limits: Vec<f64> = session.scenario().machine.spec().drives.iter().filter_map(|d| d.torque_limit).collect();
-    let (mut most, mut watched) = (0.0_f64, Watched::default());
+    let (mut most, mut watched) = (0.0_f64, grown::<Watched>(&Default::default(), &Default::default()));
     for [x, y] in [[-0.4, 0.6], [0.7, 0.5], [-0.6, 0.3], [0.2, 0.9], [0.9, 0.2]] {
         session.apply(drag(x, y)).expect("it can be led");
         for _ in 0..700 {
             session.step_by(1);
-            watched.note(session.frame(), session.scenario());
+            watched.see(session.frame(), (session.scenario().step, &session.scenario().machine));
             let loads = session.frame().torque.iter().zip(&limits).map(|(torque, limit)| torque.abs() / limit);
             most = loads.fold(most, f64::max);
         }

@@ -1,8 +1,9 @@
 //! Lines as they are drawn, held against all samples; and samples that follow a session.
 
 use proptest::prelude::*;
+use stillbase::query::{Mark, Queries, grown};
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Edit, Made, Session};
+use stillbase::session::{Edit, Session};
 use stillbase::simulation::signals::{Signal, signals};
 use stillbase::study::samples::Samples;
 use stillbase::study::series::Series;
@@ -83,8 +84,8 @@ proptest! {
     }
 }
 
-fn wanted(table: &[Signal]) -> Vec<&Signal> {
-    table.iter().filter(|s| ["torque", "moment", "pose"].contains(&s.group())).collect()
+fn wanted(table: &[Signal]) -> Vec<Signal> {
+    table.iter().filter(|s| ["torque", "moment", "pose"].contains(&s.group())).cloned().collect()
 }
 
 /// Whatever is done to a session, its samples are those of its frames: added to while it runs, made anew when it is.
@@ -92,19 +93,21 @@ fn wanted(table: &[Signal]) -> Vec<&Signal> {
 fn samples_follow_a_session() {
     let mut session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it starts");
     let table = signals(&session.scenario().machine);
-    let (mut samples, mut bit_by_bit) = (Samples::default(), Samples::default());
-    let mut known: Option<Made> = None;
+    let (at_once, in_portions) = (Queries::default(), Queries::default());
+    let mut known: Option<Mark> = None;
     let (mut again, mut checks) = (0, 0);
     let mut check = |session: &Session, what: &str| {
         // Asked for less in between: what comes back later is whole.
         let all = wanted(&table);
-        let asked = if checks % 3 == 1 { &all[..2] } else { &all[..] };
-        samples.follow(session.made(), session.frames(), asked);
-        let portions = (0..100).find(|_| bit_by_bit.follow_some(session.made(), session.frames(), asked, 37));
+        let asked = &if checks % 3 == 1 { all[..2].to_vec() } else { all };
+        let samples = at_once.grow::<Samples>(asked, session.frames(), usize::MAX);
+        let portions = (0..100).find(|_| in_portions.grow::<Samples>(asked, session.frames(), 37).is_whole);
+        let bit_by_bit = in_portions.grow::<Samples>(asked, session.frames(), 0);
+        let [samples, bit_by_bit] = [&samples, &bit_by_bit].map(|grown| grown.answer().expect("just asked"));
         assert!(portions.is_some() && bit_by_bit.times() == samples.times(), "{what}");
         checks += 1;
-        again +=
-            usize::from(known.replace(session.made().clone()).is_none_or(|made| session.made().kept_of(&made) == 0));
+        let revision = session.frames().revision();
+        again += usize::from(known.replace(revision.mark()).is_none_or(|known| revision.kept_of(&known) == 0));
         assert_eq!(samples.times().len(), session.frames().len(), "{what}");
         for signal in asked {
             let got = samples.series(&signal.path).expect("asked for").values();
@@ -157,13 +160,12 @@ fn csv_of_a_range_is_every_sample_of_it() {
     let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
     session.seek(0.5);
     let table = signals(&session.scenario().machine);
-    let shown: Vec<&Signal> = table.iter().filter(|s| s.group() == "torque" || s.path == "force/dynamic").collect();
-    let mut samples = Samples::default();
-    samples.follow(session.made(), session.frames(), &shown);
-    let text = samples.csv(&shown, [0.2, 0.3]);
+    let shown = table.iter().filter(|s| s.group() == "torque" || s.path == "force/dynamic");
+    let shown: Vec<Signal> = shown.cloned().collect();
+    let text = grown::<Samples>(&shown, session.frames()).csv([0.2, 0.3]);
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("time s,torque/1 N m,torque/2 N m,torque/3 N m,force/dynamic N"));
-    let frames = &session.frames()[200..=300];
+    let frames = session.frames().iter().skip(200).take(101);
     for frame in frames {
         let row: Vec<f64> = lines.next().expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
         let want: Vec<f64> = std::iter::once(frame.time).chain(shown.iter().map(|s| s.value(frame))).collect();

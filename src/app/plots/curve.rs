@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
 
-use super::prepared::{Prepared, extent};
+use super::prepared::extent;
 use super::shown::Shown;
 use super::{hover, menu, values};
 use crate::app::Command;
@@ -35,7 +35,7 @@ enum Hold {
 pub fn show(
     ui: &mut Ui,
     shown: &Shown<'_>,
-    (plot, drawn, prepared): (&Plot<'_>, &Drawn, &Prepared),
+    (plot, drawn): (&Plot<'_>, &Drawn),
     look: &Look<'_>,
     height: f32,
     commands: &mut Vec<Command>,
@@ -74,7 +74,7 @@ pub fn show(
             commands.push(Command::Charts(Change::Values(plot.name.clone(), None)));
         }
     }
-    menu::show(ui, shown, (plot, prepared), &response, commands);
+    menu::show(ui, shown, plot, &response, commands);
     let over = response.hover_pos().filter(|_| plot.against.is_none() && !response.context_menu_opened());
     let over = over.filter(|pos| !values::are_at(&response, *pos));
     if let (Some(_), Some(frame)) = (over, look.hover)

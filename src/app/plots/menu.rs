@@ -3,26 +3,23 @@
 use egui::accesskit::Role;
 use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use super::prepared::{Prepared, extent};
+use super::prepared::extent;
 use super::search;
 use super::shown::Shown;
+use super::written::columns;
 use crate::app::theme::{bold, colour};
 use crate::app::{Command, FileDialog, PlotFile, Purpose};
 use crate::picture::charts::choice::{Change, Plot};
+use crate::query::grown;
+use crate::study::samples::Samples;
 
 /// Draws the button, and the menu where it is open.
-pub fn show(
-    ui: &mut Ui,
-    shown: &Shown<'_>,
-    what: (&Plot<'_>, &Prepared),
-    response: &Response,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, response: &Response, commands: &mut Vec<Command>) {
     let corner = pos2(response.rect.right() - 24.0, response.rect.top());
     let rect = Rect::from_min_size(corner, vec2(22.0, 16.0));
     let button = ui.interact(rect, response.id.with("menu"), Sense::click());
     let p = shown.view_state.palette();
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{}: menu", what.0.title)));
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{}: menu", plot.title)));
     // Out of sight until it is looked for; the keyboard finds it all the same.
     let open = Popup::is_id_open(ui.ctx(), Popup::default_response_id(&button));
     if response.contains_pointer() || button.contains_pointer() || button.has_focus() || open {
@@ -30,18 +27,18 @@ pub fn show(
         ui.painter().rect_filled(rect, 4.0, colour(if lit { p.line } else { p.panel }));
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, "⋯", bold(13.0), colour(p.ink));
     }
-    response.context_menu(|ui| entries(ui, shown, what, commands));
-    Popup::menu(&button).show(|ui| entries(ui, shown, what, commands));
+    response.context_menu(|ui| entries(ui, shown, plot, commands));
+    Popup::menu(&button).show(|ui| entries(ui, shown, plot, commands));
 }
 
-fn entries(ui: &mut Ui, shown: &Shown<'_>, (plot, prepared): (&Plot<'_>, &Prepared), commands: &mut Vec<Command>) {
+fn entries(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, commands: &mut Vec<Command>) {
     let chosen = &shown.view_state.charts;
     let extent = extent(shown.session);
     let range = extent.shown(chosen.range);
     ui.set_min_width(210.0);
     if ui.button("Copy the values shown").clicked() {
-        let signals: Vec<_> = plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal)).collect();
-        ui.ctx().copy_text(prepared.samples().csv(&signals, range));
+        let samples: Samples = grown(&columns(plot), shown.session.frames());
+        ui.ctx().copy_text(samples.csv(range));
         ui.close();
     }
     for file in PlotFile::ALL {

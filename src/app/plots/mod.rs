@@ -19,7 +19,8 @@ use self::header::{ROW, TITLE};
 use super::{Command, Layout};
 use crate::picture::charts::figure::{BELOW, LEFT, Look};
 
-pub use prepared::{Prepared, extent};
+pub use prepared::extent;
+pub use search::focus;
 pub use search::is_looking;
 pub use shown::Shown;
 pub use small::{base_plot, marks, small_axes, spaced};
@@ -44,7 +45,7 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
 }
 
 /// Draws this panel; how wide it was made.
-pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
+pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Option<f32> {
     let Shown { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
@@ -57,12 +58,10 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
     let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
-        if prepared.is_to_look() {
-            search::focus(ui.ctx());
-        }
         search::show(ui, what, &plots, BAR as i8, commands);
         let columns = ((ui.available_width() - BAR - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
-        if !prepared.follow(session, what.comparison, &plots, &view_state.charts, columns) {
+        let (lines, is_whole) = prepared::drawn(what, &plots, columns);
+        if !is_whole {
             ui.ctx().request_repaint();
         }
         let statistics = if view_state.charts.statistics { ROW } else { 0.0 };
@@ -75,12 +74,12 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
             ui.set_width(ui.available_width() - BAR);
             ui.spacing_mut().item_spacing.y = 3.0;
             let mut over = None;
-            for (plot, drawn) in plots.iter().zip(prepared.drawn()) {
+            for (plot, drawn) in plots.iter().zip(&*lines) {
                 let marked = view_state.mark.map(|time| shown::instant(session, time));
                 let newest = session.frames().last().unwrap_or(session.frame());
                 let look = Look { palette: &p, peaks: &newest.peaks, now: session.frame(), mark: marked, hover: seen };
                 header::show(ui, plot, drawn, &look, commands);
-                let found = curve::show(ui, what, (plot, drawn, prepared), &look, height + BELOW, commands);
+                let found = curve::show(ui, what, (plot, drawn), &look, height + BELOW, commands);
                 over = found.or(over);
                 if view_state.charts.statistics {
                     header::statistics(ui, plot, drawn, &look);

@@ -1,50 +1,57 @@
-//! What plots show, made when it changes and kept until then.
+//! What plots show: samples that grow with the runs on display, and what is drawn of them.
 
 use std::sync::Arc;
 
+use super::shown::Shown;
 use crate::picture::charts::choice::{Choice, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::range::Extent;
-use crate::session::{Made, Session};
+use crate::query::{Grown, Quick, Same, Sequence, Shared, Whole};
+use crate::session::Session;
+use crate::session::scenario::Scenario;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
-use crate::study::comparison::{Compared, Comparison};
+use crate::study::comparison::Comparison;
 use crate::study::samples::Samples;
 
-/// The samples of the runs on display, and what is drawn of them.
-#[derive(Default)]
-pub struct Prepared {
-    samples: Samples,
-    others: Vec<Other>,
-    key: Option<Key>,
-    drawn: Vec<Drawn>,
-    /// A signal is to be sought.
-    looks: bool,
-}
+/// Frames taken up in one repaint: of ten signals they take a few milliseconds.
+const AT_ONCE: usize = 4_000;
 
-/// A run that is laid over.
-struct Other {
-    place: usize,
-    run: Arc<Compared>,
-    made: Made,
-    samples: Samples,
-}
+/// What is drawn of each plot.
+pub struct Drawing;
 
 /// All that the drawn lines depend on.
-#[derive(PartialEq)]
-struct Key {
-    made: Made,
-    count: usize,
-    last: Option<Frame>,
-    names: Vec<String>,
+#[derive(Clone, PartialEq)]
+pub struct Input {
+    scenario: Shared<Scenario>,
+    signals: Same<Vec<Signal>>,
     choice: Choice,
-    others: Vec<(usize, Made, usize)>,
+    pins: bool,
+    samples: Grown<Samples>,
+    /// Runs that are laid over, with their places.
+    others: Vec<(usize, Grown<Samples>)>,
     shown: [f64; 2],
     columns: usize,
 }
 
-/// Frames taken up in one repaint: of ten signals they take a few milliseconds.
-const AT_ONCE: usize = 4_000;
+impl Quick for Drawing {
+    type Input = Input;
+    type Answer = Vec<Drawn>;
+
+    fn answer(input: &Input) -> Vec<Drawn> {
+        let Input { scenario, signals, choice, pins, shown, columns, .. } = input;
+        let Some(samples) = input.samples.answer() else { return Vec::new() };
+        let others: Vec<(usize, &Samples)> =
+            input.others.iter().filter_map(|(place, other)| Some((*place, &**other.answer()?))).collect();
+        let plots = choice.plots(&scenario.0, &signals.0, *pins);
+        plots.iter().map(|plot| Drawn::of(plot, samples, &others, *shown, *columns, choice.statistics)).collect()
+    }
+
+    fn let_go(input: &mut Input) {
+        input.samples.let_go();
+        input.others.iter_mut().for_each(|(_, other)| other.let_go());
+    }
+}
 
 /// How much time there is to show of a session.
 pub fn extent(session: &Session) -> Extent {
@@ -55,80 +62,40 @@ pub fn extent(session: &Session) -> Extent {
     }
 }
 
-impl Prepared {
-    /// Makes what has changed; whether that was all of it.
-    pub fn follow(
-        &mut self,
-        session: &Session,
-        comparison: Option<&Comparison>,
-        plots: &[Plot<'_>],
-        choice: &Choice,
-        columns: usize,
-    ) -> bool {
-        let shown = extent(session).shown(choice.range);
-        let mut wanted: Vec<&Signal> = Vec::new();
-        for plot in plots {
-            for signal in plot.curves.iter().map(|curve| curve.signal).chain(plot.against) {
-                if !wanted.iter().any(|known| known.path == signal.path) {
-                    wanted.push(signal);
-                }
-            }
+/// What is drawn in so many columns of pixels, with its plots; whether all frames are in it.
+pub fn drawn(what: &Shown<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<Drawn>>, bool) {
+    let Shown { session, queries, view_state, .. } = *what;
+    let wanted = wanted(plots);
+    let others = laid_over(what.comparison);
+    let others: Vec<(usize, Grown<Samples>)> =
+        others.map(|(place, frames)| (place, queries.grow(&wanted, frames, AT_ONCE))).collect();
+    let samples: Grown<Samples> = queries.grow(&wanted, session.frames(), AT_ONCE);
+    let is_whole = samples.is_whole && others.iter().all(|(_, other)| other.is_whole);
+    let input = Input {
+        scenario: session.run().shared_scenario(),
+        signals: Same(what.signals.clone()),
+        choice: view_state.charts.clone(),
+        pins: view_state.pins,
+        samples,
+        others,
+        shown: extent(session).shown(view_state.charts.range),
+        columns,
+    };
+    (queries.ask::<Whole<Drawing>>(&input), is_whole)
+}
+
+/// The signals of plots, each once.
+fn wanted(plots: &[Plot<'_>]) -> Vec<Signal> {
+    let mut wanted: Vec<Signal> = Vec::new();
+    for signal in plots.iter().flat_map(|plot| plot.curves.iter().map(|curve| curve.signal).chain(plot.against)) {
+        if !wanted.contains(signal) {
+            wanted.push(signal.clone());
         }
-        let own = self.samples.follow_some(session.made(), session.frames(), &wanted, AT_ONCE);
-        let all = self.lay_over(comparison, &wanted) && own;
-        let key = Key {
-            made: session.made().clone(),
-            count: self.samples.times().len(),
-            last: self.samples.times().len().checked_sub(1).and_then(|i| session.frames().get(i).copied()),
-            names: plots.iter().map(|plot| plot.name.clone()).collect(),
-            choice: choice.clone(),
-            others: self.others.iter().map(|o| (o.place, o.made.clone(), o.samples.times().len())).collect(),
-            shown,
-            columns,
-        };
-        if self.key.as_ref() == Some(&key) {
-            return all;
-        }
-        let others: Vec<(usize, &Samples)> = self.others.iter().map(|other| (other.place, &other.samples)).collect();
-        let of = |plot: &Plot<'_>| Drawn::of(plot, &self.samples, &others, shown, columns, choice.statistics);
-        self.drawn = plots.iter().map(of).collect();
-        self.key = Some(key);
-        all
     }
+    wanted
+}
 
-    fn lay_over(&mut self, comparison: Option<&Comparison>, wanted: &[&Signal]) -> bool {
-        let mut all = true;
-        let mut known = std::mem::take(&mut self.others);
-        let entries = comparison.map_or(&[][..], Comparison::entries).iter().enumerate();
-        for (place, run) in entries.filter(|(_, e)| e.shown).filter_map(|(i, e)| Some((i, e.outcome.as_ref().ok()?))) {
-            let mut other = match known.iter().position(|other| Arc::ptr_eq(&other.run, run)) {
-                Some(i) => known.swap_remove(i),
-                None => Other { place, run: run.clone(), made: Made::new(), samples: Samples::default() },
-            };
-            other.place = place;
-            all &= other.samples.follow_some(&other.made, &other.run.frames, wanted, AT_ONCE);
-            self.others.push(other);
-        }
-        all
-    }
-
-    /// Has a signal sought in the next pass.
-    pub fn look_for(&mut self) {
-        self.looks = true;
-    }
-
-    /// Whether one is to be sought now.
-    pub fn is_to_look(&mut self) -> bool {
-        std::mem::take(&mut self.looks)
-    }
-
-    /// What is drawn of each plot.
-    pub fn drawn(&self) -> &[Drawn] {
-        &self.drawn
-    }
-
-    /// The session's own samples.
-    pub fn samples(&self) -> &Samples {
-        &self.samples
-    }
+/// The frames of runs that are laid over, with their places.
+fn laid_over(comparison: Option<&Comparison>) -> impl Iterator<Item = (usize, &Sequence<Frame>)> {
+    comparison.into_iter().flat_map(Comparison::shown).map(|(place, run)| (place, &run.frames))
 }

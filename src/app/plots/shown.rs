@@ -1,5 +1,7 @@
 //! What the plots are of.
 
+use std::sync::Arc;
+
 use crate::app::ViewState;
 use crate::query::Queries;
 use crate::session::Session;
@@ -12,7 +14,7 @@ pub struct Shown<'a> {
     pub session: &'a Session,
     /// What is derived of it.
     pub queries: &'a Queries,
-    pub signals: &'a [Signal],
+    pub signals: &'a Arc<Vec<Signal>>,
     pub comparison: Option<&'a Comparison>,
     pub view_state: &'a ViewState,
 }

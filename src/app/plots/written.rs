@@ -1,12 +1,14 @@
 //! A plot as a file.
 
-use super::prepared::{Prepared, extent};
+use super::prepared::{Drawing, extent};
 use super::shown::Shown;
 use crate::app::PlotFile;
 use crate::picture::canvas::Canvas;
+use crate::picture::charts::choice::Plot;
 use crate::picture::charts::figure::{Figure, Look};
 use crate::picture::charts::svg::svg;
 use crate::picture::paint::figure::whole;
+use crate::query::{Whole, grown};
 use crate::simulation::signals::Signal;
 use crate::study::samples::Samples;
 
@@ -20,10 +22,11 @@ type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 ///
 /// # Errors
 /// If there is no such plot any more.
-pub fn written(what: &Shown<'_>, prepared: &Prepared, name: &str, file: PlotFile) -> Result<Content, String> {
+pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, String> {
     let Shown { session, signals, view_state, .. } = *what;
     let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
-    let found = plots.iter().zip(prepared.drawn()).find(|(plot, _)| plot.name == name);
+    let lines = what.queries.last::<Whole<Drawing>>().unwrap_or_default();
+    let found = plots.iter().zip(&*lines).find(|(plot, _)| plot.name == name);
     let Some((plot, drawn)) = found else {
         return Err(format!("there is no plot {name} any more: choose one that is shown"));
     };
@@ -35,13 +38,17 @@ pub fn written(what: &Shown<'_>, prepared: &Prepared, name: &str, file: PlotFile
     Ok(match file {
         PlotFile::Csv => {
             let range = extent(session).shown(view_state.charts.range);
-            let shown = plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal));
-            let (signals, samples): (Vec<Signal>, Samples) = (shown.cloned().collect(), prepared.samples().clone());
-            Box::new(move || Ok(samples.csv(&signals.iter().collect::<Vec<_>>(), range).into_bytes()))
+            let (signals, frames) = (columns(plot), session.frames().clone());
+            Box::new(move || Ok(grown::<Samples>(&signals, &frames).csv(range).into_bytes()))
         }
         PlotFile::Svg => Box::new(move || Ok(svg(&figure).into_bytes())),
         PlotFile::Png => Box::new(move || png(&figure)),
     })
+}
+
+/// The signals whose values a plot shows.
+pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
+    plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal)).cloned().collect()
 }
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {

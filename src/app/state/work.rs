@@ -111,17 +111,11 @@ impl AppState {
         true
     }
 
-    /// Changes the session: at once if that is quick, else beside the window, and what was shown stays until then.
+    /// Changes a copy of the session, which shares its frames, and shows that once it is made: most are by the next
+    /// repaint, and what was shown stays until then.
     pub(super) fn change(&mut self, change: Change) {
-        let before = (self.session.partings().0, self.session.frame().time, self.session.is_led());
-        if change.is_quick(&self.session) {
-            let done = change.make(&mut self.session, &mut |_| true);
-            self.parts(&change, before);
-            self.changed(&change, done);
-            return;
-        }
         let mut next = self.session.clone();
-        let job = self.background.start({
+        let job = self.background.start_short({
             let change = change.clone();
             move |ticket| {
                 let done = change.make(&mut next, &mut |done| ticket.goes_on(done));
@@ -139,7 +133,7 @@ impl AppState {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
                     self.parts(&change, (old.partings().0, old.frame().time, old.is_led()));
-                    self.background.let_go(old);
+                    self.background.let_go(old, &self.session);
                 }
                 self.changed(&change, done);
             }
@@ -252,7 +246,7 @@ impl AppState {
         let old = self.session.clone();
         self.session.take_over(next);
         self.view_state.framing.iter_mut().for_each(Framing::renew);
-        self.background.let_go(old);
+        self.background.let_go(old, &self.session);
         self.foresee();
         if plays {
             self.session.play();
@@ -340,10 +334,10 @@ impl AppState {
         if self.background.saving.is_some() {
             return Err("one file is being saved: want that to end first".into());
         }
-        let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
+        let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
         let queries = self.queries();
         let what = plots::Shown { session, queries, signals, comparison: self.comparison.as_ref(), view_state };
-        let (content, path) = (plots::written(&what, &self.prepared, plot, file)?, path.to_owned());
+        let (content, path) = (plots::written(&what, plot, file)?, path.to_owned());
         let job = self.background.start(move |_| {
             crate::files::write_new(&path, &content()?, replaces).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))

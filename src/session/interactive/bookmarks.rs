@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Change, Session};
+use crate::query::Shared;
 use crate::session::document::Kept;
 use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
 use crate::settings::range::shortened;
@@ -11,6 +12,11 @@ impl Session {
     /// Instants to find again, by time.
     pub fn bookmarks(&self) -> &[Bookmark] {
         &self.document.bookmarks
+    }
+
+    /// The same, to be kept.
+    pub fn shared_bookmarks(&self) -> Shared<Vec<Bookmark>> {
+        Shared(self.document.bookmarks.clone())
     }
 
     /// The bookmark at an instant, s.

@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use super::{Change, Session};
+use crate::query::{Same, Whole};
 use crate::session::Refusal;
 use crate::session::changes::in_order;
 use crate::session::document::{Document, Kept, Left, Watch};
-use crate::session::fork::Fork;
+use crate::session::fork::{Fork, Forks};
 use crate::session::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
 
 impl Session {
@@ -22,22 +23,15 @@ impl Session {
     }
 
     /// What tells each of them from the run on display, the oldest first; no two have the same title.
-    pub fn forks(&self) -> Vec<Fork> {
-        let mut forks: Vec<Fork> = self.document.branches.iter().map(|left| self.fork(left)).collect();
-        for i in 1..forks.len() {
-            let title = forks[i].title.clone();
-            let taken = |name: &String| forks[..i].iter().any(|fork| fork.title == *name);
-            let another = (2..).map(|n| format!("{title} ({n})")).find(|name| !taken(name));
-            if taken(&title) {
-                forks[i].title = another.unwrap_or(title);
-            }
-        }
-        forks
+    pub fn forks(&self) -> Arc<Vec<Fork>> {
+        let branches = &self.document.branches;
+        // How far the run goes beyond all of them tells nothing.
+        let end = self.document.end.min(branches.iter().map(|left| left.end).max().unwrap_or(0));
+        self.run.queries().ask::<Whole<Forks>>(&(Same(branches.clone()), self.edits.clone(), end))
     }
 
     fn fork(&self, left: &Left) -> Fork {
-        let (edits, led) = (left.script.in_order(), left.script.is_led());
-        Fork::of((&edits, left.end, led), (&self.edits, self.document.end), left.step)
+        left.beside(&self.edits, self.document.end)
     }
 
     /// The run on display, to be found again.
@@ -83,11 +77,6 @@ impl Session {
         self.redo.clear();
         self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: None }));
         Ok(())
-    }
-
-    /// How many steps are done again to show a branch.
-    pub fn steps_of_branch(&self, branch: usize) -> Option<u64> {
-        self.document.branches.get(branch).map(|left| left.end)
     }
 
     /// Lets go of a branch; what became of it.

@@ -13,6 +13,7 @@ pub use entries::{Comparison, Entry, Outcome, Ways};
 pub use summary::{COLUMNS, Column, Summary};
 
 use crate::mechanics::machine::Machine;
+use crate::query::Sequence;
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Watch, replay_while};
 use crate::simulation::frame::Frame;
@@ -26,7 +27,7 @@ pub struct Compared {
     /// What it was of.
     pub scenario: Scenario,
     /// In the order of time, evenly spaced but for the last.
-    pub frames: Vec<Frame>,
+    pub frames: Sequence<Frame>,
     /// What it came to.
     pub summary: Summary,
     /// Its machine as edits have left it, and its task.
@@ -66,6 +67,7 @@ impl Compared {
             frames.push(last);
         }
         let summary = Summary::of(&scenario, &last);
+        let frames = frames.into_iter().collect();
         Ok(Self { scenario, frames, summary, candidate: Candidate::of(&run) })
     }
 
