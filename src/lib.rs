@@ -125,7 +125,8 @@
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
 //!   the tests draw it at random.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
-//!   beside what it is about. Whoever shows it asks [`query::Queries`] for it; nothing else keeps what is derived.
+//!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
+//!   [`query::Queries`] for it; nothing else keeps what is derived, and `tests/layers` holds that.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.

@@ -22,7 +22,7 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::{Seen, ViewKind, Views};
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::query::Whole;
 use crate::session::design::weights_of;
 use crate::session::scenario::Scenario;
@@ -34,8 +34,7 @@ use crate::study::comparison::Comparison;
 /// A session on display.
 pub struct AppState {
     session: Session,
-    /// The views as they were made, and as base, payload and outline are now.
-    made: Arc<Views>,
+    /// The views on display: framing follows where others take their place.
     views: Arc<Views>,
     /// The machine before the change under way in that view.
     designed_from: Option<Machine>,
@@ -77,13 +76,11 @@ impl AppState {
 
     fn around(session: Session, theme: Theme) -> Self {
         let background = Background::default();
-        let made = background.queries.ask::<Whole<Views>>(&Seen::of(session.run(), None, &background.queries));
-        let views = Views::clone(&made);
+        let views = Views::made(&background.queries, session.run(), None);
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
-            made,
             designed_from: None,
-            views: Arc::new(views),
+            views,
             session,
             view_state,
             intro: None,
@@ -266,6 +263,14 @@ impl AppState {
     /// What is under way beside the window, as far as it is spoken of.
     pub fn under_way(&self) -> Vec<Activity> {
         self.background.all_under_way().map(|(activity, _)| activity).collect()
+    }
+
+    /// Forgets all that is derived, so that it is made afresh: what is shown stays the same.
+    pub fn forget(&mut self) {
+        self.queries().forget_all();
+        self.session.run().queries().forget_all();
+        self.foresee();
+        self.refresh();
     }
 
     /// Lets wall time pass, s.
@@ -718,27 +723,28 @@ impl AppState {
         };
     }
 
-    /// Makes the stage again when what it shows has changed.
-    fn refresh(&mut self) {
-        let run = self.session.run();
-        let queries = self.queries();
-        let made = queries.ask_if::<Whole<Views>>(|seen| seen.is_of(run), || Seen::of(run, None, queries));
-        if !Arc::ptr_eq(&made, &self.made) {
-            let mut views = Views::clone(&made);
-            views.keep_outline(&self.views);
-            // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the
-            // hand.
-            if !views.looks_like(&self.views) {
-                self.view_state.framing.iter_mut().for_each(Framing::renew);
-            }
-            if Views::has(self.view_state.view, self.session.run()).is_err() {
-                self.view_state.view = ViewKind::Flat;
-            }
-            (self.views, self.made) = (Arc::new(views), made);
+    /// Shows the views of the run as it is now.
+    fn refresh_views(&mut self) {
+        let (run, queries) = (self.session.run(), self.queries());
+        let made = Views::made(queries, run, None);
+        let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
+        if Arc::ptr_eq(&views, &self.views) {
+            return;
         }
-        let views = Arc::make_mut(&mut self.views);
-        views.refresh(self.session.run());
-        views.show_drives(self.view_state.drives);
+        if Views::has(self.view_state.view, run).is_err() {
+            self.view_state.view = ViewKind::Flat;
+        }
+        // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the hand.
+        let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
+        if !views.looks_like(&self.views) || (is_outlined && self.view_state.grabbed.is_none()) {
+            self.view_state.framing.iter_mut().for_each(Framing::renew);
+        }
+        self.views = views;
+    }
+
+    /// Shows what follows from the session as it is now.
+    fn refresh(&mut self) {
+        self.refresh_views();
         self.adjust();
         self.refresh_study();
         self.refresh_comparison();

@@ -3,6 +3,7 @@
 use std::any::TypeId;
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use super::asked::Asked;
@@ -39,6 +40,15 @@ struct Store {
     place: Mutex<Place>,
 }
 
+/// How many stores there are: one that keeps itself would never go.
+static STORES: AtomicUsize = AtomicUsize::new(0);
+
+impl Drop for Store {
+    fn drop(&mut self) {
+        STORES.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
 /// Who works, and who is told.
 struct Place {
     workers: Option<Arc<dyn Workers + Send + Sync>>,
@@ -49,6 +59,7 @@ impl Default for Queries {
     /// Work beside is done at once.
     fn default() -> Self {
         let place = Place { workers: Some(Arc::new(AtOnce)), wake: None };
+        STORES.fetch_add(1, Ordering::SeqCst);
         Self(Arc::new(Store { slots: Mutex::default(), place: Mutex::new(place) }))
     }
 }
@@ -118,6 +129,14 @@ impl Queries {
         self.slot::<Q, _>(|slot| slot.asked(input))
     }
 
+    /// The answer, if it is known.
+    pub fn known<Q: Query>(&self, input: &Q::Input) -> Option<Arc<Q::Answer>> {
+        self.slot::<Q, _>(|slot| {
+            slot.collect();
+            slot.known(|known| known == input)
+        })
+    }
+
     /// The newest answer, whatever it is of; none if there is none.
     pub fn last<Q: Query>(&self) -> Option<Arc<Q::Answer>> {
         self.slot::<Q, _>(|slot| slot.last())
@@ -165,6 +184,16 @@ impl Queries {
     /// How many answers are kept: of a growing one, one for each sequence.
     pub fn count(&self) -> usize {
         self.slots().values().map(|slot| slot.count()).sum()
+    }
+
+    /// Stops all work and forgets all answers.
+    pub fn forget_all(&self) {
+        self.slots().clear();
+    }
+
+    /// How many stores there are in this program. None is left once every window and recording is gone.
+    pub fn stores() -> usize {
+        STORES.load(Ordering::SeqCst)
     }
 
     fn slot<Q: Query, T>(&self, with: impl FnOnce(&mut Slot<Q>) -> T) -> T {

@@ -111,7 +111,7 @@ impl<T> Sequence<T> {
     /// How many of the first items have a property that only first items have.
     pub fn partition_point(&self, is_first: impl Fn(&T) -> bool) -> usize {
         let whole = self.pieces.partition_point(|piece| piece.last().is_some_and(&is_first));
-        whole * PIECE + self.pieces.get(whole).map_or(0, |piece| piece.partition_point(is_first))
+        self.pieces.get(whole).map_or(self.len(), |piece| whole * PIECE + piece.partition_point(is_first))
     }
 }
 

@@ -20,9 +20,8 @@ use crate::mechanics::planar::MAX_DRIVES;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::views::{Seen, ViewKind, Views};
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Scene, point};
-use crate::query::Whole;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::{Statements, Verdict};
 use crate::session::{Edit, Plan, Run, replay_while};
@@ -102,7 +101,7 @@ struct Recorder<'a> {
 /// What is drawn from: views as they were made, and as base and payload are now.
 struct Drawn {
     made: Arc<Views>,
-    views: Views,
+    views: Arc<Views>,
 }
 
 impl Instant {
@@ -188,19 +187,15 @@ impl<'a> Recorder<'a> {
     fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
         let force = run.scenario().plant.force;
         self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
-        let over = Some(self.forecast.b);
         let queries = &self.forecast.queries;
-        let made = queries.ask_if::<Whole<Views>>(|seen| seen.is_of(run), || Seen::of(run, over, queries));
-        match &mut self.drawn {
-            Some(drawn) if Arc::ptr_eq(&drawn.made, &made) => {
-                drawn.views.refresh(run);
-                return false;
-            }
+        let made = Views::made(queries, run, Some(self.forecast.b));
+        let views = Views::completed(&made, queries, run, None);
+        let drawn = self.drawn.replace(Drawn { made: made.clone(), views });
+        match drawn {
+            Some(before) if Arc::ptr_eq(&before.made, &made) => return false,
             Some(_) => {}
-            None => {
-                // Workspaces go by the b that they begin with.
-                self.first_b = frame.b_reference;
-            }
+            // Workspaces go by the b that they begin with.
+            None => self.first_b = frame.b_reference,
         }
         let named = |b: f64| format!("workspace/{b:.3}");
         let own = named(self.first_b);
@@ -208,7 +203,6 @@ impl<'a> Recorder<'a> {
         let other = other.map(|other| if other == own { format!("{other} compared") } else { other });
         let names = other.map(|other| ("workspace/compared", other)).into_iter().chain([("workspace", own)]);
         self.machine.rename(names.collect());
-        self.drawn = Some(Drawn { views: Views::clone(&made), made });
         true
     }
 

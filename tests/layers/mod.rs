@@ -270,6 +270,41 @@ fn clocks_files_and_environment_stay_at_the_edges() {
     }
 }
 
+/// What is derived is a query: nothing else keeps what it has made. What is made once for good is named here, with its
+/// reason, and so is what compares identities, as private memos do.
+#[test]
+fn what_is_derived_is_kept_by_queries_alone() {
+    const ONCE: &[(&str, &str)] = &[
+        ("app/gallery.rs", "pictures of the machines that come along"),
+        ("mechanics/machine/catalog.rs", "the machines that come along"),
+        ("session/scenario/catalog.rs", "the scenarios that come along"),
+        ("picture/scene/stage/workspace.rs", "bounds that follow from the planes it holds"),
+        ("planning/pose_space/pattern.rs", "patterns that follow from the space they are of"),
+    ];
+    const SAME: &[(&str, &str)] = &[
+        ("mechanics/machine/model.rs", "what copies of a machine share needs no comparison"),
+        ("session/machines.rs", "what copies share needs no comparison"),
+        ("session/script.rs", "what versions share needs no comparison"),
+        ("app/state.rs", "framing follows where other views take their place"),
+        ("picture/paint.rs", "what the graphics card has drawn already"),
+        ("picture/render/solids.rs", "what the graphics card holds already"),
+        ("picture/scene/mod.rs", "what scenes share needs no comparison"),
+        ("picture/scene/views.rs", "what is known is compared without a copy of the run"),
+        ("recording/entity.rs", "what a recording has written already"),
+        ("recording/recorder.rs", "names change where other views take their place"),
+        ("study/comparison/entries.rs", "rows change where other ways take their place"),
+    ];
+    let tree = Tree::read();
+    let found = |words: &[&str]| -> BTreeSet<String> {
+        let says = |source: &&Source| source.tokens.iter().any(|token| words.contains(&token.as_str()));
+        let files = tree.files.values().filter(says).map(|source| source.name.clone());
+        files.filter(|file| !stands_in(file, "query")).collect()
+    };
+    let once = found(&["OnceLock", "OnceCell", "LazyLock", "LazyCell", "RefCell", "thread_local"]);
+    assert_eq!(once, ONCE.iter().map(|(file, _)| (*file).to_owned()).collect());
+    assert_eq!(found(&["ptr_eq"]), SAME.iter().map(|(file, _)| (*file).to_owned()).collect());
+}
+
 /// Whatever comes from outside ends in an error. What may still panic is named here, with its reason.
 #[test]
 fn the_library_does_not_panic() {

@@ -326,6 +326,163 @@ fn every_kind_of_edit_is_drawn() {
     assert!(seen(&|s| s.control.encoder > 0.0) && seen(&|s| s.control.delay > 0.0));
 }
 
+/// A window that only counts as seen: everything is laid out and nothing is drawn.
+#[cfg(feature = "ui")]
+struct Unseen {
+    ctx: egui::Context,
+    now: f64,
+}
+
+#[cfg(feature = "ui")]
+impl Unseen {
+    /// What a repaint draws but for the scene, which is a picture of its own, so much later, s.
+    fn repaint(&mut self, app: &mut stillbase::app::AppState, later: f64) -> Vec<egui::Shape> {
+        self.now += later;
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1440.0, 900.0))),
+            time: Some(self.now),
+            ..Default::default()
+        };
+        let output = self.ctx.run_ui(input, |ui| app.ui(ui));
+        let shapes = output.shapes.into_iter().map(|clipped| clipped.shape);
+        shapes.filter(|shape| !matches!(shape, egui::Shape::Callback(_))).collect()
+    }
+}
+
+/// Whatever was done before, every answer that the window asks for is the one made afresh: with all that is derived
+/// forgotten, it draws what it has drawn before.
+#[cfg(feature = "ui")]
+#[test]
+fn what_any_window_shows_is_what_one_made_afresh_shows() {
+    use stillbase::app::{AppState, Command};
+    use stillbase::picture::charts::choice::Change;
+    use stillbase::picture::scene::palette::Theme;
+    use stillbase::picture::scene::views::ViewKind;
+
+    let mut runner = TestRunner::deterministic();
+    let charts = [
+        Change::Statistics(true),
+        Change::Plot("transmission/12".into()),
+        Change::Range(Some([0.05, 0.2])),
+        Change::Range(None),
+        Change::Against("Torque".into(), Some("tip/x".into())),
+    ];
+    let others = [
+        Command::Undo,
+        Command::Redo,
+        Command::Seek(0.0),
+        Command::Seek(0.3),
+        Command::TogglePlay,
+        Command::Step(-20),
+        Command::Branch(0),
+        Command::Compare(true),
+        Command::Compare(false),
+        Command::Learn(true),
+        Command::Learn(false),
+        Command::Bookmark(0.1, "here".into()),
+        Command::BackToPath,
+    ];
+    let views = ViewKind::ALL.map(Command::View);
+    let others: Vec<Command> = others.into_iter().chain(views).chain(charts.map(Command::Charts)).collect();
+    let (mut done, mut drawn) = (0, 0);
+    for _ in 0..3 {
+        let start = Scenario { step: 0.005, ..any_start().new_tree(&mut runner).expect("drawn").current() };
+        let Ok(mut app) = AppState::new(start, Theme::Dark) else { continue };
+        let mut window = Unseen { ctx: egui::Context::default(), now: 0.0 };
+        window.repaint(&mut app, 0.0);
+        for i in 0..60 {
+            let command = match i % 2 {
+                0 => Command::Edit(any_edit().new_tree(&mut runner).expect("drawn").current()),
+                _ => prop::sample::select(others.clone()).new_tree(&mut runner).expect("drawn").current(),
+            };
+            let before = app.session().to_scenario();
+            app.carry_out(command.clone());
+            app.carry_out(Command::EndGesture);
+            done += usize::from(before != app.session().to_scenario());
+            // Not before each is everything asked for.
+            app.pass(0.1);
+            if i % 3 == 0 {
+                continue;
+            }
+            for _ in 0..4 {
+                window.repaint(&mut app, 1.0);
+            }
+            let known = window.repaint(&mut app, 0.0);
+            app.forget();
+            window.repaint(&mut app, 0.0);
+            let afresh = window.repaint(&mut app, 0.0);
+            let first = known.iter().zip(&afresh).position(|(known, afresh)| known != afresh);
+            assert!(
+                first.is_none() && known.len() == afresh.len(),
+                "after {command:?}: {:?} in place of {:?}",
+                first.map(|i| &known[i]),
+                first.map(|i| &afresh[i])
+            );
+            drawn += known.len();
+        }
+    }
+    assert!(done > 30 && drawn > 10_000, "{drawn} shapes of {done} changes");
+}
+
+/// No store of answers keeps itself: none is left of a window, nor of a recording. In a program of its own, where no other
+/// test has one.
+#[cfg(all(feature = "ui", feature = "record"))]
+#[test]
+fn no_store_of_answers_outlives_its_window() {
+    use stillbase::app::{AppState, Command};
+    use stillbase::picture::scene::palette::Theme;
+    use stillbase::picture::scene::views::ViewKind;
+    use stillbase::query::Queries;
+
+    const ALONE: &str = "STILLBASE_TEST_ALONE";
+    if std::env::var_os(ALONE).is_none() {
+        let this = "session::sitting::no_store_of_answers_outlives_its_window";
+        let program = std::env::current_exe().expect("this program");
+        let done = std::process::Command::new(program).args(["--exact", this]).env(ALONE, "1").output();
+        let done = done.expect("it runs");
+        let said = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert!(done.status.success() && said.contains("1 passed"), "{said}");
+        return;
+    }
+    for name in ["case-3", "least-reaction", "four-drive"] {
+        let Some(scenario) = Scenario::builtin(name) else { panic!("no {name}") };
+        let mut app = AppState::new(scenario.clone(), Theme::Dark).expect("it starts");
+        let mut window = Unseen { ctx: egui::Context::default(), now: 0.0 };
+        let acts = [
+            Command::TogglePlay,
+            Command::Compare(true),
+            Command::Study(true),
+            Command::Learn(true),
+            Command::Learn(false),
+            Command::Edit(Edit::set("plant.payload.mass", 0.1)),
+            Command::EndGesture,
+            Command::View(ViewKind::Tower),
+            Command::View(ViewKind::Joints),
+            Command::Open(Box::new(scenario.clone())),
+            Command::Undo,
+        ];
+        for act in acts {
+            app.carry_out(act);
+            app.pass(0.1);
+            window.repaint(&mut app, 0.1);
+        }
+        assert!(Queries::stores() > 0);
+        drop(app);
+        assert_eq!(Queries::stores(), 0, "a window of {name}");
+        let folder = crate::folder::Folder::new(&format!("stores-{name}"));
+        let brief = Scenario { duration: Some(0.05), ..scenario };
+        let mut most = 0;
+        let mut told = |_: stillbase::recording::Progress<'_>| {
+            most = most.max(Queries::stores());
+            true
+        };
+        let options = stillbase::recording::Options::default();
+        stillbase::recording::record(&[brief], &folder.path("one.rrd"), &options, &mut told).expect("a recording");
+        assert!(most > 0);
+        assert_eq!(Queries::stores(), 0, "a recording of {name}");
+    }
+}
+
 /// What is derived is of the session as it is: after each of many edits, every view shows what one made afresh shows.
 #[cfg(feature = "ui")]
 #[test]

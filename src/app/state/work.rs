@@ -96,18 +96,10 @@ impl AppState {
             }
             return false;
         };
-        let asked = self.queries().ask_beside::<Outlining>(&Shared(space.clone()));
-        let outline = match (asked.known(), asked.state) {
-            (Some(outline), _) => Option::clone(outline),
-            (None, State::UnderWay(_)) => return false,
-            (None, _) => None,
-        };
-        let views = Arc::make_mut(&mut self.views);
-        views.set_outline(&space, outline);
-        views.raise_tower(self.session.run());
-        if self.view_state.grabbed.is_none() {
-            self.view_state.framing.iter_mut().for_each(Framing::renew);
+        if self.queries().ask_beside::<Outlining>(&Shared(space)).known().is_none() {
+            return false;
         }
+        self.refresh_views();
         true
     }
 

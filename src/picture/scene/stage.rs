@@ -90,7 +90,7 @@ impl Stage {
     /// Finds the outline, where it is still wanted.
     pub fn finish(&mut self, queries: &Queries) {
         if let Some(space) = self.unoutlined() {
-            self.set_outline(&space, Option::clone(&queries.ask::<Outlining>(&Shared(space.clone()))));
+            self.set_outline(Option::clone(&queries.ask::<Outlining>(&Shared(space))));
         }
     }
 
@@ -140,28 +140,11 @@ impl Stage {
         }
     }
 
-    /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Workspace>>) {
-        if matches!(&self.reached, Reached::Wanted(space) if **space == *of) {
-            match outline {
-                Some(outline) => self.take(outline),
-                None => self.reached = Reached::None,
-            }
-        }
-    }
-
-    /// Takes the outline over from another stage, if it is the same.
-    pub fn keep_outline(&mut self, other: &Self) {
-        if let (Reached::Wanted(space), Reached::Done(outline)) = (&self.reached, &other.reached)
-            && outline.space() == &**space
-        {
-            self.take(outline.clone());
-        }
-    }
-
-    fn take(&mut self, outline: Arc<Workspace>) {
-        self.fill = outline.fill().map(|mesh| self.linkage.add(mesh.clone()));
-        self.reached = Reached::Done(outline);
+    /// Takes the outline of what was yet to be outlined.
+    pub fn set_outline(&mut self, outline: Option<Arc<Workspace>>) {
+        let fill = outline.as_ref().and_then(|outline| outline.fill());
+        self.fill = fill.map(|mesh| self.linkage.add(mesh.clone()));
+        self.reached = outline.map_or(Reached::None, Reached::Done);
     }
 
     fn planes(&self) -> Option<&Planes> {

@@ -14,12 +14,12 @@ use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
 use super::section::Section;
-use super::stage::{PULL, Stage, Workspace};
+use super::stage::{Outlining, PULL, Stage, Workspace};
 use super::tower::Tower;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::DriveAngles;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Asking, Queries, Quick};
+use crate::query::{Asking, Queries, Quick, Same, Shared, Whole};
 use crate::session::Run;
 use crate::settings::number::Short;
 use crate::simulation::frame::Frame;
@@ -164,12 +164,89 @@ impl Quick for Views {
     }
 }
 
+/// Views with what changes although they stand still: base and payload, the outline once it is found with the tower over
+/// it, and the drives along the axes of joint space.
+#[derive(Debug)]
+struct Completed;
+
+/// What these depend on.
+#[derive(Clone)]
+struct Completing {
+    made: Same<Views>,
+    run: Run,
+    outline: Option<Same<Option<Arc<Workspace>>>>,
+    /// Of the axes of joint space, counted from 0, where there are more than three.
+    drives: Option<[usize; 3]>,
+}
+
+impl Completing {
+    fn is_of(&self, run: &Run) -> bool {
+        let (one, other) = (self.run.scenario(), run.scenario());
+        one.base == other.base && one.plant.payload == other.plant.payload
+    }
+}
+
+impl PartialEq for Completing {
+    fn eq(&self, other: &Self) -> bool {
+        self.made == other.made
+            && self.is_of(&other.run)
+            && self.outline == other.outline
+            && self.drives == other.drives
+    }
+}
+
+impl Quick for Completed {
+    type Input = Completing;
+    type Answer = Views;
+
+    fn answer(Completing { made, run, outline, drives }: &Completing) -> Views {
+        let mut views = Views::clone(&made.0);
+        if let Some(Same(outline)) = outline {
+            views.stage.set_outline(Option::clone(outline));
+        }
+        views.complete(run);
+        if let (Some(joints), Some(drives)) = (&mut views.joints, drives) {
+            joints.show(*drives);
+        }
+        views
+    }
+}
+
 impl Views {
     /// Prepares a run for drawing.
     pub fn of(run: &Run) -> Self {
         let mut views = Self::with(Stage::of(run), run);
-        views.refresh(run);
+        views.complete(run);
         views
+    }
+
+    /// The views of a run but for what changes although they stand still; in those of a whole run, over a range of b, rad.
+    pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
+        queries.ask_if::<Whole<Self>>(|seen| seen.over == over && seen.is_of(run), || Seen::of(run, over, queries))
+    }
+
+    /// The same with all that is known by now, and drives along the axes of joint space, counted from 0, where there are
+    /// more than three.
+    pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
+        let wanted = made.unoutlined();
+        let outline = wanted.and_then(|space| queries.known::<Outlining>(&Shared(space))).map(Same);
+        queries.ask_if::<Whole<Completed>>(
+            |known| {
+                Arc::ptr_eq(&known.made.0, made)
+                    && known.is_of(run)
+                    && known.outline == outline
+                    && known.drives == drives
+            },
+            || Completing { made: Same(made.clone()), run: run.clone(), outline: outline.clone(), drives },
+        )
+    }
+
+    /// Takes base and payload of a run, and makes the tower, once what is reached is outlined.
+    fn complete(&mut self, run: &Run) {
+        self.stage.refresh(run);
+        if let (None, Some(reached)) = (&self.tower, self.stage.outlined()) {
+            self.tower = Tower::of(run, reached);
+        }
     }
 
     /// For a whole run, whose b lie in a range, rad: joint space and tower show all of them and stand still.
@@ -219,41 +296,11 @@ impl Views {
         self.stage.unoutlined()
     }
 
-    /// Takes an outline, if it is of what was yet to be outlined.
-    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Arc<Workspace>>) {
-        self.stage.set_outline(of, outline);
-    }
-
-    /// Takes the outline over from other views, if it is the same.
-    pub fn keep_outline(&mut self, other: &Self) {
-        self.stage.keep_outline(&other.stage);
-    }
-
-    /// Takes over what has changed of base and payload.
-    pub fn refresh(&mut self, run: &Run) {
-        self.stage.refresh(run);
-        self.raise_tower(run);
-    }
-
     /// The width of the grid under the machine, in words.
     pub fn grid(&self, kind: ViewKind) -> String {
         match kind {
             ViewKind::Flat | ViewKind::Space | ViewKind::Design => format!("{} m grid", Short(self.stage.grid_width())),
             ViewKind::Joints | ViewKind::Tower => String::new(),
-        }
-    }
-
-    /// Makes the tower, once what is reached is outlined.
-    pub fn raise_tower(&mut self, run: &Run) {
-        if let (None, Some(reached)) = (&self.tower, self.stage.outlined()) {
-            self.tower = Tower::of(run, reached);
-        }
-    }
-
-    /// Puts drives along the axes of joint space, counted from 0, where there are more than three.
-    pub fn show_drives(&mut self, drives: [usize; 3]) {
-        if let Some(joints) = &mut self.joints {
-            joints.show(drives);
         }
     }
 

@@ -103,7 +103,8 @@ struct Rates {
     across: f64,
 }
 
-/// The patterns of a machine, made when they are first asked for; copies of it share them.
+/// The patterns of a machine. They follow from the space that holds them alone, so they are made once, when they are first
+/// asked for; copies of it share them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Patterns(Arc<OnceLock<Vec<Pattern>>>);
 

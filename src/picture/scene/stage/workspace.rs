@@ -61,7 +61,8 @@ struct Sheets {
     change_points: Strips,
     /// Where folds turn back, m.
     cusps: Vec<Vector>,
-    /// Least and greatest of each measure of dexterity within the limits, found when first shown.
+    /// Least and greatest of each measure of dexterity within the limits. They follow from the planes alone, so they are
+    /// found once, when they are first shown.
     dexterity: [OnceLock<[f64; 2]>; 3],
 }
 
