@@ -44,73 +44,63 @@ struct Answer {
     poses: Vec<Row>,
 }
 
-#[derive(Serialize)]
-struct AnswerOfSpace {
-    poses: Vec<OfSpace>,
-}
-
-/// A pose of a machine without a plane of three drives.
-#[derive(Serialize)]
-pub struct OfSpace {
-    q: Vec<f64>,
-    pub a: Vec<f64>,
-    pub manipulability: f64,
-    pub worst_torque_per_force: f64,
-    pub transmission: f64,
-}
-
-impl OfSpace {
-    /// With two drives every pose of a point, with four and more the one nearest to the middle of the limits.
-    pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
-        let pose = |q: &DriveAngles| {
-            let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
-            let squares: Vector = arms.iter().map(|j| j * j).sum();
-            let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
-            // The two eigenvalues of J Jᵀ: half of (lengths ± |squares|).
-            Self {
-                q: q.to_vec(),
-                a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
-                manipulability: 0.5 * (lengths * lengths - squares.norm_sqr()).max(0.0).sqrt(),
-                worst_torque_per_force: (0.5 * (lengths + squares.norm())).sqrt(),
-                transmission: least_transmission(&q.units(), q.len()),
-            }
-        };
-        space.poses(p, b, &space.middle()).iter().map(pose).collect()
-    }
-}
-
-/// A pose and its measures.
+/// A pose and its measures; some of them planes alone have.
 #[derive(Serialize)]
 pub struct Row {
-    q: [f64; 3],
-    pub a: [f64; 2],
-    pub det: f64,
+    q: Vec<f64>,
+    pub a: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub det: Option<f64>,
     pub manipulability: f64,
     pub worst_torque_per_force: f64,
     pub transmission: f64,
-    side: [i8; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<[i8; 3]>,
 }
 
 /// Sines below this are a change point's.
 const AT_CHANGE: f64 = 1e-9;
 
 impl Row {
-    /// All poses of a point, with their measures.
-    pub fn all(map: &PlaneMap, p: Vector, b: f64) -> Vec<Self> {
-        map.poses(p, b).iter().map(|pose| Self::of(map, *pose)).collect()
+    /// The poses of a point, with their measures: where a point leaves freedoms the one nearest to the middle of the
+    /// limits, else all.
+    pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
+        match space.planes() {
+            Ok(planes) => {
+                let map = planes.map();
+                map.poses(p, b).iter().map(|pose| Self::on_plane(map, *pose)).collect()
+            }
+            Err(_) => space.poses(p, b, &space.middle()).iter().map(|q| Self::of(machine, space, q)).collect(),
+        }
     }
 
-    fn of(map: &PlaneMap, pose: PlanePoint) -> Self {
+    fn on_plane(map: &PlaneMap, pose: PlanePoint) -> Self {
         let dexterity = map.dexterity(pose.a);
         let sign = |sine: f64| if sine.abs() < AT_CHANGE { 0 } else { sine.signum() as i8 };
         Self {
-            q: map.lift(pose),
-            a: pose.a,
-            det: dexterity.det,
+            q: map.lift(pose).to_vec(),
+            a: pose.a.to_vec(),
+            det: Some(dexterity.det),
             manipulability: dexterity.manipulability,
             worst_torque_per_force: dexterity.worst_torque_per_force,
             transmission: map.least_transmission(pose.a),
-            side: map.sines(pose.a).map(sign),
+            side: Some(map.sines(pose.a).map(sign)),
+        }
+    }
+
+    fn of(machine: &Machine, space: &PoseSpace, q: &DriveAngles) -> Self {
+        let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
+        let squares: Vector = arms.iter().map(|j| j * j).sum();
+        let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
+        // The two eigenvalues of J Jᵀ: half of (lengths ± |squares|).
+        Self {
+            q: q.to_vec(),
+            a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
+            det: None,
+            manipulability: 0.5 * (lengths * lengths - squares.norm_sqr()).max(0.0).sqrt(),
+            worst_torque_per_force: (0.5 * (lengths + squares.norm())).sqrt(),
+            transmission: least_transmission(&q.units(), q.len()),
+            side: None,
         }
     }
 }
@@ -120,30 +110,11 @@ impl Pose {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
-        let Ok(planes) = space.planes() else { return self.of_space(&machine, &space) };
-        let poses = Row::all(planes.map(), self.point, self.b);
+        let poses = Row::all(&machine, &space, self.point, self.b);
         if poses.is_empty() {
             return Err(self.no_pose(space.reach(self.point)).into());
         }
         self.format.print(&Answer { poses }, |answer| {
-            let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
-            let head = ["pose", "q_1 rad", "q_2 rad", "q_3 rad"].map(String::from);
-            let mut table = Table::new(head.into_iter().chain(names));
-            for (i, pose) in answer.poses.iter().enumerate() {
-                let numbers = pose.q.iter().chain(&pose.a).map(|x| fixed(*x, 9));
-                table.row([(i + 1).to_string()].into_iter().chain(numbers));
-            }
-            table.to_string()
-        })
-    }
-
-    /// With two drives every pose, with four and more the one nearest to the middle of the limits.
-    fn of_space(&self, machine: &Machine, space: &PoseSpace) -> Result<(), Failure> {
-        let poses = OfSpace::all(machine, space, self.point, self.b);
-        if poses.is_empty() {
-            return Err(self.no_pose(space.reach(self.point)).into());
-        }
-        self.format.print(&AnswerOfSpace { poses }, |answer| {
             let drives = (1..=space.drives()).map(|k| format!("q_{k} rad"));
             let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
             let mut table = Table::new(["pose".to_owned()].into_iter().chain(drives).chain(names));

@@ -10,7 +10,7 @@ use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, Table, yes};
-use super::pose::{OfSpace as PoseOfSpace, Row};
+use super::pose::Row;
 use stillbase::settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
@@ -43,12 +43,37 @@ pub struct Workspace {
 #[derive(Serialize)]
 struct Answer {
     area: f64,
-    sheet_area: f64,
+    #[serde(flatten)]
+    size: Size,
     x_min: f64,
     x_max: f64,
     y_min: f64,
     y_max: f64,
     loops: Vec<Vec<[f64; 2]>>,
+    #[serde(flatten)]
+    inside: Inside,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    points: Vec<OfPoint>,
+}
+
+/// Of all sheets on planes; elsewhere of a curve, 0 of a region.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Size {
+    Sheets { sheet_area: f64 },
+    Curve { length: f64 },
+}
+
+/// What planes tell of the inside; elsewhere the curve of two drives.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Inside {
+    Sheets(Box<OfSheets>),
+    Curve { curve: Vec<[f64; 2]> },
+}
+
+#[derive(Serialize)]
+struct OfSheets {
     interior_singularity: bool,
     sheets: usize,
     areas_by_poses: Vec<f64>,
@@ -57,30 +82,6 @@ struct Answer {
     inner_limits: Vec<Vec<[f64; 2]>>,
     change_point_curves: Vec<OfChange>,
     areas_by_side: Vec<OfSide>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    points: Vec<OfPoint>,
-}
-
-/// What machines of other than three drives have.
-#[derive(Serialize)]
-struct OfSpace {
-    area: f64,
-    length: f64,
-    x_min: f64,
-    x_max: f64,
-    y_min: f64,
-    y_max: f64,
-    loops: Vec<Vec<[f64; 2]>>,
-    curve: Vec<[f64; 2]>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    points: Vec<PointOfSpace>,
-}
-
-#[derive(Serialize)]
-struct PointOfSpace {
-    point: [f64; 2],
-    distance: f64,
-    poses: Vec<PoseOfSpace>,
 }
 
 /// Change points of two drives, counted from 1.
@@ -117,85 +118,87 @@ impl Workspace {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
-        let Ok(planes) = space.planes() else { return self.of_space(&machine, &space) };
-        let answer = self.answer(planes);
+        let answer = match space.planes() {
+            Ok(planes) => self.of_planes(&machine, (&space, planes)),
+            Err(_) => self.outlined(&machine, &space)?,
+        };
         self.format.print(&answer, |a| {
-            let mut text = format!("{}\n{}", table(a).to_string().trim_start(), remarks(a));
+            let (mut text, apart) = match &a.inside {
+                Inside::Sheets(of) => (format!("{}\n{}", table(a, of).to_string().trim_start(), remarks(a, of)), "\n"),
+                Inside::Curve { .. } => (outline_table(a).to_string().trim_start().to_owned(), "\n\n"),
+            };
             if !a.points.is_empty() {
                 let names: Vec<String> = machine.angles().iter().map(|a| format!("{} rad", a.name)).collect();
-                text.push_str(&format!("\n{}", points(a, &names)));
+                text.push_str(&format!("{apart}{}", points(a, &names)));
             }
             text
         })
     }
 
-    /// Of any other number of drives: with two a curve.
-    fn of_space(&self, machine: &Machine, space: &PoseSpace) -> Result<(), Failure> {
+    fn points(&self, machine: &Machine, space: &PoseSpace, distance: impl Fn(Vector) -> f64) -> Vec<OfPoint> {
+        let poses = |p: Vector| Row::all(machine, space, p, self.b);
+        self.at.iter().map(|p| OfPoint { point: [p.re, p.im], distance: distance(*p), poses: poses(*p) }).collect()
+    }
+
+    /// Where no planes tell of the inside: an outline, of two drives a curve.
+    fn outlined(&self, machine: &Machine, space: &PoseSpace) -> Result<Answer, Failure> {
         let outline = space.outline(self.b);
-        let point = |p: &Vector| PointOfSpace {
-            point: [p.re, p.im],
-            distance: outline.distance(*p),
-            poses: PoseOfSpace::all(machine, space, *p, self.b),
-        };
-        let points = self.at.iter().map(point).collect();
+        let points = self.points(machine, space, |p| outline.distance(p));
         let Outline { area, length, extent: [x_min, x_max, y_min, y_max], loops, curve } = outline;
         if loops.is_empty() && curve.is_empty() {
             return Err(Failure::no_answer("the joint limits leave no pose: want wider ones"));
         }
-        let answer = OfSpace { area, length, x_min, x_max, y_min, y_max, loops, curve, points };
-        self.format.print(&answer, |a| {
-            let mut table = Table::new(["", "", ""]).with_words(2);
-            let size =
-                if a.curve.is_empty() { ("area", a.area, "m²") } else { ("length of the curve", a.length, "m") };
-            let rest = [("x from", a.x_min), ("x to", a.x_max), ("y from", a.y_min), ("y to", a.y_max)];
-            for (name, value, unit) in [size].into_iter().chain(rest.map(|(name, x)| (name, x, "m"))) {
-                table.row([name.into(), fixed(value, 6), unit.into()]);
-            }
-            let mut text = table.to_string().trim_start().to_owned();
-            if !a.points.is_empty() {
-                let names: Vec<String> = machine.angles().iter().map(|a| format!("{} rad", a.name)).collect();
-                text.push_str(&format!("\n\n{}", of_space(a, &names)));
-            }
-            text
-        })
+        let (size, inside) = (Size::Curve { length }, Inside::Curve { curve });
+        Ok(Answer { area, size, x_min, x_max, y_min, y_max, loops, inside, points })
     }
 
-    fn answer(&self, planes: &Planes) -> Answer {
+    fn of_planes(&self, machine: &Machine, (space, planes): (&PoseSpace, &Planes)) -> Answer {
         let (map, boundary) = (planes.map(), planes.boundary());
         let extent = boundary.extent(self.b);
         let turn = map.turn(self.b);
         let changes = boundary.change_curves();
-        let of_point = |p: &Vector| OfPoint {
-            point: [p.re, p.im],
-            distance: boundary.distance(*p, self.b),
-            poses: Row::all(map, *p, self.b),
-        };
         let cusp = |at: Vector| {
             let p = at * unit(turn);
             [p.re, p.im]
         };
         Answer {
             area: boundary.area(),
-            sheet_area: boundary.sheet_area(),
+            size: Size::Sheets { sheet_area: boundary.sheet_area() },
             x_min: extent.x_min,
             x_max: extent.x_max,
             y_min: extent.y_min,
             y_max: extent.y_max,
             loops: boundary.turned(self.b),
-            interior_singularity: boundary.interior_singularity(),
-            sheets: boundary.sheets(),
-            areas_by_poses: boundary.areas_by_poses(),
-            fold_curves: boundary.fold_curves().iter().map(|l| l.turned(turn)).collect(),
-            cusps: boundary.cusps().iter().map(|c| cusp(c.at)).collect(),
-            inner_limits: boundary.inner_limits().iter().map(|l| l.turned(turn)).collect(),
-            areas_by_side: sides(map, boundary, &changes),
-            change_point_curves: changes
-                .iter()
-                .map(|c| OfChange { pair: drives(c.pair), half_turns: c.half_turns, line: c.line.turned(turn) })
-                .collect(),
-            points: self.at.iter().map(of_point).collect(),
+            inside: Inside::Sheets(Box::new(OfSheets {
+                interior_singularity: boundary.interior_singularity(),
+                sheets: boundary.sheets(),
+                areas_by_poses: boundary.areas_by_poses(),
+                fold_curves: boundary.fold_curves().iter().map(|l| l.turned(turn)).collect(),
+                cusps: boundary.cusps().iter().map(|c| cusp(c.at)).collect(),
+                inner_limits: boundary.inner_limits().iter().map(|l| l.turned(turn)).collect(),
+                areas_by_side: sides(map, boundary, &changes),
+                change_point_curves: changes
+                    .iter()
+                    .map(|c| OfChange { pair: drives(c.pair), half_turns: c.half_turns, line: c.line.turned(turn) })
+                    .collect(),
+            })),
+            points: self.points(machine, space, |p| boundary.distance(p, self.b)),
         }
     }
+}
+
+/// Rows of an outline: its size and where it lies.
+fn outline_table(a: &Answer) -> Table {
+    let mut table = Table::new(["", "", ""]).with_words(2);
+    let size = match (&a.size, &a.inside) {
+        (Size::Curve { length }, Inside::Curve { curve }) if !curve.is_empty() => ("length of the curve", *length, "m"),
+        _ => ("area", a.area, "m²"),
+    };
+    let rest = [("x from", a.x_min), ("x to", a.x_max), ("y from", a.y_min), ("y to", a.y_max)];
+    for (name, value, unit) in [size].into_iter().chain(rest.map(|(name, x)| (name, x, "m"))) {
+        table.row([name.into(), fixed(value, 6), unit.into()]);
+    }
+    table
 }
 
 /// The parts on the sides of each pair that has change points inside.
@@ -210,14 +213,15 @@ fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<Of
     divided.flat_map(|pair| boundary.sides(pair).map(move |m| (pair, m))).filter_map(part).collect()
 }
 
-fn table(a: &Answer) -> Table {
+fn table(a: &Answer, of: &OfSheets) -> Table {
+    let sheet_area = if let Size::Sheets { sheet_area } = a.size { sheet_area } else { a.area };
     let mut table = Table::new(["", "", ""]).with_words(2);
     // Nine decimals say nothing of a workspace of millimetres.
     let small = (a.x_max - a.x_min).hypot(a.y_max - a.y_min) < 1e-2;
     let number = |x: f64| if small { format!("{x:.9e}") } else { fixed(x, 9) };
     for (name, value, unit) in [
         ("area", a.area, "m²"),
-        ("area of all sheets", a.sheet_area, "m²"),
+        ("area of all sheets", sheet_area, "m²"),
         ("x from", a.x_min, "m"),
         ("x to", a.x_max, "m"),
         ("y from", a.y_min, "m"),
@@ -226,7 +230,7 @@ fn table(a: &Answer) -> Table {
         table.row([name.into(), number(value), unit.into()]);
     }
     // One change curve makes two parts; where there are many, the table would no longer be calm.
-    if let [first, second] = &a.areas_by_side[..] {
+    if let [first, second] = &of.areas_by_side[..] {
         for part in [first, second] {
             let [k, l] = part.pair;
             let turns = |m: i32| match m {
@@ -247,7 +251,7 @@ fn table(a: &Answer) -> Table {
     table
 }
 
-fn remarks(a: &Answer) -> String {
+fn remarks(a: &Answer, of: &OfSheets) -> String {
     let vertices: usize = a.loops.iter().map(Vec::len).sum();
     let count = |n: usize, one: &str, many: &str| match n {
         1 => format!("one {one}"),
@@ -255,12 +259,12 @@ fn remarks(a: &Answer) -> String {
     };
     let mut inside = vec![format!(
         "{} a point",
-        if a.sheets == 1 { "one pose".into() } else { format!("up to {} poses", a.sheets) }
+        if of.sheets == 1 { "one pose".into() } else { format!("up to {} poses", of.sheets) }
     )];
     for (n, one, many) in [
-        (a.fold_curves.len(), "fold", "folds"),
-        (a.cusps.len(), "cusp", "cusps"),
-        (a.change_point_curves.len(), "curve of change points", "curves of change points"),
+        (of.fold_curves.len(), "fold", "folds"),
+        (of.cusps.len(), "cusp", "cusps"),
+        (of.change_point_curves.len(), "curve of change points", "curves of change points"),
     ] {
         if n > 0 {
             inside.push(count(n, one, many));
@@ -268,31 +272,24 @@ fn remarks(a: &Answer) -> String {
     }
     format!(
         "singular inside: {}; boundary: {} of {vertices} vertices (--json lists them)\ninside: {}\n",
-        yes(a.interior_singularity),
+        yes(of.interior_singularity),
         count(a.loops.len(), "loop", "loops"),
         inside.join(", "),
     )
 }
 
 fn points(a: &Answer, angles: &[String]) -> Table {
-    let mut table = poses("from boundary m", angles, &["det m²", "√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]);
-    for p in &a.points {
-        let numbers = p.poses.iter().map(|pose| {
-            let measures = [pose.det, pose.manipulability, pose.worst_torque_per_force, pose.transmission];
-            pose.a.iter().copied().chain(measures).collect()
-        });
-        add_point(&mut table, p.point, p.distance, numbers.collect());
-    }
-    table
-}
-
-fn of_space(a: &OfSpace, angles: &[String]) -> Table {
-    let from = if a.curve.is_empty() { "from boundary m" } else { "from curve m" };
-    let mut table = poses(from, angles, &["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]);
+    let from = match &a.inside {
+        Inside::Curve { curve } if !curve.is_empty() => "from curve m",
+        _ => "from boundary m",
+    };
+    let det: &[&str] = if matches!(a.inside, Inside::Sheets(_)) { &["det m²"] } else { &[] };
+    let measures = [det, &["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]].concat();
+    let mut table = poses(from, angles, &measures);
     for p in &a.points {
         let numbers = p.poses.iter().map(|pose| {
             let measures = [pose.manipulability, pose.worst_torque_per_force, pose.transmission];
-            pose.a.iter().copied().chain(measures).collect()
+            pose.a.iter().copied().chain(pose.det).chain(measures).collect()
         });
         add_point(&mut table, p.point, p.distance, numbers.collect());
     }

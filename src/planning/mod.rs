@@ -6,7 +6,8 @@
 //! | coordinates (a, b), poses, boundaries, which b reach a point, for any number of drives | [`pose_space`] |
 //! | the same of three drives with two bounded angles in closed form: the kernel of such a pose space | [`reactionless`] |
 //! | where: curves of the end effector, paths of the drives | [`curves`] |
-//! | which b serve several points with which poses, and which point has to move least where none does | [`common`] |
+//! | which b serve several points, and which point has to move least where none does | [`common`] |
+//! | poses of several points at a b, and where the points go as b does | [`posed`] |
 //! | when: laws, limits, the fastest | [`timing`] |
 //! | what becomes of the freedoms that four drives and more have left | [`posture`] |
 //! | with b held: curves followed, or why not; the pointer and the slider | [`following`] |
@@ -27,6 +28,7 @@ pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;
 pub mod pose_space;
+pub mod posed;
 pub mod posture;
 pub mod reactionless;
 mod reference;

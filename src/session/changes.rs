@@ -3,9 +3,9 @@
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
-use crate::planning::common::carried;
 use crate::planning::pose_constant::SpaceOf;
 use crate::planning::pose_space::PoseSpace;
+use crate::planning::posed::carried;
 use crate::query::{Queries, Whole};
 use crate::settings::range::shortened;
 

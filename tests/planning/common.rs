@@ -8,6 +8,7 @@ use stillbase::mechanics::planar::{Vector, unit};
 use stillbase::planning::common::{common, middle, no_common};
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
+use stillbase::planning::posed::{carried, nearest_poses, serve};
 
 use crate::support::Noise;
 use crate::support::random::{a_chain, a_pose, a_space};
@@ -146,4 +147,37 @@ fn whether_there_is_a_b_is_said_once() {
             Err(why) => assert!(constant.to_string().ends_with(&why.to_string()), "{n} drives: {constant}"),
         }
     }
+}
+
+/// Points that one b serves have a pose each; past the b that serve them they turn about the base.
+#[test]
+fn points_have_a_pose_each_and_turn_where_b_does_not_serve_them() {
+    let mut noise = Noise::of(239);
+    let mut turned = 0;
+    for i in 0..12 {
+        let (machine, general) = a_space(&mut noise, 2 + i % 3);
+        let own = PoseSpace::of(&machine).expect("it has a b");
+        for space in [&own, &general] {
+            let (n, b) = (space.drives(), noise.between(-3.0, 3.0));
+            let points: Vec<Vector> = (0..2).map(|_| space.forward(&a_pose(&mut noise, space), b)).collect();
+            let poses = serve(space, &points, b).expect("both are reached");
+            assert_eq!(poses.len(), 2);
+            for (pose, p) in poses.iter().zip(&points) {
+                assert!((space.place(&pose.q) - p).norm() < 1e-6 * space.farthest(), "{n} drives: {pose:?} off {p}");
+                assert!((space.b(&pose.q) - b).abs() < 1e-6 && (pose.b - b).abs() < 1e-6, "{n} drives: {pose:?}");
+                assert!(space.angles(&pose.q).minus(&pose.a).max_abs() < 1e-9, "{n} drives: {pose:?}");
+            }
+            let apart = nearest_poses(space, [points[0], points[1]], [b, b]).expect("both are reached");
+            let ways = [apart, [poses[0], poses[1]]].map(|[from, to]| from.way(space, &to));
+            assert!(space.planes().is_err() || ways[0] <= ways[1] + 1e-9, "{n} drives: {ways:?}");
+            assert_eq!(carried(space, &points, [b, b]), points, "where b serves them they stay");
+            let other = b + noise.between(1.0, 3.0);
+            let there = carried(space, &points, [b, other]);
+            turned += usize::from(there != points);
+            for (p, at) in points.iter().zip(&there) {
+                assert!((p.norm() - at.norm()).abs() < 1e-6 * space.farthest(), "{n} drives: {p} goes to {at}");
+            }
+        }
+    }
+    assert!(turned > 8, "{turned}");
 }

@@ -5,12 +5,12 @@ use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
-use stillbase::planning::common::Posed;
 use stillbase::planning::off_plane::Price;
 use stillbase::planning::off_plane::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, nearest_planes,
 };
 use stillbase::planning::pose_space::{PoseSpace, plane_map};
+use stillbase::planning::posed::Posed;
 use stillbase::planning::reactionless::{BSet, PlaneMap};
 use stillbase::planning::timing::TimeLaw;
 

@@ -8,10 +8,10 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::path::SameTip;
 
-use stillbase::planning::common::serve;
 use stillbase::planning::curves::{Curve, Path, PathPoint, PathTable};
 use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::pose_space::PoseSpace;
+use stillbase::planning::posed::serve;
 use stillbase::planning::timing::fastest::{fastest_at, stations};
 use stillbase::planning::timing::limits::{DriveLimit, LimitedQuantity};
 use stillbase::planning::timing::profile::Span;

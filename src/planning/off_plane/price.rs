@@ -22,11 +22,11 @@ use thiserror::Error;
 
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::Posed;
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::curves::table::PathTable;
 use crate::planning::pose_space::PoseSpace;
+use crate::planning::posed::Posed;
 use crate::planning::reactionless::BSet;
 use crate::planning::timing::law::TimeLaw;
 use crate::settings::number::counted;

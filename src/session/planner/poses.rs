@@ -4,9 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use super::plan::Space;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::{self, Posed, why_not};
+use crate::planning::common::why_not;
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::PoseSpace;
+use crate::planning::posed::{self, Posed};
 use crate::planning::reactionless::NoReach;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
@@ -14,7 +15,7 @@ use crate::settings::number::{Short, fixed, nine_digits};
 
 /// Poses of points at the b of the task.
 pub(super) fn serve(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
-    common::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+    posed::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
 /// A pose of the first of some points: at the b of the task where that leaves a choice, on one sheet with the others where
@@ -24,7 +25,7 @@ pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) ->
     match space {
         Ok(space) if space.reaches_area() => {
             let all = match space.planes() {
-                Ok(_) if points.len() > 1 => common::serve(space, points, task.b).ok(),
+                Ok(_) if points.len() > 1 => posed::serve(space, points, task.b).ok(),
                 _ => None,
             };
             let served = all.map_or_else(|| serve(task, space, &points[..1]), Ok)?;

@@ -3,10 +3,10 @@
 use super::along::{Parts, by_least_rates, curves};
 use super::plan::Space;
 use super::poses::{posed, reached, serve, start};
-use crate::planning::common::Posed;
 use crate::planning::curves::Path;
 use crate::planning::curves::path::{SameTip, same_tip_path};
 use crate::planning::pose_space::PoseSpace;
+use crate::planning::posed::Posed;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::Scenario;
 

@@ -1,7 +1,7 @@
 //! [`Alternative`]: other ways to do the same task.
 
-use crate::planning::common::serve;
 use crate::planning::pose_space::PoseSpace;
+use crate::planning::posed::serve;
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
 use crate::session::settled;

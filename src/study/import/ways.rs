@@ -3,12 +3,12 @@
 use super::judge::{Candidate, Judge};
 use super::request::{ImportError, Keep, Request};
 use crate::planning::Motion;
-use crate::planning::common::serve;
 use crate::planning::curves::path::minimum_norm_curve;
 use crate::planning::curves::{Path, Samples};
 use crate::planning::following::nearest::{nearest_b, same_tip, turned};
 use crate::planning::following::{Rule, trace};
 use crate::planning::pose_space::{Planes, PoseSpace};
+use crate::planning::posed::serve;
 use crate::planning::reactionless::{BSet, between};
 use crate::planning::timing::Profile;
 use crate::session::scenario::{Task, TaskKind};
