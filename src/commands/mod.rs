@@ -34,7 +34,7 @@ mod reach;
 mod simulate;
 mod sites;
 mod spectrum;
-pub(crate) mod tolerance;
+mod tolerance;
 mod trim;
 mod workspace;
 

@@ -9,6 +9,8 @@ pub mod journal;
 mod new_file;
 #[cfg(feature = "window")]
 pub mod preferences;
+#[cfg(feature = "cli")]
+pub mod shards;
 #[cfg(feature = "tables")]
 pub mod table;
 pub mod text;

@@ -1,3 +1,5 @@
-//! Tests of `src/files`: tables of numbers that others wrote. What the program writes is tried in `program`.
+//! Tests of `src/files`: tables of numbers that others wrote, and shards of studies. What the program writes is tried in `program`.
 
+#[cfg(feature = "cli")]
+mod shards;
 mod table;

@@ -62,9 +62,9 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rerun", &["recording"]),
     ("clap", &["commands", "main"]),
     ("indicatif", &["commands"]),
-    ("csv", &["files/table", "commands"]),
+    ("csv", &["files/shards", "files/table", "commands"]),
     ("serde_json", &["commands"]),
-    ("parquet", &["commands"]),
+    ("parquet", &["files/shards"]),
     ("signal_hook", &["commands"]),
     (
         "toml",
@@ -118,8 +118,8 @@ const EDGES: &[(&str, &[&str])] = &[
     (
         "std::fs",
         &[
-            "commands/tolerance/rows.rs",
-            "commands/tolerance/checksum.rs",
+            "files/shards/rows.rs",
+            "files/shards/checksum.rs",
             "files/new_file.rs",
             "files/journal.rs",
             "files/preferences.rs",

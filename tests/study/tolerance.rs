@@ -10,8 +10,8 @@ use stillbase::planning::Motion;
 use stillbase::session::Run;
 use stillbase::session::scenario::{Scenario, Spread, Tolerance, default_spreads};
 use stillbase::study::tolerance::{
-    Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Shares, ToleranceError, Yield, inverse_normal,
-    simulate,
+    AgainstTracking, Agreement, Bands, Batch, CHUNK, Distributions, Ensemble, Histogram, Mode, Outcome, Quantiles,
+    Shares, ToleranceError, Yield, Yields, inverse_normal, simulate,
 };
 
 fn spreads(pairs: &[(&str, &str)]) -> BTreeMap<String, Spread> {
@@ -399,6 +399,47 @@ fn simulated_machines_come_to_perfect_tracking_as_gains_grow() {
     let (simulated, nominal) = (simulate(&run, &base.machine).expect("it ends"), ensemble.nominal_outcome());
     assert!((simulated.peak_moment / nominal.peak_moment - 1.0).abs() < 1e-5);
     assert!((simulated.rms_moment / nominal.rms_moment - 1.0).abs() < 2e-3, "{simulated:?}, {nominal:?}");
+}
+
+/// Batches are cut from chunks, so that shards put together are the whole.
+#[test]
+fn batches_are_parts_of_the_whole() {
+    let scenario = Scenario::builtin("case-1").expect("built in");
+    let run = Run::new(&scenario).expect("it starts");
+    let some = spreads(&[("link.*.com", "normal:0.002"), ("link.*.mass", "uniform:5%")]);
+    let ensemble = Ensemble::new(&scenario.machine, &run.plan().motion, 50, &some, 3).expect("it varies");
+    let mut sampler = ensemble.sampler();
+    let all = sampler.outcomes(1).to_vec();
+    let first = CHUNK as u64;
+    let range = first + 2..first + 5;
+    let batch = Batch::of(&ensemble, &mut sampler, Mode::Tracking, (1, &range), true).expect("nothing is simulated");
+    assert_eq!((&batch.samples, &batch.outcomes[..]), (&range, &all[2..5]));
+    assert!(batch.tracking.is_empty() && batch.deviations.len() == 3);
+    assert_eq!(batch.deviations[1], of_machine(&sampler, 3));
+    let simulated = Batch::of(&ensemble, &mut sampler, Mode::Simulated(&run), (1, &range), false).expect("they end");
+    assert!(simulated.tracking == batch.outcomes && simulated.deviations.is_empty());
+    let plant = ensemble.machine_of(&batch.deviations[0]).expect("possible");
+    assert_eq!(simulated.outcomes[0], simulate(&run, &plant).expect("it ends"));
+    let against = AgainstTracking::of(&simulated.outcomes, &simulated.tracking).expect("they were simulated");
+    let furthest = simulated.outcomes.iter().zip(&batch.outcomes).map(|(a, b)| (a.peak_moment - b.peak_moment).abs());
+    assert_eq!(against.peak_moment_difference, furthest.fold(0.0, f64::max));
+    assert!(AgainstTracking::of(&simulated.outcomes, &[]).is_none());
+}
+
+#[test]
+fn all_machines_come_to_distributions_and_yields() {
+    let machine = |x: f64| Outcome { peak_moment: x, peak_force: 10.0 * x, rms_moment: 0.5 * x, rms_force: x };
+    let outcomes = [4.0, 1.0, 3.0, 2.0].map(machine);
+    let found = Distributions::of(&outcomes).expect("some");
+    assert_eq!((found.peak_moment.mean, found.peak_force.mean, found.rms_moment.mean), (2.5, 25.0, 1.25));
+    assert!((found.rms_force.deviation - (5.0f64 / 3.0).sqrt()).abs() < 1e-15);
+    assert_eq!([found.peak_moment.quantiles.values[0], found.peak_moment.quantiles.values[8]], [1.0, 4.0]);
+    assert!(Distributions::of(&[]).is_none());
+    let Yields { moment, force, both } = Yields::of(&outcomes, Some(3.0), Some(15.0));
+    let good = [moment, force, both].map(|kept| kept.expect("a limit").count.good);
+    assert_eq!(good, [3, 1, 1]);
+    let none = Yields::of(&outcomes, None, Some(15.0));
+    assert!(none.moment.is_none() && none.both.is_none());
 }
 
 #[test]

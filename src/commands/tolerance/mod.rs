@@ -1,23 +1,21 @@
 //! `stillbase tolerance`
 
-mod checksum;
-pub(crate) mod merge;
 mod parallel;
 mod report;
-pub(crate) mod rows;
 
 use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use stillbase::files::shards::{Head, ShardError, StudyId, Writer, merge};
 use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase::session::{Run, settled};
-use stillbase::study::tolerance::{Agreement, Bands, Ensemble, Outcome, Shares, ToleranceError, simulate};
+use stillbase::study::tolerance::{
+    AgainstTracking, Agreement, Bands, Distributions, Ensemble, Mode, Outcome, Shares, ToleranceError, Yields, simulate,
+};
 
-use self::parallel::Mode;
-use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
-use self::rows::{Head, OUTCOME_COLUMNS, StudyId, Writer};
+use self::report::{Answer, Merged};
 use crate::commands::exit::say;
 use crate::commands::failure::Failure;
 use crate::commands::input::{DEFAULT_SCENARIO, Settings, studied};
@@ -127,6 +125,12 @@ impl From<ToleranceError> for Failure {
     }
 }
 
+impl From<ShardError> for Failure {
+    fn from(e: ShardError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+
 impl Tolerance {
     /// Draws and judges the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
@@ -139,7 +143,7 @@ impl Tolerance {
     fn put_together(&self) -> Result<(), Failure> {
         let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
         check_output(whole, self.force, &["parquet", "csv"])?;
-        let (study, outcomes) = merge::merge(&self.merge, whole, self.force)?;
+        let (study, outcomes) = merge(&self.merge, whole, self.force)?;
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("the parts hold no machine"));
         };
@@ -208,7 +212,7 @@ impl Tolerance {
         let seed = section.seed.unwrap_or(1);
         let motion = &run.plan().motion;
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
-        let study = StudyId { samples, seed, problem: self.problem(&scenario, &section) };
+        let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
         let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("no machine was drawn"));
@@ -226,20 +230,20 @@ impl Tolerance {
             shard: [range.start, range.end],
             seed,
             motion_time: motion.duration(),
-            parameters: ensemble.parameters().iter().map(Drawn::of).collect(),
-            nominal: nominal.into(),
+            parameters: ensemble.parameters().to_vec(),
+            nominal,
             distributions,
             yields: Yields::of(&outcomes, section.moment_limit, section.force_limit),
             shares: Shares::of(&ensemble),
             agreement: Agreement::of(&bands),
             bands,
-            against_tracking: Compared::of(&outcomes, &tracking),
+            against_tracking: AgainstTracking::of(&outcomes, &tracking),
             file: self.output.as_ref().map(|file| file.display().to_string()),
         };
         if let Some(file) = &answer.file {
             say(format!("wrote {file}"));
         }
-        self.format.print(&answer, |answer| answer.text(&study, &nominal))
+        self.format.print(&answer, |answer| answer.text())
     }
 
     /// Evaluates the machines of a range and writes them if asked; outcomes, and those of perfect tracking where the
@@ -255,22 +259,21 @@ impl Tolerance {
         let mut writer = match &self.output {
             Some(file) => {
                 let names = parameters.iter().map(|p| format!("{} {}", p.key, p.unit));
-                let columns = names.chain(OUTCOME_COLUMNS.map(str::to_owned)).collect();
-                Some(Writer::create(file, self.force, &Head { study: *study, columns })?)
+                Some(Writer::create(file, self.force, &Head::new(*study, names))?)
             }
             None => None,
         };
         let mode = if self.simulate { Mode::Simulated(run) } else { Mode::Tracking };
         let bar = self.progress(range.end - range.start);
         let mut outcomes = Vec::with_capacity((range.end - range.start) as usize);
-        let (mut tracking, mut row) = (Vec::new(), Vec::new());
+        let (mut tracking, mut numbers) = (Vec::new(), Vec::new());
         let done = parallel::evaluate(ensemble, mode, range, writer.is_some(), |batch| {
             if let Some(writer) = &mut writer {
-                for ((sample, deviations), o) in batch.samples.clone().zip(&batch.deviations).zip(&batch.outcomes) {
-                    row.clear();
-                    row.extend(parameters.iter().zip(deviations).map(|(p, deviation)| p.nominal + deviation));
-                    row.extend([o.peak_moment, o.peak_force, o.rms_moment, o.rms_force]);
-                    writer.row(sample, &row)?;
+                for ((sample, deviations), outcome) in batch.samples.clone().zip(&batch.deviations).zip(&batch.outcomes)
+                {
+                    numbers.clear();
+                    numbers.extend(parameters.iter().zip(deviations).map(|(p, deviation)| p.nominal + deviation));
+                    writer.machine(sample, &numbers, outcome)?;
                 }
             }
             bar.inc(batch.samples.end - batch.samples.start);
@@ -292,19 +295,5 @@ impl Tolerance {
         }
         let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} machines, {eta} left");
         ProgressBar::new(machines).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-    }
-
-    /// A number of everything that a machine's row depends on, but for seed and samples (FNV-1a).
-    fn problem(&self, scenario: &Scenario, section: &Section) -> u64 {
-        let bare = Scenario { tolerance: Section::default(), edits: Vec::new(), ..scenario.clone() };
-        let spreads: Vec<String> = section.spreads.iter().map(|(key, spread)| format!("{key}={spread}")).collect();
-        let parts = [
-            env!("CARGO_PKG_VERSION").to_owned(),
-            bare.to_toml(),
-            spreads.join("\n"),
-            format!("{} {}", self.instants, self.simulate),
-        ];
-        let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        parts.join("\n").as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, byte)
     }
 }

@@ -18,6 +18,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
+use serde::Serialize;
 
 use super::ToleranceError;
 use super::constants::{self, LANES, Lanes, LinkConstants, count, evaluate, unit};
@@ -31,7 +32,7 @@ use crate::planning::{Motion, Reference};
 use crate::session::scenario::Spread;
 
 /// What one machine comes to on the motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
     /// Largest |n_B|, N m.
     pub peak_moment: f64,

@@ -18,25 +18,31 @@
 //! | means and deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | which tolerance matters | [`Share`] |
 //! | all of it for a run, as a window shows it | [`Study`] |
+//! | some machines after another, tracking perfectly or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
+//! | what all machines come to | [`Distributions`], [`Yields`], [`AgainstTracking`] |
 
 mod bands;
+mod batch;
 mod constants;
 mod deviate;
 mod ensemble;
 mod error;
 mod moments;
 mod parameter;
+mod report;
 mod shares;
 mod simulate;
 mod statistics;
 mod study;
 
 pub use bands::{Agreement, Bands, ForceBand, Gap, MomentBand, PERCENTILES};
+pub use batch::{Batch, Mode};
 pub use deviate::{CHUNK, inverse_normal};
 pub use ensemble::{Ensemble, Outcome, Sampler};
 pub use error::ToleranceError;
 pub use parameter::Parameter;
+pub use report::{AgainstTracking, Distribution, Distributions, Kept, Yields};
 pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};

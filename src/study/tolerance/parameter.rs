@@ -14,6 +14,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2};
 
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
 use super::ToleranceError;
 use super::deviate::inverse_normal;
 use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
@@ -140,6 +142,21 @@ const MOST_CUT: f64 = 0.1;
 
 /// The largest number of a machine.
 const MOST: f64 = 1e6;
+
+/// Its key, unit and nominal value, how it varies, and what is drawn of that.
+impl Serialize for Parameter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("Parameter", 7)?;
+        fields.serialize_field("key", &self.key)?;
+        fields.serialize_field("unit", self.unit)?;
+        fields.serialize_field("nominal", &self.nominal)?;
+        fields.serialize_field("spread", &self.spread.to_string())?;
+        fields.serialize_field("deviation", &self.deviation)?;
+        fields.serialize_field("mean_deviation", &self.mean_deviation())?;
+        fields.serialize_field("cut", &self.cut)?;
+        fields.end()
+    }
+}
 
 impl Parameter {
     fn new(

@@ -1,37 +1,32 @@
 //! Puts the shards of a study together, or says which of them are missing, doubled or of another study.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use stillbase::study::tolerance::Outcome;
-
-use super::rows::{Head, OUTCOMES, StudyId, StudyPart, Writer};
-use crate::commands::failure::Failure;
+use super::error::ShardError;
+use super::rows::{Head, StudyId, StudyPart, Writer, outcome_of};
+use crate::study::tolerance::Outcome;
 
 /// Puts parts together, in whatever order they are named, and gives what their machines come to.
 ///
 /// # Errors
 /// If a part is of another study, or samples are there twice or missing.
-pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<Outcome>), Failure> {
+pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<Outcome>), ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
         let part = StudyPart::open(file)?;
         opened.push((part.first_sample()?, part));
     }
-    let Some((_, reference)) = opened.first() else { return Err(Failure::wrong_input("--merge: want parts")) };
+    let Some((_, reference)) = opened.first() else { return Err(ShardError::Wrong("--merge: want parts".into())) };
     let head = reference.head.clone();
     if let Some((_, other)) = opened.iter().find(|(_, part)| part.head != head) {
         let [other_file, file] = [other, reference].map(|part| part.file.display());
         let why = difference(&other.head, &head);
-        return Err(Failure::wrong_input(format!("{other_file} and {file} are parts of different studies: {why}")));
+        return Err(ShardError::Wrong(format!("{other_file} and {file} are parts of different studies: {why}")));
     }
     // A shard without a machine has no place of its own.
     opened.sort_by_key(|(first, _)| first.unwrap_or(u64::MAX));
     let mut writer = Writer::create(whole, force, &head)?;
-    let outcome = |row: &[f64]| {
-        let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOMES]);
-        let [peak_moment, peak_force, rms_moment, rms_force] = last;
-        Outcome { peak_moment, peak_force, rms_moment, rms_force }
-    };
     let (mut next, mut outcomes, mut before) = (0, Vec::new(), None::<PathBuf>);
     for (first, part) in opened {
         let file = part.file.clone();
@@ -41,16 +36,17 @@ pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, V
         if let (Some(first), Some(before)) = (first.filter(|first| *first < next), &before) {
             let (file, before) = (file.display(), before.display());
             let why = format!("{file}: sample {first} stands in {before} too: want every shard once");
-            return Err(Failure::wrong_input(why));
+            return Err(ShardError::Wrong(why));
         }
         part.rows(|sample, row| {
             if sample != next {
                 let why = format!("{}: sample {sample} where {next} should follow: want a whole shard", file.display());
-                return Err(Failure::wrong_input(why));
+                return Err(ShardError::Wrong(why));
             }
             next += 1;
-            outcomes.push(outcome(row));
-            writer.row(sample, row)
+            outcomes.push(outcome_of(row));
+            writer.row(sample, row)?;
+            Ok(ControlFlow::Continue(()))
         })?;
         before = Some(file);
     }
@@ -61,8 +57,8 @@ pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, V
     Ok((head.study, outcomes))
 }
 
-fn missing(first: u64, last: u64) -> Failure {
-    Failure::wrong_input(format!("samples {first} to {last} are in no part: want every shard"))
+fn missing(first: u64, last: u64) -> ShardError {
+    ShardError::Wrong(format!("samples {first} to {last} are in no part: want every shard"))
 }
 
 /// In what two heads differ.

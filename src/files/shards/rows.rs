@@ -3,6 +3,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::ops::ControlFlow;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,10 +17,12 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
-use stillbase::files::{NewFile, WriteError};
 
 use super::checksum::{self, BEFORE, BLANK, CheckedFile, End};
-use crate::commands::failure::Failure;
+use super::error::{ShardError, wrong};
+use crate::files::{NewFile, WriteError};
+use crate::session::scenario::{Scenario, Tolerance};
+use crate::study::tolerance::Outcome;
 
 /// Which study rows belong to. Its text heads the column of samples in a CSV file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +43,28 @@ impl fmt::Display for StudyId {
 }
 
 impl StudyId {
+    /// Of the machines of a scenario with its tolerances, of which so many instants are looked at, or which are simulated:
+    /// everything that a machine's row depends on (FNV-1a).
+    pub fn of(
+        scenario: &Scenario,
+        tolerance: &Tolerance,
+        [samples, seed]: [u64; 2],
+        instants: u32,
+        simulated: bool,
+    ) -> Self {
+        let bare = Scenario { tolerance: Tolerance::default(), edits: Vec::new(), ..scenario.clone() };
+        let spreads: Vec<String> = tolerance.spreads.iter().map(|(key, spread)| format!("{key}={spread}")).collect();
+        let parts = [
+            env!("CARGO_PKG_VERSION").to_owned(),
+            bare.to_toml(),
+            spreads.join("\n"),
+            format!("{instants} {simulated}"),
+        ];
+        let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        let problem = parts.join("\n").as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, byte);
+        Self { samples, seed, problem }
+    }
+
     fn parse(text: &str) -> Option<Self> {
         let ["sample", "of", samples, "seed", seed, "problem", problem, "check", _] =
             *text.splitn(9, ' ').collect::<Vec<_>>()
@@ -63,6 +88,20 @@ pub struct Head {
     pub columns: Vec<String>,
 }
 
+impl Head {
+    /// Of machines that vary in numbers by name, with units.
+    pub fn new(study: StudyId, numbers: impl IntoIterator<Item = String>) -> Self {
+        Self { study, columns: numbers.into_iter().chain(OUTCOME_COLUMNS.map(str::to_owned)).collect() }
+    }
+}
+
+/// The last numbers of a row: what its machine comes to.
+pub fn outcome_of(row: &[f64]) -> Outcome {
+    let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOMES]);
+    let [peak_moment, peak_force, rms_moment, rms_force] = last;
+    Outcome { peak_moment, peak_force, rms_moment, rms_force }
+}
+
 /// How many numbers each machine comes to.
 pub const OUTCOMES: usize = 4;
 
@@ -83,25 +122,25 @@ impl Kind {
     }
 }
 
-fn kind_of(file: &Path) -> Result<Kind, Failure> {
+fn kind_of(file: &Path) -> Result<Kind, ShardError> {
     match file.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("csv") => Ok(Kind::Csv),
         Some("parquet") => Ok(Kind::Parquet),
-        _ => Err(Failure::wrong_input(format!("{}: want a name that ends in .csv or .parquet", file.display()))),
+        _ => Err(wrong(file, "want a name that ends in .csv or .parquet")),
     }
 }
 
 /// Rows of a Parquet row group.
-const GROUP: usize = 65_536;
+const GROUP_ROWS: usize = 65_536;
 
 /// Columns of a file, at most: far more than any machine has parameters.
-const MOST_COLUMNS: usize = 1000;
+const MAX_COLUMNS: usize = 1000;
 
 /// The longest line of a CSV file, bytes.
-const LONGEST_LINE: u64 = 1 << 18;
+const MAX_LINE_BYTES: u64 = 1 << 18;
 
 /// The longest table of contents of a Parquet file, bytes: that of as many machines as there may be.
-const LONGEST_CONTENTS: u64 = 1 << 27;
+const MAX_CONTENTS_BYTES: u64 = 1 << 27;
 
 /// The key under which a Parquet file names its study.
 const STUDY_KEY: &str = "stillbase.study";
@@ -127,7 +166,7 @@ impl Writer {
     ///
     /// # Errors
     /// If it cannot be made.
-    pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, Failure> {
+    pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, ShardError> {
         let kind = kind_of(file)?;
         let out = CheckedFile::new(NewFile::create(file, force)?);
         match kind {
@@ -141,11 +180,20 @@ impl Writer {
         }
     }
 
+    /// One more machine: the numbers that vary, and what it comes to.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn machine(&mut self, sample: u64, numbers: &[f64], outcome: &Outcome) -> Result<(), ShardError> {
+        let Outcome { peak_moment, peak_force, rms_moment, rms_force } = *outcome;
+        self.row(sample, &[numbers, &[peak_moment, peak_force, rms_moment, rms_force]].concat())
+    }
+
     /// One more row.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), Failure> {
+    pub fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), ShardError> {
         match self {
             Self::Csv(writer) => {
                 let done = writer.serialize((sample, values));
@@ -159,7 +207,7 @@ impl Writer {
     ///
     /// # Errors
     /// If not everything could be written.
-    pub fn finish(self) -> Result<(), Failure> {
+    pub fn finish(self) -> Result<(), ShardError> {
         match self {
             Self::Csv(writer) => {
                 let file = writer.get_ref().path().to_owned();
@@ -171,20 +219,20 @@ impl Writer {
     }
 }
 
-fn csv_failure(file: &Path, error: csv::Error) -> Failure {
+fn csv_failure(file: &Path, error: csv::Error) -> ShardError {
     match error.into_kind() {
         csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
-        other => Failure::wrong_input(format!("{}: {other:?}", file.display())),
+        other => wrong(file, format!("{other:?}")),
     }
 }
 
-fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> Failure + use<> {
-    let file = file.display().to_string();
-    move |e| Failure::wrong_input(format!("{file}: {e}: want a Parquet file that can be read, or a place to write one"))
+fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> ShardError + use<> {
+    let file = file.to_owned();
+    move |e| wrong(&file, format!("{e}: want a Parquet file that can be read, or a place to write one"))
 }
 
 impl Groups {
-    fn create(out: CheckedFile, head: &Head) -> Result<Self, Failure> {
+    fn create(out: CheckedFile, head: &Head) -> Result<Self, ShardError> {
         let file = out.path().to_owned();
         let failed = parquet_failure(&file);
         let column = |name: &str, physical| {
@@ -204,10 +252,10 @@ impl Groups {
         Ok(Self { writer, file, samples: Vec::new(), columns: vec![Vec::new(); head.columns.len()] })
     }
 
-    fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), Failure> {
+    fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), ShardError> {
         self.samples.push(i64::try_from(sample).unwrap_or(i64::MAX));
         self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
-        if self.samples.len() < GROUP {
+        if self.samples.len() < GROUP_ROWS {
             return Ok(());
         }
         self.write_group().map_err(parquet_failure(&self.file))
@@ -230,7 +278,7 @@ impl Groups {
         group.close().map(|_| ())
     }
 
-    fn finish(mut self) -> Result<(), Failure> {
+    fn finish(mut self) -> Result<(), ShardError> {
         let failed = parquet_failure(&self.file);
         if !self.samples.is_empty() {
             self.write_group().map_err(&failed)?;
@@ -260,14 +308,14 @@ impl StudyPart {
     ///
     /// # Errors
     /// If it is none that this program wrote, or has changed since.
-    pub fn open(file: &Path) -> Result<Self, Failure> {
+    pub fn open(file: &Path) -> Result<Self, ShardError> {
         let (kind, mut opened) = plain_file(file)?;
-        let unreadable = |e| Failure::wrong_input(e).of(file.display());
+        let unreadable = |e| wrong(file, e);
         match checksum::holds(&mut opened, kind.end()).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
                 let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
-                Err(Failure::wrong_input(why).of(file.display()))
+                Err(wrong(file, why))
             }
             None => Err(foreign(file)),
         }
@@ -277,20 +325,17 @@ impl StudyPart {
     ///
     /// # Errors
     /// If it cannot be read.
-    pub fn first_sample(&self) -> Result<Option<u64>, Failure> {
+    pub fn first_sample(&self) -> Result<Option<u64>, ShardError> {
         let mut first = None;
-        let enough = |sample, _: &[f64]| {
+        Self::load(&self.file)?.rows(|sample, _| {
             first = Some(sample);
-            Err(Failure::ReaderGone)
-        };
-        match Self::load(&self.file)?.rows(enough) {
-            Ok(()) | Err(Failure::ReaderGone) => Ok(first),
-            Err(failure) => Err(failure),
-        }
+            Ok(ControlFlow::Break(()))
+        })?;
+        Ok(first)
     }
 
     /// Reads the head.
-    fn load(file: &Path) -> Result<Self, Failure> {
+    fn load(file: &Path) -> Result<Self, ShardError> {
         let (kind, opened) = plain_file(file)?;
         let (study, columns, reader) = match kind {
             Kind::Csv => {
@@ -322,21 +367,24 @@ impl StudyPart {
                 (study, columns, Reader::Parquet(Box::new(reader)))
             }
         };
-        if columns.len() > MOST_COLUMNS || !columns.ends_with(&OUTCOME_COLUMNS.map(str::to_owned)) {
+        if columns.len() > MAX_COLUMNS || !columns.ends_with(&OUTCOME_COLUMNS.map(str::to_owned)) {
             return Err(foreign(file));
         }
         let head = Head { study: study.ok_or_else(|| foreign(file))?, columns };
         Ok(Self { file: file.into(), head, reader })
     }
 
-    /// Shows every row, each of finite numbers, its last those of a machine.
+    /// Shows rows until `see` has seen enough, each of finite numbers, its last those of a machine.
     ///
     /// # Errors
     /// If one cannot be read or cannot be, or what `see` says.
-    pub fn rows(self, mut see: impl FnMut(u64, &[f64]) -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn rows(
+        self,
+        mut see: impl FnMut(u64, &[f64]) -> Result<ControlFlow<()>, ShardError>,
+    ) -> Result<(), ShardError> {
         let Self { file, head: Head { study, columns: names }, reader } = self;
         let mut see = |sample: u64, row: &[f64]| {
-            plausible(&study, &names, sample, row).map_err(|why| Failure::wrong_input(why).of(file.display()))?;
+            plausible(&study, &names, sample, row).map_err(|why| wrong(&file, why))?;
             see(sample, row)
         };
         let mut row = vec![0.0; names.len()];
@@ -345,7 +393,7 @@ impl StudyPart {
                 for number in 2_u64.. {
                     let broken = || {
                         let want = format!("want the number of a sample and {} numbers", names.len());
-                        Failure::wrong_input(want).of(format!("{}:{number}", file.display()))
+                        ShardError::Wrong(format!("{}:{number}: {want}", file.display()))
                     };
                     let line = line(&mut reader).ok_or_else(broken)?;
                     if line.is_empty() {
@@ -360,7 +408,9 @@ impl StudyPart {
                     if cells.next().is_some() {
                         return Err(broken());
                     }
-                    see(sample, &row)?;
+                    if see(sample, &row)?.is_break() {
+                        break;
+                    }
                 }
                 Ok(())
             }
@@ -369,7 +419,9 @@ impl StudyPart {
                     let (samples, columns) = guarded(&file, || group_of(&file, &reader, group, row.len()))?;
                     for (i, sample) in samples.iter().enumerate() {
                         row.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[i]);
-                        see(u64::try_from(*sample).unwrap_or(u64::MAX), &row)?;
+                        if see(u64::try_from(*sample).unwrap_or(u64::MAX), &row)?.is_break() {
+                            return Ok(());
+                        }
                     }
                 }
                 Ok(())
@@ -378,17 +430,17 @@ impl StudyPart {
     }
 }
 
-fn foreign(file: &Path) -> Failure {
+fn foreign(file: &Path) -> ShardError {
     let why = "want a file that this version's `stillbase tolerance -o` wrote";
-    Failure::wrong_input(why).of(file.display())
+    wrong(file, why)
 }
 
 /// A file by its name: a plain one.
-fn plain_file(file: &Path) -> Result<(Kind, File), Failure> {
+fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
     let kind = kind_of(file)?;
-    let unreadable = |e| Failure::wrong_input(format!("{e}: want a plain file that can be read")).of(file.display());
+    let unreadable = |e| wrong(file, format!("{e}: want a plain file that can be read"));
     // To open a pipe would already wait for its other end.
-    let there = std::fs::metadata(file).and_then(|there| stillbase::files::text::check(&there, u64::MAX));
+    let there = std::fs::metadata(file).and_then(|there| crate::files::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
     Ok((kind, File::open(file).map_err(unreadable)?))
 }
@@ -396,12 +448,12 @@ fn plain_file(file: &Path) -> Result<(Kind, File), Failure> {
 /// The next line with its end, empty after the last; none if it cannot be read or is too long.
 fn line(reader: &mut BufReader<File>) -> Option<Vec<u8>> {
     let mut line = Vec::new();
-    reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line).ok()?;
-    ((line.len() as u64) < LONGEST_LINE).then_some(line)
+    reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line).ok()?;
+    ((line.len() as u64) < MAX_LINE_BYTES).then_some(line)
 }
 
 /// A reader of a Parquet file whose table of contents can be what it says.
-fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, Failure> {
+fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, ShardError> {
     let mut contents = || {
         let length = opened.metadata().ok()?.len();
         opened.seek(SeekFrom::End(-8)).ok()?;
@@ -409,7 +461,7 @@ fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<
         opened.read_exact(&mut last).ok()?;
         let [a, b, c, d, magic @ ..] = last;
         let contents = u64::from(u32::from_le_bytes([a, b, c, d]));
-        (magic == *b"PAR1" && contents <= LONGEST_CONTENTS && contents + 12 <= length).then_some(length)
+        (magic == *b"PAR1" && contents <= MAX_CONTENTS_BYTES && contents + 12 <= length).then_some(length)
     };
     let length = contents().ok_or_else(|| foreign(file))?;
     let reader = guarded(file, || SerializedFileReader::new(opened).map_err(parquet_failure(file)))?;
@@ -437,7 +489,7 @@ fn group_of(
     reader: &SerializedFileReader<File>,
     group: usize,
     width: usize,
-) -> Result<(Vec<i64>, Vec<Vec<f64>>), Failure> {
+) -> Result<(Vec<i64>, Vec<Vec<f64>>), ShardError> {
     let failed = parquet_failure(file);
     let group = reader.get_row_group(group).map_err(&failed)?;
     let count = rows_of(group.metadata()).ok_or_else(|| foreign(file))?;
@@ -456,7 +508,7 @@ fn group_of(
 }
 
 /// What the Parquet reader makes of a file: it panics on some damaged files, which are refused here.
-fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Result<T, ShardError> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     let done = panic::catch_unwind(AssertUnwindSafe(read));
@@ -466,7 +518,7 @@ fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, Failure>) -> Result<
 
 /// How many rows a group has, if it is as large as those that are written here.
 fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
-    usize::try_from(group.num_rows()).ok().filter(|rows| (1..=GROUP).contains(rows))
+    usize::try_from(group.num_rows()).ok().filter(|rows| (1..=GROUP_ROWS).contains(rows))
 }
 
 /// What is wrong with a row that no machine has.

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use stillbase::files::{NewFile, WriteError};
+use crate::files::{NewFile, WriteError};
 
 /// The text before the checksum.
 pub const BEFORE: &str = " check ";

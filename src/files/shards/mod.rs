@@ -1,0 +1,11 @@
+//! Studies of tolerances in files, CSV or Parquet: one row a machine, each file a shard of the machines of one study, and
+//! shards put together again. A head names the study, and a checksum covers every byte.
+
+mod checksum;
+mod error;
+mod merge;
+mod rows;
+
+pub use error::ShardError;
+pub use merge::merge;
+pub use rows::{Head, StudyId, StudyPart, Writer};

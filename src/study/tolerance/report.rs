@@ -1,0 +1,139 @@
+//! What many machines come to: distributions, how many keep within limits, and simulation against perfect tracking.
+
+use serde::Serialize;
+
+use super::ensemble::Outcome;
+use super::statistics::{Histogram, Quantiles, Yield};
+
+/// A quantity over all machines.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Distribution {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// At [`Quantiles::LEVELS`].
+    pub quantiles: Quantiles,
+    /// In equal intervals between its extremes.
+    pub histogram: Histogram,
+}
+
+/// Intervals of a histogram.
+const BINS: usize = 50;
+
+impl Distribution {
+    fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_unstable_by(f64::total_cmp);
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+        Some(Self {
+            mean,
+            deviation: (squares / (n - 1.0).max(1.0)).sqrt(),
+            quantiles: Quantiles::of_sorted(&values, &Quantiles::LEVELS)?,
+            histogram: Histogram::of_sorted(&values, BINS)?,
+        })
+    }
+}
+
+/// The four numbers of every machine.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Distributions {
+    /// Largest |n_B|, N m.
+    pub peak_moment: Distribution,
+    /// Largest dynamic |f_B|, N.
+    pub peak_force: Distribution,
+    /// Root mean square of n_B over time, N m.
+    pub rms_moment: Distribution,
+    /// Root mean square of the dynamic |f_B| over time, N.
+    pub rms_force: Distribution,
+}
+
+impl Distributions {
+    /// Of machines; `None` if there are none.
+    pub fn of(outcomes: &[Outcome]) -> Option<Self> {
+        let of = |f: fn(&Outcome) -> f64| Distribution::of(outcomes.iter().map(f).collect());
+        Some(Self {
+            peak_moment: of(|o| o.peak_moment)?,
+            peak_force: of(|o| o.peak_force)?,
+            rms_moment: of(|o| o.rms_moment)?,
+            rms_force: of(|o| o.rms_force)?,
+        })
+    }
+}
+
+/// How many keep within a limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Kept {
+    /// N m or N; none where two limits count together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<f64>,
+    /// How many do.
+    #[serde(flatten)]
+    pub count: Yield,
+}
+
+/// How many keep within the limits that were given.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Yields {
+    /// On peak |n_B|, N m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Kept>,
+    /// On peak |f_B|, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<Kept>,
+    /// On both together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub both: Option<Kept>,
+}
+
+impl Yields {
+    /// Of machines, by limits on peak |n_B|, N m, and peak |f_B|, N.
+    pub fn of(outcomes: &[Outcome], moment: Option<f64>, force: Option<f64>) -> Self {
+        let count = |good: &dyn Fn(&Outcome) -> bool| {
+            Yield::new(outcomes.iter().filter(|o| good(o)).count() as u64, outcomes.len() as u64)
+        };
+        let kept = |limit: Option<f64>, of: fn(&Outcome) -> f64| {
+            limit.map(|most| Kept { limit, count: count(&|o| of(o) <= most) })
+        };
+        let both = moment
+            .zip(force)
+            .map(|(n, f)| Kept { limit: None, count: count(&|o| o.peak_moment <= n && o.peak_force <= f) });
+        Self { moment: kept(moment, |o| o.peak_moment), force: kept(force, |o| o.peak_force), both }
+    }
+}
+
+/// Simulated machines against the same ones with perfect tracking.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AgainstTracking {
+    /// Largest difference of peak |n_B|, N m.
+    pub peak_moment_difference: f64,
+    /// Largest difference of peak |f_B|, N.
+    pub peak_force_difference: f64,
+    /// Mean of peak |n_B| simulated, by that with perfect tracking.
+    pub peak_moment_ratio: f64,
+    /// Mean of peak |f_B| simulated, by that with perfect tracking.
+    pub peak_force_ratio: f64,
+}
+
+impl AgainstTracking {
+    /// Of the same machines in the same order; `None` if nothing was simulated.
+    pub fn of(simulated: &[Outcome], tracking: &[Outcome]) -> Option<Self> {
+        if tracking.is_empty() {
+            return None;
+        }
+        let difference = |of: fn(&Outcome) -> f64| {
+            simulated.iter().zip(tracking).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max)
+        };
+        let ratio = |of: fn(&Outcome) -> f64| {
+            let sum = |all: &[Outcome]| all.iter().map(of).sum::<f64>();
+            if sum(tracking) > 0.0 { sum(simulated) / sum(tracking) } else { 1.0 }
+        };
+        Some(Self {
+            peak_moment_difference: difference(|o| o.peak_moment),
+            peak_force_difference: difference(|o| o.peak_force),
+            peak_moment_ratio: ratio(|o| o.peak_moment),
+            peak_force_ratio: ratio(|o| o.peak_force),
+        })
+    }
+}

@@ -1,0 +1,70 @@
+//! Shards of a study of tolerances: put together they are the whole, and what is missing, doubled or foreign is refused.
+
+use std::path::PathBuf;
+
+use stillbase::files::shards::{Head, ShardError, StudyId, StudyPart, Writer, merge};
+use stillbase::study::tolerance::Outcome;
+
+use crate::folder::Folder;
+
+const STUDY: StudyId = StudyId { samples: 30, seed: 1, problem: 7 };
+
+fn machine(i: u64) -> Outcome {
+    let x = 0.1 + 1e-3 * i as f64;
+    Outcome { peak_moment: x, peak_force: 2.0 * x, rms_moment: 0.5 * x, rms_force: x }
+}
+
+fn write(file: PathBuf, study: StudyId, samples: std::ops::Range<u64>) -> PathBuf {
+    let head = Head::new(study, ["link.5.com m".to_owned()]);
+    let mut writer = Writer::create(&file, true, &head).expect("begun");
+    for i in samples {
+        writer.machine(i, &[-0.02 + 1e-4 * i as f64], &machine(i)).expect("written");
+    }
+    writer.finish().expect("written");
+    file
+}
+
+#[test]
+fn shards_put_together_are_the_whole() {
+    let folder = Folder::new("shards");
+    for ending in ["csv", "parquet"] {
+        let named = |name: &str| folder.path(&format!("{name}.{ending}"));
+        let whole = write(named("whole"), STUDY, 0..30);
+        // A shard may hold no machine.
+        let parts = [("b", 12..30), ("none", 12..12), ("a", 0..12)].map(|(name, of)| write(named(name), STUDY, of));
+        let merged = named("merged");
+        let (study, outcomes) = merge(&parts, &merged, false).expect("all of it");
+        assert_eq!((study, outcomes), (STUDY, (0..30).map(machine).collect()));
+        let bytes = |file: &PathBuf| std::fs::read(file).expect("readable");
+        assert!(bytes(&merged) == bytes(&whole), "{ending}");
+        let part = StudyPart::open(&parts[0]).expect("a shard");
+        assert_eq!((part.first_sample().expect("readable"), part.head.columns.len()), (Some(12), 5));
+    }
+}
+
+#[test]
+fn what_is_no_whole_study_is_refused() {
+    let folder = Folder::new("shards");
+    let named = |name: &str| folder.path(&format!("{name}.csv"));
+    let a = write(named("a"), STUDY, 0..12);
+    let b = write(named("b"), STUDY, 12..30);
+    let late = write(named("late"), STUDY, 13..30);
+    let other = write(named("other"), StudyId { seed: 2, ..STUDY }, 12..30);
+    for (parts, want) in [
+        (vec![], "want parts"),
+        (vec![a.clone()], "samples 12 to 29 are in no part"),
+        (vec![a.clone(), late], "samples 12 to 12 are in no part"),
+        (vec![a.clone(), a.clone(), b.clone()], "sample 0 stands in"),
+        (vec![a.clone(), other], "seeds 2 and 1"),
+        (vec![named("nowhere")], "want a plain file that can be read"),
+        (vec![folder.path("a.txt")], "want a name that ends in .csv or .parquet"),
+    ] {
+        let why = merge(&parts, &named("merged"), true).expect_err(want);
+        assert!(matches!(&why, ShardError::Wrong(said) if said.contains(want)), "{why}");
+    }
+    // A single digit that differs is noticed.
+    let text = std::fs::read_to_string(&b).expect("readable").replacen("0.112", "0.113", 1);
+    std::fs::write(&b, text).expect("written");
+    let why = merge(&[a, b], &named("merged"), true).expect_err("changed");
+    assert!(why.to_string().contains("its checksum does not fit"), "{why}");
+}
