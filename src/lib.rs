@@ -91,9 +91,9 @@
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
-//! | [`study`] | many runs side by side and around a nominal machine; equations with numbers; a built machine, measured |
+//! | [`study`] | many runs side by side and around a nominal machine; what plans, designs, imports and measurements say |
 //! | [`picture`] | scenes as plain data, the table of charts, and what paints them (features `render`, `ui`) |
-//! | [`files`] | files that appear whole or not at all |
+//! | [`files`] | files that appear whole or not at all; tables of numbers from others; shards of a study |
 //! | `recording` | the same picture for Rerun (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
 //! | `commands` | the program's subcommands, one file each |
@@ -121,7 +121,8 @@
 //! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages name its ending
 //!   then; write a section of `guide/elsewhere.md`.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
-//!   follow; write a line of `guide/command_line.md`.
+//!   follow; write a line of `guide/command_line.md`. It reads arguments, asks and prints: what is computed is a query or
+//!   an answer of the library (most in `study/`), which the command serialises and the window can show.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
 //!   the tests draw it at random.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,

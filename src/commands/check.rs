@@ -6,6 +6,7 @@ use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::off_plane::null_space::is_integrable;
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::session::verdict::Statement;
+use stillbase::study::balance_constants::BalanceConstants;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
@@ -26,59 +27,31 @@ pub struct Check {
     format: Format,
 }
 
-/// The constants of balance. Coefficients are real parts; pairs in the order (1,2), (1,3), (2,3) …
-#[derive(Serialize)]
-pub struct Balance {
-    /// g_k, kg m.
-    pub gamma_coefficients: Vec<f64>,
-    /// C_kl, kg m².
-    pub coupling_coefficients: Vec<f64>,
-    /// H_kk, kg m².
-    pub h: Vec<f64>,
-    /// D_k where all C_kl vanish, kg m²; gears make it another than H_kk.
-    pub d: Vec<f64>,
-    /// λ_k.
-    pub lambda: Vec<f64>,
-}
-
-impl Balance {
-    /// Of a machine.
-    pub fn of(inertia: &Inertia) -> Self {
-        let n = inertia.drives();
-        Self {
-            gamma_coefficients: (0..n).map(|k| inertia.first_moment(k).re).collect(),
-            coupling_coefficients: Inertia::pairs(n).map(|(k, l)| inertia.coupling(k, l).re).collect(),
-            h: inertia.diagonals().to_vec(),
-            d: inertia.momenta().to_vec(),
-            lambda: inertia.lambda().to_vec(),
-        }
+/// One row a drive, then one a pair of drives.
+pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
+    let drives = &machine.spec().drives;
+    let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
+    for (k, drive) in drives.iter().enumerate() {
+        let [g, h, d, l] =
+            [&balance.gamma_coefficients, &balance.h, &balance.d, &balance.lambda].map(|of| fixed(of[k], 9));
+        let row = [g, h, d, l];
+        by_drive.row([drive.name.clone()].into_iter().chain(row));
     }
-
-    /// One row a drive, then one a pair of drives.
-    pub fn tables(&self, machine: &Machine) -> String {
-        let drives = &machine.spec().drives;
-        let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
-        for (k, drive) in drives.iter().enumerate() {
-            let [g, h, d, l] = [&self.gamma_coefficients, &self.h, &self.d, &self.lambda].map(|of| fixed(of[k], 9));
-            let row = [g, h, d, l];
-            by_drive.row([drive.name.clone()].into_iter().chain(row));
-        }
-        if drives.len() < 2 {
-            return by_drive.to_string();
-        }
-        let mut by_pair = Table::new(["pair", "C kg m²"]);
-        for ((k, l), c) in Inertia::pairs(drives.len()).zip(&self.coupling_coefficients) {
-            by_pair.row([format!("{}, {}", drives[k].name, drives[l].name), fixed(*c, 9)]);
-        }
-        format!("{by_drive}\n{by_pair}")
+    if drives.len() < 2 {
+        return by_drive.to_string();
     }
+    let mut by_pair = Table::new(["pair", "C kg m²"]);
+    for ((k, l), c) in Inertia::pairs(drives.len()).zip(&balance.coupling_coefficients) {
+        by_pair.row([format!("{}, {}", drives[k].name, drives[l].name), fixed(*c, 9)]);
+    }
+    format!("{by_drive}\n{by_pair}")
 }
 
 #[derive(Serialize)]
 struct Answer {
     mass: f64,
     #[serde(flatten)]
-    balance: Balance,
+    balance: BalanceConstants,
     force_balanced: bool,
     invariant: bool,
     /// What window and recordings say of it.
@@ -96,7 +69,7 @@ impl Check {
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
         let answer = Answer {
             mass: inertia.mass(),
-            balance: Balance::of(&inertia),
+            balance: BalanceConstants::of(&inertia),
             force_balanced: inertia.is_force_balanced(),
             invariant: inertia.is_invariant(),
             machine: Statement::of_machine(&inertia),
@@ -116,7 +89,7 @@ impl Check {
                 yes(answer.force_balanced),
                 yes(answer.invariant),
                 constant,
-                answer.balance.tables(&machine),
+                balance_tables(&answer.balance, &machine),
             )
         })
     }

@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
-use stillbase::mechanics::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
-use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::mechanics::planar::cross;
+use stillbase::mechanics::joint_forces::Pin;
 use stillbase::session::replay_if;
 use stillbase::simulation::frame::Frame;
+use stillbase::study::joint_extremes::{JointExtremes, JointReport};
 
 use super::csv_file::Csv;
 use super::exit::say;
@@ -42,150 +40,30 @@ pub struct JointsCommand {
     format: Format,
 }
 
-/// The largest or least of something, and when.
-#[derive(Clone, Copy, Serialize)]
-struct Extreme {
-    value: f64,
-    time: f64,
-}
-
-impl Extreme {
-    fn include(seen: &mut Option<Self>, value: f64, time: f64, better: fn(f64, f64) -> bool) {
-        if seen.is_none_or(|s| better(value, s.value)) {
-            *seen = Some(Self { value, time });
-        }
-    }
-}
-
-#[derive(Serialize)]
-struct PinAnswer {
-    name: String,
-    /// `base` or a link.
-    from: String,
-    to: String,
-    /// N.
-    peak: f64,
-    /// s.
-    time: f64,
-    /// N.
-    mean: f64,
-    /// Steps at a change point, which peak and mean leave out.
-    undefined_steps: u64,
-}
-
-/// Two drives whose parallelograms, or other loops, lie flat where they line up.
-#[derive(Serialize)]
-struct Pair {
-    drives: [String; 2],
-    /// Pins that close parallelograms of these two drives.
-    closures: Vec<String>,
-    /// Least |sin(q_k − q_l)|: 0 where a change point is passed.
-    least: f64,
-    /// The transmission angle there, rad.
-    angle: f64,
-    /// s.
-    time: f64,
-    /// Change points passed between two steps.
-    passed: u64,
-}
-
-#[derive(Serialize)]
-struct TiltAnswer {
-    /// Whether all heights are zero, so that the plane model knows of no tilting.
-    flat: bool,
-    /// |n_x|, N m.
-    x: Extreme,
-    /// |n_y|, N m.
-    y: Extreme,
-    /// The same of the part that comes from motion alone, N m.
-    motion: Extreme,
-    /// Largest weighted first moment about the height of the centre of mass, kg m²: 0 where no motion tilts.
-    residual: f64,
-}
-
-#[derive(Serialize)]
-struct Answer {
-    scenario: String,
-    steps: u64,
-    pins: Vec<PinAnswer>,
-    worst: String,
-    transmission: Vec<Pair>,
-    tilt: TiltAnswer,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    audit_failed: Option<String>,
-}
-
-/// sin(q_k − q_l) of two drives over a run.
-#[derive(Clone, Copy, Default)]
-struct Sine {
-    last: Option<Extreme>,
-    least: Option<Extreme>,
-    passed: u64,
-}
-
-impl Sine {
-    fn include(&mut self, sine: f64, time: f64) {
-        Extreme::include(&mut self.least, sine.abs(), time, |a, b| a < b);
-        if let Some(last) = self.last.filter(|last| last.value * sine < 0.0) {
-            let zero = last.time + (time - last.time) * last.value / (last.value - sine);
-            Extreme::include(&mut self.least, 0.0, zero, |a, b| a < b);
-            self.passed += 1;
-        }
-        self.last = Some(Extreme { value: sine, time });
-    }
-}
-
-/// What a run is asked about.
-struct Extremes {
-    pins: Vec<PinPeak>,
-    pairs: Vec<Sine>,
-    tilt: [Option<Extreme>; 3],
-}
-
-impl Extremes {
-    fn new(pins: usize, pairs: usize) -> Self {
-        Self { pins: vec![PinPeak::default(); pins], pairs: vec![Sine::default(); pairs], tilt: [None; 3] }
-    }
-
-    fn include(&mut self, frame: &Frame) {
-        let (t, e) = (frame.time, frame.q.units());
-        for (i, pin) in self.pins.iter_mut().enumerate() {
-            pin.include(t, frame.inside.pin(i));
-        }
-        for ((k, l), pair) in Inertia::pairs(frame.q.len()).zip(&mut self.pairs) {
-            pair.include(cross(e[k], e[l]), t);
-        }
-        let (tilt, motion) = (frame.inside.tilt.total(), frame.inside.tilt.motion);
-        for (seen, value) in self.tilt.iter_mut().zip([tilt.re.abs(), tilt.im.abs(), motion.norm()]) {
-            Extreme::include(seen, value, t, |a, b| a > b);
-        }
-    }
-}
-
 impl JointsCommand {
     /// Runs the scenario and prints what it finds.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let machine = scenario.plant.machine(&scenario.machine)?;
-        let joints = Joints::of(&machine).map_err(|e| Failure::from(e).of(machine.name()))?;
-        let pins = &joints.pins()[..joints.pins().len().min(KEPT)];
-        if pins.len() < joints.pins().len() {
-            say(format!("a run keeps the first {KEPT} of {} pins; the others are left out", joints.pins().len()));
+        let name = machine.name().to_owned();
+        let mut extremes = JointExtremes::of(machine).map_err(|e| Failure::from(e).of(name))?;
+        let pins = extremes.pins().to_vec();
+        if extremes.left_out() > 0 {
+            let all = pins.len() + extremes.left_out();
+            say(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
         }
         if let Some(file) = &self.output {
             check_output(file, self.force, &["csv"])?;
         }
-        let n = machine.drives();
-        let mut totals = Extremes::new(pins.len(), Inertia::pairs(n).count());
         let (mut csv, mut written) = (None, Ok(()));
         let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
         let run = replay_if(
             &scenario,
             |last| check_size(last + 1, columns, false),
             |_, frame| {
-                totals.include(frame);
+                extremes.include(frame);
                 if self.output.is_some() && written.is_ok() {
-                    written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
+                    written = self.csv(&mut csv, &pins).and_then(|csv| csv.row(row(frame, pins.len())));
                 }
             },
         )
@@ -194,7 +72,7 @@ impl JointsCommand {
         if let Some(csv) = csv {
             csv.finish()?;
         }
-        let answer = answer(&scenario.name, &run.frame(), &machine, &joints, &totals);
+        let answer = extremes.report(&scenario.name, &run.frame());
         self.format.print(&answer, human)?;
         trusted(&answer.scenario, answer.audit_failed)
     }
@@ -222,49 +100,7 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
     [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
 }
 
-fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, totals: &Extremes) -> Answer {
-    let axial = AxialMoments::of(machine);
-    let link = |j: usize| machine.links()[j].name.clone();
-    let pin = |(pin, seen): (&Pin, &PinPeak)| PinAnswer {
-        name: pin.name.clone(),
-        from: pin.from.map_or("base".into(), link),
-        to: link(pin.to),
-        peak: seen.force,
-        time: seen.time,
-        mean: seen.mean,
-        undefined_steps: seen.undefined,
-    };
-    let pins: Vec<PinAnswer> = joints.pins().iter().zip(&totals.pins).map(pin).collect();
-    let none = Extreme { value: 0.0, time: 0.0 };
-    // A loop of three drives may lie flat by any pair of them.
-    let other_loops = joints.pins().len() > machine.links().len() + joints.parallelograms().len();
-    let pair = |((k, l), sine): ((usize, usize), &Sine)| {
-        let seen = sine.least.unwrap_or(none);
-        let closures = joints.parallelograms().iter().filter(|p| p.drives == (k, l));
-        let closures: Vec<String> = closures.map(|p| p.name.clone()).collect();
-        // No loop lies flat where two links in series line up.
-        (!closures.is_empty() || other_loops).then(|| Pair {
-            drives: [k, l].map(|k| machine.spec().drives[k].name.clone()),
-            closures,
-            least: seen.value,
-            angle: seen.value.min(1.0).asin(),
-            time: seen.time,
-            passed: sine.passed,
-        })
-    };
-    let [x, y, motion] = totals.tilt.map(|seen| seen.unwrap_or(none));
-    Answer {
-        scenario: scenario.into(),
-        steps: last.step,
-        worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
-        pins,
-        transmission: Inertia::pairs(machine.drives()).zip(&totals.pairs).filter_map(pair).collect(),
-        tilt: TiltAnswer { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
-        audit_failed: last.fault().map(|lamp| lamp.to_string()),
-    }
-}
-
-fn human(answer: &Answer) -> String {
+fn human(answer: &JointReport) -> String {
     let mut pins = Table::new(["pin", "on link", "peak N", "at s", "mean N"]);
     let mut undefined = 0;
     for pin in &answer.pins {

@@ -2,12 +2,10 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::kinematics::least_transmission;
-use stillbase::mechanics::machine::Machine;
-use stillbase::mechanics::planar::{DriveAngles, Vector};
+use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::Unreachable;
-use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
+use stillbase::planning::reactionless::{BSet, NoReach};
+use stillbase::study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
@@ -41,68 +39,7 @@ pub struct Pose {
 
 #[derive(Serialize)]
 struct Answer {
-    poses: Vec<Row>,
-}
-
-/// A pose and its measures; some of them planes alone have.
-#[derive(Serialize)]
-pub struct Row {
-    q: Vec<f64>,
-    pub a: Vec<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub det: Option<f64>,
-    pub manipulability: f64,
-    pub worst_torque_per_force: f64,
-    pub transmission: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    side: Option<[i8; 3]>,
-}
-
-/// Sines below this are a change point's.
-const AT_CHANGE: f64 = 1e-9;
-
-impl Row {
-    /// The poses of a point, with their measures: where a point leaves freedoms the one nearest to the middle of the
-    /// limits, else all.
-    pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
-        match space.planes() {
-            Ok(planes) => {
-                let map = planes.map();
-                map.poses(p, b).iter().map(|pose| Self::on_plane(map, *pose)).collect()
-            }
-            Err(_) => space.poses(p, b, &space.middle()).iter().map(|q| Self::of(machine, space, q)).collect(),
-        }
-    }
-
-    fn on_plane(map: &PlaneMap, pose: PlanePoint) -> Self {
-        let dexterity = map.dexterity(pose.a);
-        let sign = |sine: f64| if sine.abs() < AT_CHANGE { 0 } else { sine.signum() as i8 };
-        Self {
-            q: map.lift(pose).to_vec(),
-            a: pose.a.to_vec(),
-            det: Some(dexterity.det),
-            manipulability: dexterity.manipulability,
-            worst_torque_per_force: dexterity.worst_torque_per_force,
-            transmission: map.least_transmission(pose.a),
-            side: Some(map.sines(pose.a).map(sign)),
-        }
-    }
-
-    fn of(machine: &Machine, space: &PoseSpace, q: &DriveAngles) -> Self {
-        let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
-        let squares: Vector = arms.iter().map(|j| j * j).sum();
-        let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
-        // The two eigenvalues of J Jᵀ: half of (lengths ± |squares|).
-        Self {
-            q: q.to_vec(),
-            a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
-            det: None,
-            manipulability: 0.5 * (lengths * lengths - squares.norm_sqr()).max(0.0).sqrt(),
-            worst_torque_per_force: (0.5 * (lengths + squares.norm())).sqrt(),
-            transmission: least_transmission(&q.units(), q.len()),
-            side: None,
-        }
-    }
+    poses: Vec<PoseMeasures>,
 }
 
 impl Pose {
@@ -110,7 +47,7 @@ impl Pose {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
-        let poses = Row::all(&machine, &space, self.point, self.b);
+        let poses = PoseMeasures::all(&machine, &space, self.point, self.b);
         if poses.is_empty() {
             return Err(self.no_pose(space.reach(self.point)).into());
         }

@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::mechanics::counterweights::{NoWeights, Placed, Sites, Weighing, place};
 use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
 use crate::planning::pose_space::plane_area;
+use crate::query::{Portion, Query, Shared, Watch};
 
 /// A length that is sought: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +108,31 @@ pub enum NoLengths {
 
 /// What a machine that is no answer counts at least: more than any that is one. Less of what is missing is better.
 const NO_ANSWER: f64 = 1e30;
+
+/// The search for lengths with which counterweights are least, as a query: [`search`], in one portion that says how many
+/// of its starts have ended.
+pub struct Seeking {
+    machine: Shared<Machine>,
+    asked: LengthSearch,
+}
+
+impl Query for Seeking {
+    type Input = (Shared<Machine>, LengthSearch);
+    type Answer = Result<Found, NoLengths>;
+
+    fn begin((machine, asked): Self::Input) -> Self {
+        Self { machine, asked }
+    }
+
+    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+        let (starts, mut wanted) = (self.asked.starts.max(1) as f64, true);
+        let found = search(&self.machine.0, &self.asked, &mut |progress| {
+            wanted = goes_on(progress.starts as f64 / starts);
+            wanted
+        });
+        if wanted { Portion::Done(found) } else { Portion::Stopped }
+    }
+}
 
 /// Steps of one start for each length.
 const STEPS: usize = 70;

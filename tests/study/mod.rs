@@ -1,9 +1,11 @@
 //! Tests of `src/study`: runs side by side, samples, tolerances and spectra.
 
 mod comparison;
+mod counterweights;
 mod doubt;
 mod equations;
 mod import;
+mod joint_extremes;
 mod lengths;
 mod plan_summary;
 mod samples;
@@ -11,3 +13,4 @@ mod series;
 mod spectrum;
 mod tolerance;
 mod trim;
+mod workspace;

@@ -6,9 +6,10 @@ use stillbase::mechanics::balance::{Adjusted, Keep, NotKept, Quantity, keep};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, significant};
+use stillbase::study::balance_constants::BalanceConstants;
 use stillbase::study::measures::Measures;
 
-use super::super::check::Balance;
+use super::super::check::balance_tables;
 use super::super::failure::Failure;
 use super::super::holds::{bound, hold};
 use super::super::output::Table;
@@ -57,7 +58,7 @@ impl KeepArguments {
             cost: kept.cost,
             certified: kept.certified,
             measures: Measures::of(machine, &kept.machine, motion),
-            balance: Balance::of(&Inertia::of(&kept.machine)),
+            balance: BalanceConstants::of(&Inertia::of(&kept.machine)),
         };
         Ok((kept.machine, answer))
     }
@@ -82,7 +83,7 @@ pub struct Answer {
     #[serde(flatten)]
     measures: Measures,
     #[serde(flatten)]
-    balance: Balance,
+    balance: BalanceConstants,
 }
 
 #[derive(Serialize)]
@@ -111,7 +112,7 @@ impl Answer {
         format!(
             "{name} · the least change, {by} · Σ (p Δ)² {cost}\n{sure}\n{table}\n{}\n{}",
             measures::text(&self.measures),
-            self.balance.tables(machine)
+            balance_tables(&self.balance, machine)
         )
     }
 }

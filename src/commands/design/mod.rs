@@ -14,9 +14,10 @@ use stillbase::files::write_new;
 use stillbase::mechanics::balance::{self, Preset};
 use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
 
+use stillbase::study::balance_constants::BalanceConstants;
 use stillbase::study::measures::Measures;
 
-use super::check::Balance;
+use super::check::balance_tables;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{MachineArgument, Settings, scenario};
@@ -108,7 +109,7 @@ struct Answer {
     #[serde(flatten)]
     measures: Measures,
     #[serde(flatten)]
-    balance: Balance,
+    balance: BalanceConstants,
 }
 
 impl Design {
@@ -131,7 +132,7 @@ impl Design {
         let answer = Answer {
             com: designed.links().iter().map(|l| l.com).collect(),
             measures: Measures::of(&machine, &designed, motion),
-            balance: Balance::of(&Inertia::of(&designed)),
+            balance: BalanceConstants::of(&Inertia::of(&designed)),
         };
         if let Some(file) = &self.output {
             save(&designed, file, self.force, format!("{}, balanced with {by}", machine.name()))?;
@@ -141,7 +142,7 @@ impl Design {
             for (j, link) in machine.links().iter().enumerate() {
                 table.row([link.name.clone(), fixed(penalty[j], 6), fixed(link.com, 9), fixed(answer.com[j], 9)]);
             }
-            let (measured, balance) = (measures::text(&answer.measures), answer.balance.tables(&machine));
+            let (measured, balance) = (measures::text(&answer.measures), balance_tables(&answer.balance, &machine));
             format!("{} · {by}\n\n{table}\n{measured}\n{balance}", machine.name())
         })
     }
@@ -181,7 +182,7 @@ impl Design {
         if let Some(file) = &self.output {
             save(&weighed, file, self.force, format!("{}, balanced by counterweights", machine.name()))?;
         }
-        self.format.print(&answer, |answer| answer.text(machine))
+        self.format.print(&answer, |answer| weighed::text(answer, machine))
     }
 
     fn penalty(&self, links: usize) -> Result<(Vec<f64>, String), Failure> {

@@ -3,19 +3,17 @@
 use std::time::Instant;
 
 use clap::Args;
-use serde::Serialize;
-use stillbase::mechanics::counterweights::{
-    Disc, Free, FreeRotor, MATERIALS, NoWeights, Objective, Placed, Relief, Residual, Sites, Weighing, front,
-    over_payloads, place,
-};
-use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
+use stillbase::mechanics::counterweights::{Disc, Free, FreeRotor, MATERIALS, NoWeights, Objective, Relief, Weighing};
+use stillbase::mechanics::machine::Machine;
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, nine_digits, significant};
-use stillbase::study::front_point::FrontPoint;
-use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, search};
-use stillbase::study::measures::{Measures, greatest_accelerations};
+use stillbase::study::counterweights::{
+    CounterweightReport, CounterweightRequest, NoCounterweights, SoughtLengths, balanced, taken_off,
+};
+use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths};
+use stillbase::study::measures::greatest_accelerations;
 
-use super::super::check::Balance;
+use super::super::check::balance_tables;
 use super::super::ends::ends;
 use super::super::exit::say;
 use super::super::failure::Failure;
@@ -164,35 +162,24 @@ impl WeighArguments {
         Failure::no_answer(said)
     }
 
-    /// The best lengths, and where their links may carry counterweights.
-    fn seek(&self, machine: &Machine, asked: &Weighing) -> Result<(Found, Vec<Sites>), Failure> {
+    /// Lengths that are sought.
+    fn lengths(&self, weighing: &Weighing) -> Option<LengthSearch> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
-        let asked = LengthSearch {
+        (!self.length.is_empty()).then(|| LengthSearch {
             lengths: lengths.collect(),
-            weighing: asked.clone(),
+            weighing: weighing.clone(),
             anywhere: self.range.is_empty(),
             least_reach: self.min_reach,
             least_workspace: self.min_workspace,
             starts: self.starts.into(),
             seed: self.seed,
-        };
-        let within = match self.seconds {
-            Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
-                return Err(Failure::wrong_input(format!("--seconds {seconds}: want a time above 0 in s")));
-            }
-            seconds => seconds.unwrap_or(f64::INFINITY),
-        };
-        let begun = Instant::now();
-        let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        let found = search(machine, &asked, &mut go_on).map_err(unsought)?;
-        let sites = if asked.anywhere { Sites::anywhere(&found.placed.machine) } else { asked.weighing.sites };
-        Ok((found, sites))
+        })
     }
 
     /// Finds them, and what they come to.
-    pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, Weighed), Failure> {
-        let asked = self.asked(machine, motion)?;
-        let taken_off: Vec<_> = machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect();
+    pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
+        let weighing = self.asked(machine, motion)?;
+        let taken_off = taken_off(machine);
         if !taken_off.is_empty() {
             let each = taken_off.iter().map(|weight| {
                 format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
@@ -202,31 +189,23 @@ impl WeighArguments {
                 each.collect::<Vec<_>>().join("; ")
             ));
         }
-        let found = match self.length.is_empty() {
-            true => None,
-            false => Some(self.seek(machine, &asked)?),
+        let lengths = self.lengths(&weighing);
+        let within = match self.seconds.filter(|_| lengths.is_some()) {
+            Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
+                return Err(Failure::wrong_input(format!("--seconds {seconds}: want a time above 0 in s")));
+            }
+            seconds => seconds.unwrap_or(f64::INFINITY),
         };
-        let placed = match &found {
-            Some((found, _)) => found.placed.clone(),
-            None => place(machine, &asked).map_err(|why| self.refusal(why, &asked.disc))?,
-        };
-        // With other lengths the links are others, too.
-        let machine = if found.is_some() { &placed.machine } else { machine };
-        let asked = match &found {
-            Some((_, sites)) => Weighing { sites: sites.clone(), ..asked },
-            None => asked,
-        };
-        let front = match self.front {
-            Some(count) => front(machine, &asked, count.into()).map_err(unweighed)?.points,
-            None => Vec::new(),
-        };
-        let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
-        let mut answer = Weighed::of(&placed, front, motion, &asked)?;
-        if let Some((found, _)) = found {
-            answer.sought(self, found);
-        }
-        answer.taken_off = taken_off;
-        Ok((placed.machine, answer))
+        let disc = weighing.disc;
+        let asked = CounterweightRequest { weighing, lengths, front: self.front.map(usize::from) };
+        let begun = Instant::now();
+        let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
+        balanced(machine, &asked, motion, &mut go_on).map_err(|why| match why {
+            NoCounterweights::Lengths(why) => unsought(why),
+            NoCounterweights::Weights(why) => self.refusal(why, &disc),
+            NoCounterweights::Front(why) => unweighed(why),
+            NoCounterweights::Machine(why) => why.into(),
+        })
     }
 }
 
@@ -286,181 +265,66 @@ fn objective(text: &str) -> Result<Objective, String> {
     }
 }
 
-/// What counterweights come to.
-#[derive(Serialize)]
-pub struct Weighed {
-    /// Beside the machine without counterweights.
-    #[serde(flatten)]
-    measures: Measures,
-    /// The greatest |torque| of a motor in the task's motion, N m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    torque: Option<f64>,
-    /// Those that were found; those that are fixed stay beside them.
-    weights: Vec<Counterweight>,
-    /// Those that the machine had and that were taken off.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    taken_off: Vec<Counterweight>,
-    /// The most by which the best may lie below what was found.
-    gap: f64,
-    /// Whether that is no more than rounding.
-    certified: bool,
-    /// Added mass, kg, and Σ D_k, kg m².
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    front: Vec<[f64; 2]>,
-    /// The same machines, and what else they come to.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    front_points: Vec<FrontPoint>,
-    /// Lengths that were sought.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sought: Option<Sought>,
-    /// Rotors that were chosen.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    rotors: Vec<Chosen>,
-    /// What is left of balance over the payloads.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    payload: Vec<Residual>,
-    /// Whether (7) and (8) hold: over a range of payloads they may not within bounds.
-    is_balanced: bool,
-    #[serde(flatten)]
-    balance: Balance,
-}
-
-/// Lengths, and how sure they are.
-#[derive(Serialize)]
-struct Sought {
-    /// Name and length, m.
-    lengths: Vec<(String, f64)>,
-    /// A search proves nothing.
-    certified: bool,
-    starts: usize,
-    /// Starts that ended within a thousandth of the best.
-    agreeing: usize,
-    /// Machines that were looked at.
-    machines: usize,
-    /// How far the arms reach together, m.
-    reach: f64,
-    /// The reactionless workspace, m², of a machine that has one b of three drives.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    workspace: Option<f64>,
-}
-
-/// A rotor that was chosen.
-#[derive(Serialize)]
-struct Chosen {
-    drive: String,
-    /// kg m².
-    inertia: f64,
-    ratio: f64,
-}
-
-/// Payloads at which the residual is said.
-const PAYLOADS: usize = 11;
-
-impl Weighed {
-    fn of(
-        placed: &Placed,
-        front_points: Vec<FrontPoint>,
-        motion: Option<&Motion>,
-        asked: &Weighing,
-    ) -> Result<Self, Failure> {
-        // With what it holds now, which is no part of what was added.
-        let bare = placed.machine.without_counterweights()?;
-        let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
-        let chosen = |rotor: &FreeRotor| {
-            let drive = &machine.spec().drives[rotor.drive];
-            let found = drive.rotor.unwrap_or_default();
-            Chosen { drive: drive.name.clone(), inertia: found.inertia, ratio: found.ratio }
+/// As a person reads it.
+pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
+    let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
+    for w in &report.weights {
+        table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
+    }
+    let sure = match report.certified {
+        true => format!("within {:.1e} of the best", report.gap),
+        false => format!("not certified: the best may lie {} below", significant(report.gap)),
+    };
+    let mut text = format!(
+        "{} · {} kg added · {sure}\n\n{table}\n{}\n{}",
+        machine.name(),
+        fixed(report.measures.added_mass, 6),
+        measures::text(&report.measures),
+        balance_tables(&report.balance, machine)
+    );
+    if let Some(torque) = report.torque {
+        text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
+    }
+    if let Some(sought) = &report.sought {
+        let mut table = Table::new(["length", "m"]);
+        sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
+        let SoughtLengths { starts, agreeing, machines, reach, .. } = sought;
+        let workspace = sought.workspace.map_or(String::new(), |x| format!(", workspace {} m²", fixed(x, 6)));
+        text.push_str(&format!(
+            "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}\nreach {} m{workspace}\n",
+            fixed(*reach, 6)
+        ));
+    }
+    if !report.rotors.is_empty() {
+        let mut table = Table::new(["rotor of drive", "inertia kg m²", "ratio"]);
+        for rotor in &report.rotors {
+            table.row([rotor.drive.clone(), fixed(rotor.inertia, 9), fixed(rotor.ratio, 6)]);
+        }
+        text.push_str(&format!("\n{table}"));
+    }
+    if let Some((first, last)) = report.payload.first().zip(report.payload.last()) {
+        let mut table = Table::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
+        for at in &report.payload {
+            table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
+        }
+        let middle = fixed(0.5 * (first.payload + last.payload), 6);
+        let bounds = match report.is_balanced {
+            true => "",
+            false => {
+                "the worst |g_k|, or |C_kl| divided by the reach, over all payloads is as small as can be; what \
+                 balances the middle: --set payload.mass instead of --payload\n"
+            }
         };
-        let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOADS)).transpose()?;
-        Ok(Self {
-            measures: Measures::of(&bare, machine, motion),
-            torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),
-            weights: machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect(),
-            taken_off: Vec::new(),
-            gap: placed.gap,
-            certified: placed.is_certified(),
-            front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
-            front_points,
-            sought: None,
-            rotors: asked.rotors.iter().map(chosen).collect(),
-            payload: payload.unwrap_or_default(),
-            is_balanced: inertia.is_balanced(),
-            balance: Balance::of(&inertia),
-        })
+        text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
     }
-
-    fn sought(&mut self, asked: &WeighArguments, found: Found) {
-        let names = asked.length.iter().map(|(name, _)| name.clone());
-        let [starts, agreeing] = found.starts;
-        let lengths = names.zip(found.lengths).collect();
-        let machine = &found.placed.machine;
-        let reach = machine.reach();
-        let workspace = FrontPoint::of(&found.placed, None, true).workspace;
-        let machines = found.machines;
-        self.sought = Some(Sought { lengths, certified: false, starts, agreeing, machines, reach, workspace });
+    if !report.front_points.is_empty() {
+        let mut table = Table::new(["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"]);
+        let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
+        for point in &report.front_points {
+            let known = [fixed(point.added_mass, 6), fixed(point.inertia, 6), or_none(point.torque)];
+            table.row(known.into_iter().chain([or_none(point.workspace), fixed(point.off_by, 6)]));
+        }
+        text.push_str(&format!("\n{table}"));
     }
-
-    /// As a person reads it.
-    pub fn text(&self, machine: &Machine) -> String {
-        let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
-        for w in &self.weights {
-            table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
-        }
-        let sure = match self.certified {
-            true => format!("within {:.1e} of the best", self.gap),
-            false => format!("not certified: the best may lie {} below", significant(self.gap)),
-        };
-        let mut text = format!(
-            "{} · {} kg added · {sure}\n\n{table}\n{}\n{}",
-            machine.name(),
-            fixed(self.measures.added_mass, 6),
-            measures::text(&self.measures),
-            self.balance.tables(machine)
-        );
-        if let Some(torque) = self.torque {
-            text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
-        }
-        if let Some(sought) = &self.sought {
-            let mut table = Table::new(["length", "m"]);
-            sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
-            let Sought { starts, agreeing, machines, reach, .. } = sought;
-            let workspace = sought.workspace.map_or(String::new(), |x| format!(", workspace {} m²", fixed(x, 6)));
-            text.push_str(&format!(
-                "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}\nreach {} m{workspace}\n",
-                fixed(*reach, 6)
-            ));
-        }
-        if !self.rotors.is_empty() {
-            let mut table = Table::new(["rotor of drive", "inertia kg m²", "ratio"]);
-            for rotor in &self.rotors {
-                table.row([rotor.drive.clone(), fixed(rotor.inertia, 9), fixed(rotor.ratio, 6)]);
-            }
-            text.push_str(&format!("\n{table}"));
-        }
-        if let Some((first, last)) = self.payload.first().zip(self.payload.last()) {
-            let mut table = Table::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
-            for at in &self.payload {
-                table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
-            }
-            let middle = fixed(0.5 * (first.payload + last.payload), 6);
-            let bounds = match self.is_balanced {
-                true => "",
-                false => {
-                    "the worst |g_k|, or |C_kl| divided by the reach, over all payloads is as small as can be; what \
-                     balances the middle: --set payload.mass instead of --payload\n"
-                }
-            };
-            text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
-        }
-        if !self.front_points.is_empty() {
-            let mut table = Table::new(["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"]);
-            let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
-            for point in &self.front_points {
-                let known = [fixed(point.added_mass, 6), fixed(point.inertia, 6), or_none(point.torque)];
-                table.row(known.into_iter().chain([or_none(point.workspace), fixed(point.off_by, 6)]));
-            }
-            text.push_str(&format!("\n{table}"));
-        }
-        text
-    }
+    text
 }

@@ -1,0 +1,208 @@
+//! [`JointExtremes`]: what every pin carries over a run, how near change points come, and what tilts the base.
+
+use serde::Serialize;
+
+use crate::mechanics::joint_forces::{AxialMoments, Joints, JointsError, KEPT, Pin, PinPeak};
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::cross;
+use crate::simulation::frame::Frame;
+
+/// The largest or least of something, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Extreme {
+    /// It.
+    pub value: f64,
+    /// When, s.
+    pub time: f64,
+}
+
+impl Extreme {
+    fn include(seen: &mut Option<Self>, value: f64, time: f64, better: fn(f64, f64) -> bool) {
+        if seen.is_none_or(|s| better(value, s.value)) {
+            *seen = Some(Self { value, time });
+        }
+    }
+}
+
+/// What a pin carries.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PinLoad {
+    /// Its name.
+    pub name: String,
+    /// `base` or a link.
+    pub from: String,
+    /// A link.
+    pub to: String,
+    /// Largest force, N.
+    pub peak: f64,
+    /// When, s.
+    pub time: f64,
+    /// Mean force, N.
+    pub mean: f64,
+    /// Steps at a change point, which peak and mean leave out.
+    pub undefined_steps: u64,
+}
+
+/// Two drives whose parallelograms, or other loops, lie flat where they line up.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Transmission {
+    /// Their names.
+    pub drives: [String; 2],
+    /// Pins that close parallelograms of these two drives.
+    pub closures: Vec<String>,
+    /// Least |sin(q_k − q_l)|: 0 where a change point is passed.
+    pub least: f64,
+    /// The transmission angle there, rad.
+    pub angle: f64,
+    /// When, s.
+    pub time: f64,
+    /// Change points passed between two steps.
+    pub passed: u64,
+}
+
+/// What tilts the base.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Tilt {
+    /// Whether all heights are zero, so that the plane model knows of no tilting.
+    pub flat: bool,
+    /// |n_x|, N m.
+    pub x: Extreme,
+    /// |n_y|, N m.
+    pub y: Extreme,
+    /// The same of the part that comes from motion alone, N m.
+    pub motion: Extreme,
+    /// Largest weighted first moment about the height of the centre of mass, kg m²: 0 where no motion tilts.
+    pub residual: f64,
+}
+
+/// What joints carry over a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointReport {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// How many steps.
+    pub steps: u64,
+    /// The pins that a run keeps.
+    pub pins: Vec<PinLoad>,
+    /// The pin that carries most.
+    pub worst: String,
+    /// Pairs of drives whose loops lie flat where they line up.
+    pub transmission: Vec<Transmission>,
+    /// What tilts the base.
+    pub tilt: Tilt,
+    /// The first audit that the run has failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub audit_failed: Option<String>,
+}
+
+/// sin(q_k − q_l) of two drives over a run.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sine {
+    last: Option<Extreme>,
+    least: Option<Extreme>,
+    passed: u64,
+}
+
+impl Sine {
+    fn include(&mut self, sine: f64, time: f64) {
+        Extreme::include(&mut self.least, sine.abs(), time, |a, b| a < b);
+        if let Some(last) = self.last.filter(|last| last.value * sine < 0.0) {
+            let zero = last.time + (time - last.time) * last.value / (last.value - sine);
+            Extreme::include(&mut self.least, 0.0, zero, |a, b| a < b);
+            self.passed += 1;
+        }
+        self.last = Some(Extreme { value: sine, time });
+    }
+}
+
+/// What the joints of a machine carry, frame by frame.
+#[derive(Clone, Debug)]
+pub struct JointExtremes {
+    machine: Machine,
+    joints: Joints,
+    seen: Vec<PinPeak>,
+    pairs: Vec<Sine>,
+    tilt: [Option<Extreme>; 3],
+}
+
+impl JointExtremes {
+    /// Nothing seen yet.
+    ///
+    /// # Errors
+    /// If the forces in its joints cannot be told.
+    pub fn of(machine: Machine) -> Result<Self, JointsError> {
+        let joints = Joints::of(&machine)?;
+        let pairs = vec![Sine::default(); Inertia::pairs(machine.drives()).count()];
+        let seen = vec![PinPeak::default(); joints.pins().len().min(KEPT)];
+        Ok(Self { machine, joints, seen, pairs, tilt: [None; 3] })
+    }
+
+    /// The pins that a run keeps.
+    pub fn pins(&self) -> &[Pin] {
+        &self.joints.pins()[..self.seen.len()]
+    }
+
+    /// How many pins it leaves out.
+    pub fn left_out(&self) -> usize {
+        self.joints.pins().len() - self.seen.len()
+    }
+
+    /// Takes in a frame of a run of the machine.
+    pub fn include(&mut self, frame: &Frame) {
+        let (t, e) = (frame.time, frame.q.units());
+        for (i, pin) in self.seen.iter_mut().enumerate() {
+            pin.include(t, frame.inside.pin(i));
+        }
+        for ((k, l), pair) in Inertia::pairs(frame.q.len()).zip(&mut self.pairs) {
+            pair.include(cross(e[k], e[l]), t);
+        }
+        let (tilt, motion) = (frame.inside.tilt.total(), frame.inside.tilt.motion);
+        for (seen, value) in self.tilt.iter_mut().zip([tilt.re.abs(), tilt.im.abs(), motion.norm()]) {
+            Extreme::include(seen, value, t, |a, b| a > b);
+        }
+    }
+
+    /// What was seen up to the last frame of a run of a scenario by name.
+    pub fn report(&self, scenario: &str, last: &Frame) -> JointReport {
+        let (machine, joints) = (&self.machine, &self.joints);
+        let axial = AxialMoments::of(machine);
+        let link = |j: usize| machine.links()[j].name.clone();
+        let pin = |(pin, seen): (&Pin, &PinPeak)| PinLoad {
+            name: pin.name.clone(),
+            from: pin.from.map_or("base".into(), link),
+            to: link(pin.to),
+            peak: seen.force,
+            time: seen.time,
+            mean: seen.mean,
+            undefined_steps: seen.undefined,
+        };
+        let pins: Vec<PinLoad> = joints.pins().iter().zip(&self.seen).map(pin).collect();
+        let none = Extreme { value: 0.0, time: 0.0 };
+        // A loop of three drives may lie flat by any pair of them.
+        let other_loops = joints.pins().len() > machine.links().len() + joints.parallelograms().len();
+        let pair = |((k, l), sine): ((usize, usize), &Sine)| {
+            let seen = sine.least.unwrap_or(none);
+            let closures = joints.parallelograms().iter().filter(|p| p.drives == (k, l));
+            let closures: Vec<String> = closures.map(|p| p.name.clone()).collect();
+            // No loop lies flat where two links in series line up.
+            (!closures.is_empty() || other_loops).then(|| Transmission {
+                drives: [k, l].map(|k| machine.spec().drives[k].name.clone()),
+                closures,
+                least: seen.value,
+                angle: seen.value.min(1.0).asin(),
+                time: seen.time,
+                passed: sine.passed,
+            })
+        };
+        let [x, y, motion] = self.tilt.map(|seen| seen.unwrap_or(none));
+        JointReport {
+            scenario: scenario.into(),
+            steps: last.step,
+            worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
+            pins,
+            transmission: Inertia::pairs(machine.drives()).zip(&self.pairs).filter_map(pair).collect(),
+            tilt: Tilt { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
+            audit_failed: last.fault().map(|lamp| lamp.to_string()),
+        }
+    }
+}
