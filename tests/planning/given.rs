@@ -12,6 +12,7 @@ use stillbase::planning::curves::spline::{Knots, NOISE_GAIN};
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::Rule;
 use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned};
+use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::timing::Profile;
 use stillbase::planning::{Motion, Reference};
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
@@ -420,13 +421,13 @@ proptest! {
 #[test]
 fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     let (machine, model) = (machine(), Inertia::of(machine()));
-    let planes = crate::support::planes(machine);
-    let (map, given) = (planes.map(), swinging(150));
+    let space = PoseSpace::of(machine).expect("it has a b");
+    let (map, given) = (space.planes().expect("three drives").map(), swinging(150));
     let as_given = motion(&given);
-    let moved = |b: f64| same_tip(map, machine.end_effector(), &given, b, Rule::default()).ok().flatten();
+    let moved = |b: f64| same_tip(&space, &model, &given, b, Rule::default()).ok().flatten();
     let far =
         |b: f64| moved(b).map(|m| Deviation::between(machine.end_effector(), &model, &as_given, &motion(&m), 3000));
-    let (b, rms) = nearest_b(map, machine.end_effector(), &model, &given, Rule::default()).expect("some plane does");
+    let (b, rms) = nearest_b(&space, &model, &given, Rule::default()).expect("some plane does");
     let best = far(b).expect("it does");
     assert!((best.rms / rms - 1.0).abs() < 1e-3, "{} {rms}", best.rms);
     assert!(best.tip < 1e-6 && best.rms > 1e-3, "{best:?}");
@@ -444,7 +445,7 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     }
     // A motion that is on a plane already is its own nearest.
     let on = moved(b).expect("it does");
-    let (same, rms) = nearest_b(map, machine.end_effector(), &model, &on, Rule::default()).expect("its own");
+    let (same, rms) = nearest_b(&space, &model, &on, Rule::default()).expect("its own");
     assert!((same - b).abs() < 1e-6 && rms < 1e-6, "{same} {b} {rms}");
 }
 

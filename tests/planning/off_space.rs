@@ -7,7 +7,8 @@ use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Samples;
-use stillbase::planning::following::closest::{NoneClose, nearest_b, same_tip};
+use stillbase::planning::following::Rule;
+use stillbase::planning::following::nearest::{NoneClose, NotMoved, nearest_b, same_tip};
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::session::scenario::{Change, Scenario};
 use stillbase::session::{Run, replay};
@@ -384,7 +385,7 @@ fn the_closest_motion_of_a_b_is_found() {
         let far = |x: &[f64], y: &[f64]| -> f64 {
             x.iter().zip(y).enumerate().map(|(k, (x, y))| model.diagonal(k) * (x - y) * (x - y)).sum()
         };
-        let Ok(moved) = same_tip(&space, &model, &samples, 1.02) else { continue };
+        let Ok(Some(moved)) = same_tip(&space, &model, &samples, 1.02, Rule::default()) else { continue };
         moved_some += 1;
         for i in 0..samples.count() {
             let (given, own) = (samples.values(i), moved.values(i));
@@ -401,9 +402,9 @@ fn the_closest_motion_of_a_b_is_found() {
                 }
             }
         }
-        let (b, least) = nearest_b(&space, &model, &samples).expect("some b does");
+        let (b, least) = nearest_b(&space, &model, &samples, Rule::default()).expect("some b does");
         for other in [b - 0.01, b + 0.01, 1.0, 1.05] {
-            let Ok(other) = same_tip(&space, &model, &samples, other) else { continue };
+            let Ok(Some(other)) = same_tip(&space, &model, &samples, other, Rule::default()) else { continue };
             let whole: f64 = model.diagonals().iter().sum();
             let mean: f64 = (0..24)
                 .map(|i| {
@@ -414,8 +415,8 @@ fn the_closest_motion_of_a_b_is_found() {
             assert!(least <= (mean / whole).sqrt() + 1e-6, "{n} drives: {least} {}", (mean / whole).sqrt());
         }
         assert!(matches!(
-            same_tip(&space, &model, &samples, 60.0),
-            Err(NoneClose::Pose { .. } | NoneClose::Limit { .. })
+            same_tip(&space, &model, &samples, 60.0, Rule::default()),
+            Err(NotMoved::NoneClose(NoneClose::Pose { .. } | NoneClose::Limit { .. }))
         ));
     }
     assert!(moved_some >= 3, "{moved_some}");

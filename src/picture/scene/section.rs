@@ -1,4 +1,4 @@
-//! Joint space of other than three drives. Of two it is a plane, in which a b is a line. Of four and more it is cut
+//! Joint space of machines without planes. Of two drives it is a plane, in which a b is a line. Of four and more it is cut
 //! where the drives that have no axis stand now, and three are left: in these a b is a plane again.
 //!
 //! In the scene a unit is a radian, along x, y and z lie the drives that were chosen, and the origin moves with b.

@@ -304,7 +304,7 @@ impl Views {
         }
     }
 
-    /// Joint space of other than three drives, if they have a b.
+    /// Joint space of a machine without planes, if it has a b.
     pub fn section(&self) -> Option<&Section> {
         self.joints.as_ref()?.section()
     }

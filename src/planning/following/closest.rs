@@ -1,5 +1,5 @@
-//! The motion of b that is closest to a given one with the same end effector, of four drives and more: what
-//! [`nearest`](super::nearest) is for three.
+//! The motion of b that is closest to a given one with the same end effector, where points leave freedoms: what
+//! [`on_plane`](super::on_plane) is on planes.
 //!
 //! A point and a b leave n − 3 freedoms, so that of all poses there the one is taken that is closest to the given one in
 //! the metric of kinetic energy: least ½ Σ H_kk Δq_k² with p and b kept, by Newton's iteration, sample by sample. It
@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::nearest::{apart, least};
+use super::deviation::{apart, least};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::given::Samples;
@@ -59,7 +59,7 @@ pub enum NoneClose {
 ///
 /// # Errors
 /// Where that cannot be done.
-pub fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b: f64) -> Result<Samples, NoneClose> {
+pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b: f64) -> Result<Samples, NoneClose> {
     let mut rows = Vec::with_capacity(samples.count());
     // Beside the pose of the sample before, moved as the given one has.
     let mut off = PerDrive::zeros(space.drives());
@@ -83,7 +83,7 @@ pub fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b: f64) -
 
 /// The constant b whose motion with the same end effector is closest to the given one, rad, and its ‖Δq‖, rad; `None` if
 /// none was found. Judged by some sixty of the samples.
-pub fn nearest_b(space: &PoseSpace, model: &Inertia, samples: &Samples) -> Option<(f64, f64)> {
+pub(super) fn nearest_b(space: &PoseSpace, model: &Inertia, samples: &Samples) -> Option<(f64, f64)> {
     let thin = samples.thinned(JUDGED);
     let far = |b: f64| same_tip(space, model, &thin, b).map_or(f64::INFINITY, |moved| apart(model, &thin, &moved));
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;

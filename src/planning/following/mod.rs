@@ -1,11 +1,13 @@
-//! On a plane: a curve followed on one sheet, or why not; the nearest motion to a given one; the pointer and the
-//! slider.
+//! With b held: a curve followed on one sheet of a plane, or why not; the nearest motion to a given one; the pointer and
+//! the slider.
 
 mod braking;
-pub mod closest;
+mod closest;
+mod deviation;
 pub mod follow;
 pub mod held;
 pub mod nearest;
+mod on_plane;
 pub mod trace;
 
 pub use follow::Follower;

@@ -4,7 +4,6 @@ use crate::mechanics::planar::Vector;
 use crate::planning::Motion;
 use crate::planning::curves::path::minimum_norm_curve;
 use crate::planning::curves::{Path, PathTable, Samples};
-use crate::planning::following::closest::{nearest_b, same_tip};
 use crate::planning::following::nearest::turned;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::posture::Posture;
@@ -14,7 +13,7 @@ use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::{counted, fixed};
 
 use super::judge::{Candidate, Judge};
-use super::request::{ImportError, Keep, Request};
+use super::request::{ImportError, Request};
 use super::ways::Ways;
 
 /// Points of a path of which it is asked which b reach them.
@@ -24,56 +23,6 @@ const ON_CURVE: f64 = 1e-3;
 
 fn running(path: PathTable, samples: &Samples) -> Motion {
     Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) }
-}
-
-/// The motion given by drive angles.
-pub(super) fn of_drives(
-    asked: &Request,
-    judge: &Judge,
-    space: &PoseSpace,
-    samples: &Samples,
-) -> Result<Ways, ImportError> {
-    let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
-    let motion = running(path, samples);
-    let mean = judge.account(&motion).b_mean;
-    // Whole turns of all drives are nothing: the one nearest to where the motion is.
-    let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
-    let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
-    let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
-    let mut candidates = Vec::new();
-    let mut lost = None;
-    if asked.keep != Some(Keep::Joints) {
-        if !space.reaches_area() {
-            lost = Some(format!(
-                "{} held to a b move the end effector along one curve of their own",
-                counted(space.drives(), "drive")
-            ));
-        } else {
-            let near = if asked.b.is_none() { nearest_b(space, &judge.model, samples) } else { None };
-            let (b, why) = match near {
-                Some((b, _)) => {
-                    (b, "of all b that reach every point of its path, the one that moves the drives least".into())
-                }
-                None => (wanted, format!("{which} reaches every point of its path")),
-            };
-            match same_tip(space, &judge.model, samples, b) {
-                Ok(moved) => candidates.extend(task(moved).map(|task| Candidate { way: "same-tip", why, task })),
-                Err(stop) => lost = Some(stop.to_string()),
-            }
-        }
-    }
-    if asked.keep == Some(Keep::Tip) {
-        let candidates = if candidates.is_empty() { Err(lost.unwrap_or_default()) } else { Ok(candidates) };
-        return Ok(Ways { given: Some(motion), candidates });
-    }
-    let why = match (asked.keep, lost) {
-        (Some(_), _) => "the relative joint angles are to be kept".into(),
-        (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
-        (None, None) => "the end effector's path cannot be kept within the rules".into(),
-    };
-    let made = turned(space.lambda(), samples, wanted).and_then(task);
-    candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
-    Ok(Ways { given: Some(motion), candidates: Ok(candidates) })
 }
 
 /// The usual inverse of a motion given by the end effector, and one that holds b.

@@ -71,10 +71,9 @@ impl Work {
         let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
         let judge = Judge::new(&request.scenario.0, instants);
         let Ways { given, candidates } = match &judge.space {
+            Ok(space) if drives => of_drives(request, &judge, space, samples)?,
             Ok(space) => match space.planes() {
-                Ok(planes) if drives => of_drives(request, &judge, planes, samples)?,
                 Ok(planes) => of_tip(request, &judge, (space, planes), samples)?,
-                Err(_) if drives => freedoms::of_drives(request, &judge, space, samples)?,
                 Err(_) => freedoms::of_tip(request, &judge, space, samples)?,
             },
             Err(NoPoseSpace::Free) => freedoms::as_given(&judge, samples, drives)?,

@@ -7,11 +7,12 @@ use crate::planning::curves::path::minimum_norm_curve;
 use crate::planning::curves::{Path, Samples};
 use crate::planning::following::nearest::{nearest_b, same_tip, turned};
 use crate::planning::following::{Rule, trace};
-use crate::planning::pose_space::{Planes, PoseSpace};
+use crate::planning::pose_space::{OwnWay, Planes, PoseSpace};
 use crate::planning::posed::serve;
 use crate::planning::reactionless::{BSet, between};
 use crate::planning::timing::Profile;
 use crate::session::scenario::{Task, TaskKind};
+use crate::settings::number::counted;
 
 /// The motion that samples give, and what might be proposed in its place.
 pub(super) struct Ways {
@@ -25,61 +26,56 @@ pub(super) struct Ways {
 pub(super) fn of_drives(
     asked: &Request,
     judge: &Judge,
-    planes: &Planes,
+    space: &PoseSpace,
     samples: &Samples,
 ) -> Result<Ways, ImportError> {
     let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
     let motion = Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) };
-    let lambda = judge.model.lambda();
     let mean = judge.account(&motion).b_mean;
-    let map = planes.map();
     // Whole turns of all drives are nothing: the one nearest to where the motion is.
-    let wanted = asked.b.map_or(mean, |b| b + map.period() * ((mean - b) / map.period()).round());
+    let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
     let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
     let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
     let mut candidates = Vec::new();
-    let mut blocked = None;
+    let mut lost = None;
     if asked.keep != Some(Keep::Joints) {
-        let mut add =
-            |b: f64, why: String| match same_tip(map, judge.machine.end_effector(), samples, b, Rule::default()) {
-                Ok(moved) => {
-                    let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
-                    candidates.extend(made);
-                    None
-                }
-                Err(blocked) => Some(blocked),
-            };
-        let near = asked
-            .b
-            .is_none()
-            .then(|| nearest_b(map, judge.machine.end_effector(), &judge.model, samples, Rule::default()));
-        blocked = match near.flatten() {
-            Some((b, _)) => {
-                let why = "of all b that reach every point of its path, the one that moves the drives least";
-                // Between the samples that chose it the path may still leave the workspace by a little.
-                match add(b, why.into()) {
-                    Some(stop) if stop.nearest_b.is_some() => add(stop.nearest_b.unwrap_or(b), why.into()),
-                    done => done,
-                }
+        let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
+            Ok(moved) => {
+                let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
+                candidates.extend(made);
+                None
             }
-            None => add(wanted, format!("{which} reaches every point of its path")),
+            Err(stop) => Some(stop),
+        };
+        let near = || nearest_b(space, &judge.model, samples, Rule::default());
+        lost = if let Err(OwnWay { drives }) = space.follows_curves() {
+            Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
+        } else if let Some((b, _)) = asked.b.is_none().then(near).flatten() {
+            let why = "of all b that reach every point of its path, the one that moves the drives least";
+            // Between the samples that chose it the path may still leave the workspace by a little.
+            let stop = match add(b, why.into()) {
+                Some(stop) => stop.nearest_b().map_or(Some(stop), |other| add(other, why.into())),
+                None => None,
+            };
+            stop.map(|stop| stop.to_string())
+        } else {
+            add(wanted, format!("{which} reaches every point of its path")).map(|stop| stop.to_string())
         };
     }
-    match (asked.keep, &blocked) {
-        (Some(Keep::Tip), Some(stop)) if candidates.is_empty() => {
-            return Ok(Ways { given: Some(motion), candidates: Err(stop.to_string()) });
-        }
-        (Some(Keep::Tip), _) => {}
-        _ => {
-            let why = match (asked.keep, blocked) {
-                (Some(_), _) => "the relative joint angles are to be kept".into(),
-                (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
-                (None, None) => "the end effector's path cannot be kept within the rules".into(),
-            };
-            let made = turned(&lambda, samples, wanted).and_then(task);
-            candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
-        }
+    if asked.keep == Some(Keep::Tip) {
+        let candidates = match lost {
+            Some(why) if candidates.is_empty() => Err(why),
+            _ => Ok(candidates),
+        };
+        return Ok(Ways { given: Some(motion), candidates });
     }
+    let why = match (asked.keep, lost) {
+        (Some(_), _) => "the relative joint angles are to be kept".into(),
+        (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
+        (None, None) => "the end effector's path cannot be kept within the rules".into(),
+    };
+    let made = turned(space.lambda(), samples, wanted).and_then(task);
+    candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
     Ok(Ways { given: Some(motion), candidates: Ok(candidates) })
 }
 

@@ -1,0 +1,79 @@
+//! How far motions of one timing are apart in the metric of kinetic energy: see [`nearest`](super::nearest).
+
+use crate::mechanics::kinematics::end_effector;
+use crate::mechanics::machine::{Chain, Inertia};
+use crate::mechanics::planar::PerDrive;
+use crate::planning::Motion;
+use crate::planning::curves::given::Samples;
+use crate::planning::golden::golden;
+use crate::planning::reactionless::BSet;
+
+/// How far two motions of one timing are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Greatest distance of the end effectors, m.
+    pub tip: f64,
+    /// Greatest |Δq_k|, rad.
+    pub joints: PerDrive,
+    /// ‖Δq‖, rad.
+    pub rms: f64,
+}
+
+impl Deviation {
+    /// Between motions that take equally long, by as many instants.
+    pub fn between(tip: &Chain, model: &Inertia, one: &Motion, other: &Motion, instants: usize) -> Self {
+        let n = model.drives();
+        let mut worst = Self { tip: 0.0, joints: PerDrive::zeros(n), rms: 0.0 };
+        let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
+        for i in 0..=instants {
+            let share = i as f64 / instants as f64;
+            let [a, b] = [one, other].map(|motion| motion.path.at(motion.profile.at(share * motion.duration()).s).q);
+            let gap = end_effector(tip, &a.units()) - end_effector(tip, &b.units());
+            worst.tip = worst.tip.max(gap.norm());
+            let off = a.0.minus(&b.0);
+            worst.joints.iter_mut().zip(off.iter()).for_each(|(worst, off)| *worst = worst.max(off.abs()));
+            let square: f64 = off.iter().enumerate().map(|(k, off)| model.diagonal(k) * off * off).sum();
+            // The trapezoidal rule.
+            let weight = if i == 0 || i == instants { 0.5 } else { 1.0 };
+            worst.rms += weight * square / (whole * instants as f64);
+        }
+        worst.rms = worst.rms.sqrt();
+        worst
+    }
+}
+
+/// ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
+pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
+    let n = model.drives();
+    let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
+    let square = |i: usize| -> f64 {
+        let pairs = one.values(i).iter().zip(other.values(i)).enumerate();
+        pairs.map(|(k, (a, b))| model.diagonal(k) * (a - b) * (a - b)).sum()
+    };
+    let spaces = (1..one.count()).map(|i| 0.5 * (one.time(i) - one.time(i - 1)) * (square(i) + square(i - 1)));
+    (spaces.sum::<f64>() / (whole * one.duration())).sqrt()
+}
+
+/// The b of a set at which a distance is least, rad, and that: tried at equal steps inside each interval and at a mean, then
+/// searched about the best by golden section, each so many times; `None` if it is finite nowhere.
+pub(super) fn least(
+    set: &BSet,
+    mean: f64,
+    [tries, sections]: [usize; 2],
+    far: impl Fn(f64) -> f64,
+) -> Option<(f64, f64)> {
+    let mut best: Option<(f64, f64, [f64; 2])> = None;
+    for [low, high] in set.near(mean).intervals {
+        let step = (high - low) / tries as f64;
+        let inside = (0..tries).map(|i| low + (i as f64 + 0.5) * step);
+        for b in inside.chain((low..=high).contains(&mean).then_some(mean)) {
+            let distance = far(b);
+            if distance.is_finite() && best.is_none_or(|(_, least, _)| distance < least) {
+                best = Some((b, distance, [(b - step).max(low), (b + step).min(high)]));
+            }
+        }
+    }
+    let (b, distance, around) = best?;
+    let refined = golden(around, sections, far);
+    Some(if refined.1 < distance { refined } else { (b, distance) })
+}
