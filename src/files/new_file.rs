@@ -1,14 +1,12 @@
 //! [`NewFile`]: a file that appears whole or not at all, and replaces nothing unasked.
 
-use std::collections::BTreeSet;
-use std::ffi::OsStr;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
+use super::draft::{Checked, Draft, PART_ENDING, folder_of, making};
 use super::fault::Step;
 
 /// Why a file was not written.
@@ -68,62 +66,6 @@ pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
     }
 }
 
-fn folder_of(file: &Path) -> &Path {
-    file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// The files in the making of this program. Who holds them keeps others from beginning and from taking their names.
-static MAKING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-
-fn making() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    MAKING.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// All files in the making are gone, and no other can begin or take its name as long as this lives.
-#[derive(Debug)]
-pub struct Abandoned(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
-
-/// Gives up all files in the making, for who is about to end the program.
-pub fn abandon() -> Abandoned {
-    let parts = making();
-    for part in parts.iter() {
-        // Nobody is left to tell.
-        let _ = fs::remove_file(part);
-    }
-    Abandoned(parts)
-}
-
-/// What names of files in the making end in.
-const PART: &str = ".stillbase.part";
-
-/// Where a file is written before it takes its name: hidden beside it, `.case.csv.4711-0.stillbase.part`.
-fn part_of(file: &Path, attempt: u32) -> PathBuf {
-    // A name may be as long as the file system allows already.
-    let name: String = file.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
-    file.with_file_name(format!(".{name}.{}-{attempt}{PART}", std::process::id()))
-}
-
-fn is_part(name: &OsStr) -> bool {
-    let counted = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let middle = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(PART));
-    let number = middle.and_then(|middle| middle.rsplit_once('.')?.1.split_once('-'));
-    number.is_some_and(|(process, attempt)| counted(process) && counted(attempt))
-}
-
-/// Removes what programs that were killed have left in a folder. Who makes a file holds a lock on it, which ends with
-/// the program whatever ends it.
-fn sweep(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else { return };
-    let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
-    for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
-        let Ok(part) = File::open(entry.path()) else { continue };
-        if part.try_lock().is_ok() {
-            // Where it cannot be removed, it belongs to another user.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
 /// A file in the making, buffered. It takes its name in [`finish`](Self::finish); dropped before, it leaves nothing.
 #[derive(Debug)]
 pub struct NewFile {
@@ -162,68 +104,6 @@ impl Before {
             let _ = fchown(file, Some(self.metadata.uid()), Some(self.metadata.gid()));
         }
         file.set_permissions(self.metadata.permissions())
-    }
-}
-
-/// A file beside the one that it is to become.
-#[derive(Debug)]
-struct Draft {
-    part: PathBuf,
-    file: PathBuf,
-}
-
-impl Draft {
-    /// Begins a file beside another, locked.
-    fn create(file: PathBuf) -> io::Result<(Self, File)> {
-        sweep(folder_of(&file));
-        let mut parts = making();
-        for attempt in 0..1000 {
-            let part = part_of(&file, attempt);
-            super::fault::at(Step::Fallible)?;
-            let out = match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
-                Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
-                out => out?,
-            };
-            // Another program may have removed it in between; where files cannot be locked, none are removed.
-            let swept = matches!(out.try_lock(), Err(TryLockError::WouldBlock)) || part.symlink_metadata().is_err();
-            if !swept {
-                parts.insert(part.clone());
-                return Ok((Self { part, file }, out));
-            }
-        }
-        Err(io::Error::new(ErrorKind::AlreadyExists, "a thousand files in the making stand beside it"))
-    }
-}
-
-impl Drop for Draft {
-    fn drop(&mut self) {
-        let mut parts = making();
-        // Gone already if it has taken its name; if it cannot be removed, the next who writes here tries again.
-        let _ = fs::remove_file(&self.part);
-        parts.remove(&self.part);
-    }
-}
-
-/// A file whose writing can be made to fail.
-#[derive(Debug)]
-struct Checked(File);
-
-impl Write for Checked {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if super::fault::is_due(Step::Fallible) {
-            self.0.write_all(&bytes[..bytes.len() / 2])?;
-            super::fault::strike()?;
-        }
-        self.0.write(bytes)
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-
-impl Seek for Checked {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.0.seek(to)
     }
 }
 
@@ -353,7 +233,8 @@ fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
 /// What a file holds that is about to be replaced, under another name, if the file system has room for that: a copy
 /// where the file is written over. A sweep takes it for left over.
 fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
-    let aside = part.with_file_name(format!("{}0{PART}", part.file_name()?.to_str()?.strip_suffix(PART)?));
+    let aside =
+        part.with_file_name(format!("{}0{PART_ENDING}", part.file_name()?.to_str()?.strip_suffix(PART_ENDING)?));
     let made = if copied { fs::copy(file, &aside).map(|_| ()) } else { fs::hard_link(file, &aside) };
     made.inspect_err(|_| {
         if copied {

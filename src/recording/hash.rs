@@ -1,4 +1,6 @@
-//! A number of 128 bits from some words: the identifier of a recording, and of each part of its layout.
+//! A number of 128 bits from some words: the identifier of a recording, and of each part of its layout. Two of them must
+//! never be equal by chance, so they are cut from a cryptographic hash. The checksum of a file of samples is another one:
+//! it only has to find damage, and quickly.
 
 use sha2::{Digest, Sha256};
 

@@ -132,15 +132,15 @@ impl fmt::Display for Want {
 }
 
 /// The most characters of given text that a message repeats.
-const MOST_TEXT: usize = 80;
+const MAX_CLIPPED: usize = 80;
 
 /// Given text as a message repeats it: its beginning, on one line, without what a terminal would obey.
 pub fn clipped(text: &str) -> String {
-    shortened(text, MOST_TEXT)
+    shortened(text, MAX_CLIPPED)
 }
 
 /// The most digits in a row that a message repeats: more than any number needs.
-const MOST_DIGITS: usize = 20;
+const MAX_DIGITS: usize = 20;
 
 /// The first characters of a text, on one line, and dots where there is more, or a number that runs on and on.
 pub fn shortened(text: &str, most: usize) -> String {
@@ -148,7 +148,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     let (mut count, mut digits) = (0, 0);
     for c in text.chars() {
         digits = if c.is_ascii_digit() { digits + 1 } else { 0 };
-        match digits.cmp(&(MOST_DIGITS + 1)) {
+        match digits.cmp(&(MAX_DIGITS + 1)) {
             std::cmp::Ordering::Greater => continue,
             _ if count == most => {
                 short.push('…');

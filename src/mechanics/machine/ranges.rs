@@ -6,24 +6,24 @@ use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Range, Want};
 
 /// The largest number of a machine, in SI units: beyond it, products of them would not be finite.
-const MOST: f64 = 1e6;
-/// The least of those that nothing works without: below it, quotients would not be.
-const LEAST: f64 = 1e-9;
+const MAX_NUMBER: f64 = 1e6;
+/// The smallest number of those that have to be above zero: below it, quotients would not be finite.
+const MIN_POSITIVE: f64 = 1e-9;
 
-const GRAVITY: Range = Range::either_way(MOST, "m/s²");
-pub(crate) const LENGTH: Range = Range::new(1e-6, MOST, "m");
-pub(crate) const PLACE: Range = Range::either_way(MOST, "m");
+const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");
+pub(crate) const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
+pub(crate) const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
 /// Links may be all but without mass.
-pub(crate) const MASS: Range = Range::new(1e-15, MOST, "kg");
-pub(crate) const LOAD: Range = Range::new(0.0, MOST, "kg");
-const RADIUS: Range = Range::new(0.0, MOST, "m");
-pub(crate) const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
-const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
+pub(crate) const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
+pub(crate) const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
+const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
+pub(crate) const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
 /// A gear is no lever of any length, and none of none.
 pub(crate) const RATIO: Range = Range::either_way(1e4, "");
-const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
-const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
-const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
+const SPEED_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s");
+const ACCELERATION_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s²");
+const JERK_LIMIT: Range = Range::new(MIN_POSITIVE, 1e9, "rad/s³");
 
 /// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
 pub const MAX_ANGLE: f64 = 25.2;
@@ -159,7 +159,7 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
             let place = |key: &'static str| Place::new(&[&"drive", &i, &"rotor", &key]);
             within(INERTIA, rotor.inertia, || place("inertia"))?;
             within(RATIO, rotor.ratio, || place("ratio"))?;
-            if rotor.ratio.abs() < LEAST {
+            if rotor.ratio.abs() < MIN_POSITIVE {
                 let want =
                     Want::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
                 return Err(MachineError::OutOfRange { place: place("ratio"), value: rotor.ratio, want });

@@ -28,8 +28,8 @@ pub const MAX_SAMPLES: usize = 20_000;
 const TIME: Range = Range::either_way(1e11, "s");
 const VALUE: Range = Range::either_way(1e6, "rad or m");
 
-/// Two times nearer to each other than this share of the whole are one.
-const APART: f64 = 1e-9;
+/// The least time between two samples, as a fraction of the whole time.
+const MIN_TIME_STEP: f64 = 1e-9;
 
 /// What the values of samples are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,7 +170,7 @@ impl Samples {
                 return Err(SamplesError::OutOfRange { row, column, value, range });
             }
         }
-        let least = APART * (rows[got - 1][0] - rows[0][0]).abs();
+        let least = MIN_TIME_STEP * (rows[got - 1][0] - rows[0][0]).abs();
         for (row, w) in rows.windows(2).enumerate() {
             let (before, time) = (w[0][0], w[1][0]);
             if time.partial_cmp(&(before + least)) != Some(std::cmp::Ordering::Greater) {

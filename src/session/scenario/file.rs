@@ -75,7 +75,7 @@ enum MachineRef {
 const PRINTABLE: &str = "want printable characters";
 
 /// The most characters of an error of the TOML reader.
-const MOST_WORDS: usize = 300;
+const MAX_MESSAGE: usize = 300;
 
 /// What a name or a file stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +110,7 @@ impl Scenario {
         let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
             line: e.span().map(|s| machine::line_of(text, s.start)),
-            message: shortened(e.message(), MOST_WORDS),
+            message: shortened(e.message(), MAX_MESSAGE),
         })?;
         let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
         let stated: toml::Table = text.parse().unwrap_or_default();
@@ -157,7 +157,7 @@ impl Scenario {
         let wrong_edit = |(i, message): (usize, String)| {
             let place = Place::new(&[&"edit", &i]);
             let (file, line) = (label.into(), machine::line_of_place(text, &place));
-            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MOST_WORDS) }
+            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MAX_MESSAGE) }
         };
         for (i, entry) in file.edits.into_iter().enumerate() {
             edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
@@ -183,7 +183,7 @@ impl Scenario {
         check_edits(&scenario).map_err(wrong_edit)?;
         let wrong_entry = |of: &str, (i, message): (usize, String)| {
             let line = machine::line_of_place(text, &Place::new(&[&of, &i]));
-            let message = format!("{of} {}: {}", i + 1, shortened(&message, MOST_WORDS));
+            let message = format!("{of} {}: {}", i + 1, shortened(&message, MAX_MESSAGE));
             ScenarioError::Syntax { file: label.into(), line, message }
         };
         let sound = |edits: &[TimedEdit]| check_edits(&Self { edits: edits.to_vec(), ..scenario.without_edits() });
