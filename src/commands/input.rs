@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::PoseConstant;
@@ -13,12 +14,20 @@ use stillbase::settings::change;
 use stillbase::settings::key::Key;
 use stillbase::settings::range::Range;
 use stillbase::settings::text::MOST_BYTES;
+use stillbase::settings::word::Choice;
 
 use super::exit::say;
 use super::failure::Failure;
 
 /// The scenario of a command that is given none: the paper's reactionless case.
 pub const DEFAULT_SCENARIO: &str = "case-3";
+
+/// Reads the word of a choice; help lists what each of them means.
+pub fn choice<T: Choice>(all: impl IntoIterator<Item = T>) -> impl TypedValueParser<Value = T> {
+    let words = all.into_iter().map(T::words);
+    let values = words.map(|words| PossibleValue::new(words.file).help(words.meaning));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|word| T::of_word(&word).ok_or("no such choice"))
+}
 
 /// Settings that the command line lays over a machine or a scenario.
 #[derive(Args, Default)]

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use stillbase::files::{text, write_new};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::common::starting_b;
@@ -12,7 +11,7 @@ use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{Change, Content, Scenario, Task, TaskKind, content};
+use stillbase::session::scenario::{Change, Content, Scenario, Shape, Task, TaskKind, content};
 use stillbase::session::{Run, settled};
 use stillbase::simulation::plant::PlantDifferences;
 use stillbase::study::plan_summary::PlanSummary;
@@ -20,12 +19,12 @@ use stillbase::study::plan_summary::PlanSummary;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, Settings, above_zero, change_task, laid, no_use, none_idle, point, pose_constant, pose_space,
-    stated, tell_idle, tell_tolerance,
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, laid, no_use, none_idle, point, pose_constant,
+    pose_space, stated, tell_idle, tell_tolerance,
 };
 use super::output::{Format, Table, check_output};
 use stillbase::settings::number::{counted, fixed};
-use stillbase::settings::word::{Choice, Words};
+use stillbase::settings::word::Choice;
 
 /// What a plan of a machine is called until a file gives it a name.
 const NAMELESS: &str = "plan";
@@ -54,11 +53,11 @@ pub struct Plan {
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
     /// How the redundancy is resolved
-    #[arg(long, value_enum)]
-    kind: Option<Kind>,
+    #[arg(long, value_parser = choice(kinds()))]
+    kind: Option<TaskKind>,
     /// What joins the points
-    #[arg(long, value_enum)]
-    shape: Option<ShapeName>,
+    #[arg(long, value_parser = choice(Shape::ALL.iter().copied()))]
+    shape: Option<Shape>,
     /// Return to the first point
     #[arg(long)]
     closed: bool,
@@ -66,8 +65,8 @@ pub struct Plan {
     #[arg(long, value_name = "DISTANCE", value_parser = above_zero)]
     blend: Option<f64>,
     /// Time law
-    #[arg(long, value_name = "LAW", value_parser = laws())]
-    law: Option<String>,
+    #[arg(long, value_name = "LAW", value_parser = choice(TimeLaw::ALL.iter().copied()))]
+    law: Option<TimeLaw>,
     /// Time, s, for the laws that do not find it themselves
     #[arg(long, value_name = "T", value_parser = above_zero)]
     time: Option<f64>,
@@ -104,35 +103,9 @@ fn floating_base(text: &str) -> Result<FloatingBase, String> {
     }
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Kind {
-    /// b is held: nothing reaches the base
-    Reactionless,
-    /// Minimum-norm joint rates
-    MinimumNorm,
-    /// b changes as little as it must
-    LeastReaction,
-    /// From one plane to another, at a price
-    ChangeB,
-    /// At zero momentum, whatever the machine
-    ZeroMomentum,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ShapeName {
-    JointLine,
-    Line,
-    Arc,
-    Spline,
-    Freehand,
-}
-
-/// Every time law by its name in files.
-fn laws() -> PossibleValuesParser {
-    PossibleValuesParser::new(TimeLaw::ALL.iter().map(|law| {
-        let Words { file, meaning, .. } = law.words();
-        PossibleValue::new(file).help(meaning)
-    }))
+/// The kinds that a person can plan by points alone.
+fn kinds() -> impl Iterator<Item = TaskKind> {
+    TaskKind::ALL.iter().copied().filter(|kind| !matches!(kind, TaskKind::SameTip | TaskKind::Given))
 }
 
 impl Plan {
@@ -227,11 +200,10 @@ impl Plan {
             None if self.points.is_empty() => {}
             None => return Err(Failure::wrong_input("one point is no path: want at least two")),
         }
-        let word = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned());
         let words = [
-            ("kind", self.kind.and_then(|k| word(k.to_possible_value()))),
-            ("shape", self.shape.and_then(|s| word(s.to_possible_value()))),
-            ("law", self.law.clone()),
+            ("kind", self.kind.map(|kind| kind.words().file)),
+            ("shape", self.shape.map(|shape| shape.words().file)),
+            ("law", self.law.map(|law| law.words().file)),
         ];
         for (key, value) in words.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             change.insert(key.into(), value.into());
