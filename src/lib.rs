@@ -127,7 +127,7 @@
 //!   the tests draw it at random.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
 //!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
-//!   [`query::Queries`] for it; nothing else keeps what is derived, and `tests/layers` holds that.
+//!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.

@@ -116,7 +116,7 @@ fn studies_run_beside_the_window() {
 
 /// The scene is drawn without it until then; another machine's is found anew, and only that.
 fn what_a_machine_reaches_is_outlined_beside_the_window() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("four-drive", &workers);
     h.run_steps(2);
     let outlined = |h: &Window| {
@@ -156,7 +156,7 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
 
 /// The panel is there before them, keeps those of the machine before meanwhile, and says so once that takes long.
 fn counterweights_are_looked_for_beside_the_window() {
-    let workers = Waiting::default();
+    let workers = Waiting::slow();
     let mut h = window("nine-link-bare", &workers);
     tell(&mut h, Command::View(ViewKind::Design));
     let front = |h: &Window| {
