@@ -102,8 +102,8 @@
 //! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
 //!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
 //! * **A setting**: a row in the struct of the part that it sets, which `keyed!` declares (`settings/keyed.rs`):
-//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/ranges.rs`,
-//!   and its line in `set.rs`. The row is the field, with type, default, range, meaning and when it has an effect; files,
+//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of a design `session/scenario/design.rs`; of machines `mechanics/machine/ranges.rs`,
+//!   and its line in `set.rs`. The row is the field, with type, default, range, meaning and when it has an effect (what frames depend on it: `session/scenario/keys.rs`); files,
 //!   `--set`, edits, *All settings* in the window and `stillbase keys` follow, and so does the page of the guide, which
 //!   `stillbase keys --markdown` writes. A row of its own in the panel stands in `app/side/`.
 //! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the

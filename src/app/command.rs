@@ -9,7 +9,6 @@ use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
-use crate::session::design::Brief;
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
 use crate::study::front_point::FrontMeasure;
@@ -187,7 +186,7 @@ impl Command {
             | Self::GiveUp
             | Self::GoTo(_)
             | Self::Redo
-            | Self::Design(DesignCommand::Brief(_) | DesignCommand::Take(_))
+            | Self::Design(DesignCommand::Take(_))
             | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
             | Self::Case(_)
             | Self::BackToPath => true,
@@ -434,8 +433,6 @@ impl FileDialog {
 /// What a person asks of the machine that is designed.
 #[derive(Clone, Debug)]
 pub enum DesignCommand {
-    /// Ask for something else; a balance that is kept from now on is found at once.
-    Brief(Box<Brief>),
     /// Show the counterweights of a machine of the front, by its place, or none.
     Ghost(Option<usize>),
     /// Take them.

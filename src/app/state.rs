@@ -18,13 +18,13 @@ use super::{
     finder, keys, order, place, plots, rail, side, status, studio, study, theme, top, viewport,
 };
 use crate::app::widgets;
-use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::query::Whole;
-use crate::session::design::weights_of;
+use crate::session::design::{briefed, weights_of};
 use crate::session::scenario::Scenario;
 use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -381,10 +381,10 @@ impl AppState {
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
-            let ViewState { brief, learns, front_by, .. } = &self.view_state;
+            let ViewState { learns, front_by, .. } = &self.view_state;
             let found = match learns {
-                true => studio::Facts::learned(&queries, &self.session, brief),
-                false => studio::Facts::weighed(&queries, &self.session, brief, *front_by),
+                true => studio::Facts::learned(&queries, &self.session),
+                false => studio::Facts::weighed(&queries, &self.session, *front_by),
             };
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
@@ -487,37 +487,28 @@ impl AppState {
 
     /// An edit with what follows from it where a machine that is designed is kept balanced.
     fn designed(&mut self, edit: Edit) -> Result<Edit, String> {
-        let designs = self.view_state.view == ViewKind::Design;
         let Edit::Set { change } = &edit else { return Ok(edit) };
-        if !(designs && edit.sets_machine()) {
+        if self.view_state.view != ViewKind::Design {
             return Ok(edit);
         }
-        let now = &self.session.scenario().machine;
-        let start = self.designed_from.get_or_insert_with(|| now.clone());
-        self.view_state.brief.edit(now, start, change)
+        let scenario = self.session.scenario();
+        if edit.sets_machine() {
+            let start = self.designed_from.get_or_insert_with(|| scenario.machine.clone());
+            return scenario.design.edit(&scenario.machine, start, change);
+        }
+        if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
     }
 
     fn design(&mut self, command: DesignCommand) -> Result<(), String> {
         match command {
-            DesignCommand::Brief(brief) => {
-                let machine = &self.session.scenario().machine;
-                let begins =
-                    brief.keeps_balance && !self.view_state.brief.keeps_balance && !Inertia::of(machine).is_balanced();
-                let edit = begins.then(|| brief.edit(machine, machine, &Default::default())).transpose()?;
-                self.view_state.brief = *brief;
-                if let Some(edit) = edit {
-                    self.change(Change::Edit(edit));
-                    self.session.end_gesture();
-                }
-            }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
             DesignCommand::TakeStillest => {
-                let placed = self.view_state.brief.stillest(&self.session.scenario().machine);
+                let placed = self.session.scenario().design.stillest(&self.session.scenario().machine);
                 self.take_weights(&placed.map_err(|why| why.to_string())?.machine);
             }
             DesignCommand::FrontBy(by) => self.view_state.front_by = by,
             DesignCommand::Take(i) => {
-                if let Some(machine) = studio::of_front(self.queries(), &self.session, &self.view_state.brief, i) {
+                if let Some(machine) = studio::of_front(self.queries(), &self.session, i) {
                     self.take_weights(&machine);
                 }
             }
@@ -527,9 +518,7 @@ impl AppState {
 
     /// Takes the counterweights of another machine.
     fn take_weights(&mut self, of: &Machine) {
-        let edit = weights_of(&self.session.scenario().machine, of);
-        // What is held of those before would be said of others now.
-        self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
+        let edit = weights_of(self.session.scenario(), of);
         self.change(Change::Edit(edit));
     }
 

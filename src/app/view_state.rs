@@ -14,7 +14,6 @@ use crate::picture::scene::palette::{Palette, Theme, palette};
 use crate::picture::scene::pick::Pick;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
-use crate::session::design::Brief;
 use crate::session::{Edit, Refusal, Session};
 use crate::study::front_point::FrontMeasure;
 
@@ -124,8 +123,6 @@ pub struct ViewState {
     pub compare: bool,
     /// The study of tolerances is on display.
     pub study: bool,
-    /// What is asked of the machine that is designed.
-    pub brief: Brief,
     /// The machine of the front whose counterweights are shown, by its place.
     pub ghost: Option<usize>,
     /// What its machines are told apart by beside mass and inertia.
@@ -207,7 +204,6 @@ impl ViewState {
             force: None,
             compare: false,
             study: false,
-            brief: Brief::default(),
             ghost: None,
             front_by: None,
             learns: false,

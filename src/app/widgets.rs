@@ -278,3 +278,8 @@ pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: im
         commands.push(Command::EndGesture);
     }
 }
+
+/// An edit that is an undo of its own.
+pub(super) fn once(commands: &mut Vec<Command>, edit: Edit) {
+    commands.extend([Command::Edit(edit), Command::EndGesture]);
+}

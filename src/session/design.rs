@@ -1,17 +1,18 @@
-//! [`Brief`]: what a designer asks of a machine whose masses and lengths are changed by hand, and the edits that follow.
+//! What follows from a [`Brief`]: the edits of a machine that is kept balanced, and counterweights to take.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
 use super::edit::Edit;
-use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Preset, Quantity, keep};
+pub use super::scenario::Brief;
+use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Quantity, keep};
 use crate::mechanics::counterweights::{
     Disc, Free, FreeRotor, Front, NoWeights, Objective, Placed, Sites, Weighing, front, place,
 };
-use crate::mechanics::machine::{Counterweight, Drive, Length, Link, Machine};
-use crate::settings::change::{join, leaves, one};
+use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine};
+use crate::session::scenario::Scenario;
+use crate::settings::change::{DEFAULT, join, leaves, one};
 
 /// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
 const MASS: f64 = 1.0;
@@ -23,56 +24,13 @@ const GRAM: f64 = 1e-3;
 /// A counterweight may be so much further back, m: what found it has rounded.
 const ROUNDING: f64 = 1e-6;
 
-/// What a designer asks for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Brief {
-    /// Whatever is changed, the rest follows so that the machine is balanced, (7) and (8).
-    pub keeps_balance: bool,
-    /// Names of links that stay as they are, with their counterweights.
-    pub fixed: BTreeSet<String>,
-    /// Single numbers that stay, may change, or may change so far, by key: `link.5.mass`. They come before what is said of
-    /// their links.
-    pub holds: BTreeMap<String, Hold>,
-    /// How dear it is to move the centre of mass of each link, (10), where these follow.
-    pub preset: Preset,
-    /// What counterweights are made of.
-    pub disc: Disc,
-    /// How far behind the root of its link a counterweight may sit at most, m; none: as far as the link is long.
-    pub back: Option<f64>,
-    /// How heavy one may be, kg; none: any mass.
-    pub most: Option<f64>,
-    /// How far the edge of a disc stays from the middle of every pin of its link, m; none: discs may cover pins.
-    pub clearance: Option<f64>,
-    /// The least and the greatest mass that the end effector will hold, kg; none: it holds what it holds.
-    pub payload: Option<[f64; 2]>,
-    /// Between which ratios the rotors of drives may be chosen, by the drive's name, where the least momentum is wanted.
-    pub ratios: BTreeMap<String, [f64; 2]>,
-}
-
-impl Default for Brief {
-    fn default() -> Self {
-        Self {
-            keeps_balance: false,
-            fixed: BTreeSet::new(),
-            holds: BTreeMap::new(),
-            preset: Preset::MinimumNorm,
-            disc: Disc::STEEL,
-            back: None,
-            most: None,
-            clearance: None,
-            payload: None,
-            ratios: BTreeMap::new(),
-        }
-    }
-}
-
 impl Brief {
     /// Counterweights like those that a machine has: of a plate of their density, as far back as the farthest of them.
     pub fn of(machine: &Machine) -> Self {
         let weights = &machine.spec().counterweights;
         let plates = weights.iter().filter(|weight| weight.radius > 0.0);
         // What each square metre weighs is all that is known of it: thickness, of steel.
-        let disc = plates
+        let thickest = plates
             .map(|weight| weight.mass / (PI * weight.radius.powi(2) * Disc::STEEL.density))
             .fold(None, |thickest: Option<f64>, thickness| {
                 Some(thickest.map_or(thickness, |known| known.max(thickness)))
@@ -85,8 +43,8 @@ impl Brief {
             |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length - ROUNDING);
         let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
         Self {
-            disc: disc.map_or(Disc::STEEL, |thickness| Disc { thickness, ..Disc::STEEL }),
-            back: (!weights.iter().all(is_usual)).then_some(back),
+            thickness: thickest.unwrap_or(Disc::STEEL.thickness),
+            behind_root: (!weights.iter().all(is_usual)).then_some(back),
             ..Self::default()
         }
     }
@@ -97,9 +55,12 @@ impl Brief {
     /// # Errors
     /// If there is no such machine, or none that is balanced: what stands in the way, and what would do.
     pub fn edit(&self, machine: &Machine, start: &Machine, change: &Table) -> Result<Edit, String> {
-        let plain = || Edit::Set { change: change.clone() };
-        if !self.keeps_balance {
-            return Ok(plain());
+        self.followed(machine, start, change).map(|change| Edit::Set { change })
+    }
+
+    fn followed(&self, machine: &Machine, start: &Machine, change: &Table) -> Result<Table, String> {
+        if !self.keep_balanced {
+            return Ok(change.clone());
         }
         let changed = machine.with(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
@@ -110,8 +71,7 @@ impl Brief {
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
         let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
-        let all = follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &one(&key, value)));
-        Ok(Edit::Set { change: all })
+        Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &one(&key, value))))
     }
 
     /// What may change: the counterweights of a machine that has some which are not fixed, else the centres of mass of its links.
@@ -130,7 +90,7 @@ impl Brief {
             }
         };
         // Those of the paper are for nine links.
-        let penalties = self.preset.penalty(spec.links.len()).unwrap_or_default();
+        let penalties = self.penalties.penalty(spec.links.len()).unwrap_or_default();
         let adjusted = |(parameter, link): (Parameter, &str)| {
             let is_fixed = matches!(parameter.body, Body::Counterweight(i) if spec.counterweights[i].fixed);
             let stays = is_fixed || self.fixed.contains(link) || named.contains(&parameter.key(machine));
@@ -152,7 +112,7 @@ impl Brief {
         let mut keep = Keep { parameters: free.into_iter().map(adjusted).collect() };
         for parameter in Parameter::all(machine) {
             let key = parameter.key(machine);
-            if let Some(hold) = self.holds.get(&key).filter(|_| !named.contains(&key)) {
+            if let Some(hold) = self.hold.get(&key).filter(|_| !named.contains(&key)) {
                 keep.hold(machine, parameter, *hold);
             }
         }
@@ -165,7 +125,7 @@ impl Brief {
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
         let Some(link) = link else { return Hold::Free };
         let length = machine.resolved_links()[link].length;
-        let ends = [-self.back.unwrap_or(length), length];
+        let ends = [-self.behind_root.unwrap_or(length), length];
         let within = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
         let [low, high] = weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within);
         let clear = weights[0].and_then(|weight| self.clear_of_pins(&machine.resolved_links()[link].pins, weight));
@@ -198,7 +158,7 @@ impl Brief {
         let objective = Objective { momentum: 1.0, mass: GRAM, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
         let rotors = drives.filter_map(|(drive, of)| {
-            let ends = *self.ratios.get(&of.name)?;
+            let ends = *self.ratio.get(&of.name)?;
             Some(FreeRotor { drive, free: Free::Ratio(ends) })
         });
         place(machine, &Weighing { objective, rotors: rotors.collect(), ..self.weighing(machine) })
@@ -210,14 +170,14 @@ impl Brief {
         let free = machine.resolved_links().iter().enumerate();
         let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
             link,
-            from: -self.back.unwrap_or(part.length),
+            from: -self.behind_root.unwrap_or(part.length),
             to: part.length,
-            most: self.most.unwrap_or(f64::INFINITY),
+            most: self.heaviest.unwrap_or(f64::INFINITY),
         });
         Weighing {
             clearance: self.clearance,
             payload: self.payload,
-            ..Weighing::least(Objective::mass(), sites.collect(), self.disc)
+            ..Weighing::least(Objective::mass(), sites.collect(), self.disc())
         }
     }
 }
@@ -230,13 +190,32 @@ pub fn length_of(link: &Link, to: f64) -> Edit {
     }
 }
 
+/// A change of the brief of a scenario; where a machine that is not balanced is kept so from now on, with what balances it.
+///
+/// # Errors
+/// If the brief cannot be changed so, or nothing balances the machine: what stands in the way, and what would do.
+pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
+    let next = scenario.with(change).map_err(|why| why.to_string())?;
+    let begins = next.design.keep_balanced && !scenario.design.keep_balanced;
+    if !begins || Inertia::of(&next.machine).is_balanced() {
+        return Ok(Edit::Set { change: change.clone() });
+    }
+    let follows = next.design.followed(&next.machine, &next.machine, &Table::new())?;
+    Ok(Edit::Set { change: join(follows, change) })
+}
+
 /// The edit that gives a machine the counterweights of another, what that holds, with which they balance it, and the
-/// ratios of its rotors.
-pub fn weights_of(machine: &Machine, of: &Machine) -> Edit {
+/// ratios of its rotors. How numbers of the counterweights before were held is forgotten: it would be said of others.
+pub fn weights_of(scenario: &Scenario, of: &Machine) -> Edit {
+    let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
     let change = Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]);
     let [has, holds] = [machine, of].map(|machine| machine.spec().payload.mass);
     let change = if has == holds { change } else { join(change, &one("payload.mass", holds)) };
+    let change = match scenario.design.hold.keys().any(|key| key.starts_with("counterweight.")) {
+        true => join(change, &one("design.hold.counterweight", DEFAULT)),
+        false => change,
+    };
     let ratio = |drive: &Drive| drive.rotor.map(|rotor| rotor.ratio);
     let both = machine.spec().drives.iter().zip(&of.spec().drives);
     let others = both.filter_map(|(was, is)| Some((&is.name, ratio(is).filter(|now| ratio(was) != Some(*now))?)));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::changes::Failed;
+use super::changes::{Failed, changed};
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
 use super::replay;
@@ -86,6 +86,19 @@ impl Document {
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
         let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
         Ok(Performed { run, frames, machines })
+    }
+
+    /// Whether it gives the same frames as another because nothing else differs than keys on which no frame depends, and
+    /// how far it has got; then the scenario of the run with those keys as this one leaves them.
+    pub fn aside_of(&self, other: &Self) -> Option<Scenario> {
+        fn moving(document: &Document) -> impl Iterator<Item = &TimedEdit> {
+            document.script.in_order().into_iter().filter(|timed| !timed.edit.is_aside())
+        }
+        if !moving(self).eq(moving(other)) || other.scenario.with_asides_of(&self.scenario).ok()? != *self.scenario {
+            return None;
+        }
+        let mut asides = self.script.in_order().into_iter().filter_map(|timed| timed.edit.asides());
+        asides.try_fold(Scenario::clone(&self.scenario), |now, edit| changed(&now, &edit).ok())
     }
 
     /// With an edit before the first step.

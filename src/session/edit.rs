@@ -7,8 +7,9 @@ use toml::{Table, Value};
 
 use super::older;
 use crate::mechanics::machine::{ANGLE, PARTS, is_of_machine};
-use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT};
+use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, effect_in, effect_of};
 use crate::settings::change;
+use crate::settings::key::Effect;
 use crate::settings::range::{Check, shortened};
 
 /// One change. It can be saved, replayed and undone.
@@ -57,8 +58,8 @@ pub enum Edit {
         /// N.
         y: f64,
     },
-    /// Settings laid over the scenario, as a file has them: of task, plant, base, control, tolerance, machine and of the
-    /// scenario itself; `default` takes a key out.
+    /// Settings laid over the scenario, as a file has them: of task, plant, base, control, tolerance, design, machine and
+    /// of the scenario itself; `default` takes a key out.
     Set {
         /// Such as `{ task = { shape = "spline" }, link = { 5 = { com = -0.02 } } }`.
         change: Table,
@@ -162,19 +163,22 @@ impl Edit {
         self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
     }
 
-    /// Whether it sets something of these parts and of nothing else.
-    fn sets_only(&self, parts: &[&str]) -> bool {
-        self.settings().is_some_and(|change| change.keys().all(|key| parts.contains(&key.as_str())))
+    /// What it reaches, as its keys say.
+    pub fn effect(&self) -> Effect {
+        self.settings().map_or(Effect::Motion, effect_of)
     }
 
-    /// Whether no motion depends on what it sets.
-    pub(super) fn is_aside(&self) -> bool {
-        self.sets_only(&["tolerance", "duration"])
+    /// Whether no frame depends on what it sets, and it holds for the run as a whole.
+    pub fn is_aside(&self) -> bool {
+        self.effect() == Effect::Aside
     }
 
-    /// Whether it sets nothing but the b to compare with.
-    pub(super) fn compares(&self) -> bool {
-        self.sets_only(&["compare_b"])
+    /// What it sets of the keys that no frame depends on.
+    pub(super) fn asides(&self) -> Option<Self> {
+        let change = self.settings()?;
+        let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::Aside;
+        let change: Table = change.iter().filter(aside).map(|(part, value)| (part.clone(), value.clone())).collect();
+        (!change.is_empty()).then_some(Self::Set { change })
     }
 
     /// Whether it changes the machine.
@@ -199,8 +203,7 @@ impl Edit {
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
     }
 
-    /// Whether it sets the task, its time, the base or the tolerances: these hold for the whole run, from its first
-    /// step.
+    /// Whether what it sets holds for the whole run, from its first step: what is planned, and what no frame depends on.
     pub fn is_of_the_whole(&self) -> bool {
         self.is_of_the_start() || self.is_aside()
     }
@@ -210,7 +213,7 @@ impl Edit {
 
     /// Whether it changes what a motion is planned from, so that it can stand only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
-        self.sets(&["task", "base", "step"])
+        self.effect() == Effect::Plan
     }
 
     /// Whether a later edit sets all that this one sets, so that only the last edit of a drag is kept.

@@ -39,6 +39,11 @@ impl Change {
     fn plans(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| e.edit.sets_path() || e.edit.sets(&["base"]))
     }
+
+    /// Whether no frame depends on what it has changed.
+    fn is_aside(&self) -> bool {
+        self.edit.as_ref().is_some_and(|e| e.edit.is_aside())
+    }
 }
 
 /// A run that a person edits while it goes on. A copy shares frames and history, so that it costs the same however long
@@ -472,6 +477,7 @@ impl Session {
         match &timed.edit {
             edit if edit.is_aside() => {
                 self.run.apply(&timed.edit)?;
+                self.unedited = None;
                 self.edits = document.script.to_vec().into_iter().collect();
                 self.document = document;
             }
@@ -563,6 +569,7 @@ impl Session {
                 self.document.keep_as(&change.before, kept);
                 Ok(())
             }
+            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
             (Some(inverse), None) if self.is_running() && !change.plans() => {
                 self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
@@ -595,6 +602,7 @@ impl Session {
                 self.document.keep_as(&change.before, kept);
                 Ok(())
             }
+            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
             (Some(timed), None) if self.is_running() && !change.plans() => {
                 self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
@@ -604,6 +612,25 @@ impl Session {
         self.redo.pop();
         self.undo.push(Arc::new(Change { before, ..Change::clone(&change) }));
         Ok(())
+    }
+
+    /// What was, with the frames that are there, if it differs in nothing on which they depend; the scenario of its run.
+    fn aside(&self, before: &Document) -> Option<(Document, Scenario)> {
+        let document = Document { end: self.document.end, ..before.clone() };
+        let scenario = document.aside_of(&self.document)?;
+        Some((document, scenario))
+    }
+
+    /// Returns to that; whether it could.
+    fn go_aside(&mut self, before: &Document) -> bool {
+        let Some((document, scenario)) = self.aside(before) else { return false };
+        if self.run.set_asides(&scenario).is_err() {
+            return false;
+        }
+        self.unedited = None;
+        self.edits = document.script.to_vec().into_iter().collect();
+        self.document = document;
+        true
     }
 
     /// Applies while time passes, without touching history.

@@ -18,6 +18,7 @@ use crate::planning::reactionless::{BSet, Decimal};
 use crate::query::{Queries, Same, Shared, Whole};
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
+use crate::settings::key::Effect;
 use crate::simulation::frame::Frame;
 use crate::simulation::{Guide, Simulation};
 
@@ -250,9 +251,17 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             // No motion depends on it.
-            edit if edit.compares() => self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?),
+            edit if edit.effect() == Effect::Picture => {
+                self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?)
+            }
             Edit::Push { .. } | Edit::Set { .. } => self.set(edit)?,
         }
+        Ok(())
+    }
+
+    /// Takes what a scenario has of the keys that no frame depends on.
+    pub(super) fn set_asides(&mut self, scenario: &Scenario) -> Result<(), Refusal> {
+        self.scenario = Arc::new(self.scenario.with_asides_of(scenario)?);
         Ok(())
     }
 

@@ -24,6 +24,21 @@ pub struct Key {
     pub when: &'static str,
     /// Where nothing is the default: what then counts.
     pub instead: &'static str,
+    /// What a change of it reaches.
+    pub effect: Effect,
+}
+
+/// What a change of a key reaches, from the least to the most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Effect {
+    /// No frame of the run: what is studied, designed or recorded of it. Such a key holds for the run as a whole.
+    Aside,
+    /// No frame of the run, but what is shown from the present step on.
+    Picture,
+    /// Frames from the present step on.
+    Motion,
+    /// The plan of the motion: such a key can change only before the first step.
+    Plan,
 }
 
 /// What a key holds.
@@ -43,6 +58,8 @@ pub enum Holds {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Switch,
+    /// How a number is held while others follow: the word `fixed` or `free`, or its least and greatest value.
+    Bounds(Range),
     /// How a value varies: `normal:` or `uniform:` and an amount, in its unit or in percent.
     Spread(&'static str),
     /// Rows of numbers, from a file.
@@ -57,7 +74,7 @@ impl Key {
 
     /// A key that always has an effect.
     pub const fn new(path: &'static str, holds: Holds, default: &'static str, words: &'static str) -> Self {
-        Self { path, holds, default, words, when: "", instead: "" }
+        Self { path, holds, default, words, when: "", instead: "", effect: Effect::Motion }
     }
 
     /// A number.
@@ -75,6 +92,29 @@ impl Key {
     #[must_use]
     pub const fn instead(self, instead: &'static str) -> Self {
         Self { instead, ..self }
+    }
+
+    /// The same with what a change of it reaches, where that is not the motion.
+    #[must_use]
+    pub const fn reaching(self, effect: Effect) -> Self {
+        Self { effect, ..self }
+    }
+
+    /// Keys, a change of each of which reaches the same.
+    #[must_use]
+    pub const fn all_reaching<const N: usize>(effect: Effect, keys: &[Self]) -> [Self; N] {
+        let mut all = [keys[0]; N];
+        let mut i = 0;
+        while i < N {
+            all[i] = keys[i].reaching(effect);
+            i += 1;
+        }
+        all
+    }
+
+    /// The part of a scenario that it belongs to: the first word of its path.
+    pub fn part(&self) -> &'static str {
+        self.path.split('.').next().unwrap_or_default()
     }
 
     /// Its default as a person reads it: what has to be given, what stands there, or what counts without it.
@@ -98,6 +138,7 @@ impl Key {
             | Holds::Whole(range)
             | Holds::PerDrive(range)
             | Holds::List(_, range)
+            | Holds::Bounds(range)
             | Holds::Points(range) => Some(range),
             Holds::Choice(_) | Holds::Switch | Holds::Spread(_) | Holds::Rows => None,
         }
@@ -114,6 +155,9 @@ impl Key {
         }
     }
 }
+
+/// How a number is held without its bounds being given.
+pub const BOUNDS: [&str; 2] = ["fixed", "free"];
 
 impl Holds {
     /// The same with numbers in a range, if it holds any.
@@ -147,6 +191,7 @@ impl Holds {
             Self::Points(_) => value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(2)))),
             Self::Choice(words) => value.as_str().is_some_and(|word| words.contains(&word)),
             Self::Switch => value.is_bool(),
+            Self::Bounds(_) => value.as_str().is_some_and(|word| BOUNDS.contains(&word)) || list(value, Some(2)),
             Self::Spread(_) => value.is_table(),
             Self::Rows => true,
         }
@@ -163,6 +208,7 @@ impl fmt::Display for Holds {
             Self::Points(range) => write!(f, "points x, y, each {range}"),
             Self::Choice(words) => f.write_str(&words.join(", ")),
             Self::Switch => f.write_str("true or false"),
+            Self::Bounds(range) => write!(f, "{}, or the least and the greatest, each {range}", BOUNDS.join(", ")),
             Self::Spread(unit) => write!(f, "normal:σ or uniform:half-width, 0 or more, in {unit} or %"),
             Self::Rows => f.write_str("rows of numbers"),
         }

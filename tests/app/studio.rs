@@ -21,6 +21,7 @@ pub const TESTS: &[Test] = tests![
     what_cannot_be_balanced_is_told_and_changes_nothing,
     numbers_of_links_are_typed,
     single_numbers_are_held,
+    what_is_asked_is_undone_and_saved,
     rotors_take_what_drives_give_to_the_base,
     inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
@@ -172,7 +173,7 @@ fn what_cannot_be_balanced_is_told_and_changes_nothing() {
     h.get_by_label("Keep balanced").click();
     h.run_steps(3);
     assert!(h.query_all_by_label_contains("no balance within these limits").next().is_some());
-    assert!(!h.state().app_state().view_state().brief.keeps_balance);
+    assert!(!session(&h).scenario().design.keep_balanced);
     assert_eq!(*machine(&h), before);
 }
 
@@ -261,6 +262,32 @@ fn equations_follow_the_machine_and_are_remembered() {
     assert!(!h.state().app_state().preferences([1280.0, 800.0]).learns);
 }
 
+/// What a designer asks for is a change like any other, and makes no frame anew.
+fn what_is_asked_is_undone_and_saved() {
+    let mut h = bare();
+    let (known, undone) = (session(&h).frames().revision().mark(), session(&h).undo_count());
+    for words in ["clear of pins", "link 4 stays"] {
+        h.get_by_label(words).click();
+        h.run_steps(3);
+    }
+    type_into(&mut h, "clear of pins mm", "8");
+    let asked = session(&h).scenario().design.clone();
+    assert_eq!((asked.clearance, asked.fixed.len()), (Some(0.008), 1));
+    assert_eq!(session(&h).undo_count(), undone + 3);
+    assert!(h.state().app_state().changes().1, "it is in no file yet");
+    let saved = session(&h).to_scenario().to_toml();
+    let again = Scenario::parse(&saved, "again.toml", None).expect("its own file");
+    assert_eq!(Session::open(again).expect("it opens").scenario().design, asked);
+    for clearance in [Some(0.005), Some(0.005), None] {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(3);
+        assert_eq!(session(&h).scenario().design.clearance, clearance);
+    }
+    assert_eq!((session(&h).scenario().design.fixed.len(), session(&h).undo_count()), (0, undone));
+    let frames = session(&h).frames();
+    assert!(frames.revision().kept_of(&known) >= frames.len(), "no frame is made anew");
+}
+
 /// A number that stays while others of its kind follow, and one that may go only so far.
 fn single_numbers_are_held() {
     let mut h = window("case-3", Theme::Dark);
@@ -280,7 +307,7 @@ fn single_numbers_are_held() {
     h.run_steps(3);
     h.get_by_label("may change").click();
     h.run_steps(3);
-    let holds = &h.state().app_state().view_state().brief.holds;
+    let holds = &session(&h).scenario().design.hold;
     assert_eq!(holds.keys().collect::<Vec<_>>(), ["link.2.mass", "link.9.com"]);
     h.state_mut()
         .app_state_mut()
@@ -300,7 +327,7 @@ fn discs_keep_clear_and_serve_a_range_of_payloads() {
     h.run_steps(3);
     h.get_by_label("payload from, to").click();
     h.run_steps(3);
-    let brief = &h.state().app_state().view_state().brief;
+    let brief = &session(&h).scenario().design;
     assert_eq!((brief.clearance, brief.payload), (Some(0.005), Some([0.0, 0.2])));
     h.get_by_label("least inertia").click();
     h.run_steps(4);

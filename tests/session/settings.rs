@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stillbase::session::scenario::{Scenario, key_of, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::change::{self, DEFAULT};
-use stillbase::settings::key::{Holds, Key};
+use stillbase::settings::key::{BOUNDS, Effect, Holds, Key};
 use toml::{Table, Value};
 
 fn case_3() -> Scenario {
@@ -26,7 +26,9 @@ fn parts_below(path: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_key_of_a_file_is_in_the_table() {
-    for path in ["task", "control", "plant", "base", "base.wheel", "plant.payload", "plant.friction", "plant.link.5"] {
+    for path in
+        ["task", "control", "plant", "base", "base.wheel", "plant.payload", "plant.friction", "plant.link.5", "design"]
+    {
         let change = change::one(&format!("{path}.nonsense"), 1);
         let message = case_3().with(&change).expect_err("there is no such key").to_string();
         let mut known = expected(&message);
@@ -106,6 +108,7 @@ fn every_range_is_as_it_is_said() {
             }
             let value = match key.holds {
                 Holds::List(count, _) => vec![outside; count].into(),
+                Holds::Bounds(_) => vec![outside; 2].into(),
                 Holds::Points(_) => Value::Array(vec![vec![outside, 0.0].into()]),
                 Holds::Whole(_) if outside > range.high() => Value::Integer(outside.ceil() as i64),
                 Holds::Whole(_) => Value::Integer(outside.floor() as i64),
@@ -186,6 +189,54 @@ fn older_sessions_still_open() {
     }
 }
 
+/// A key that says that no frame depends on it changes none, whether it is set at the start or while the machine moves;
+/// it is undone and brought back without the run being made again.
+#[test]
+fn what_changes_no_frame_says_so() {
+    let aside = |path: &str| key_of(path).map(|key| key.effect) == Some(Effect::Aside);
+    assert!(aside("design.clearance") && aside("design.hold.link.5.mass") && aside("tolerance.seed"));
+    assert!(!aside("task.time") && !aside("plant.force") && !aside("link.5.mass"));
+    let mut session = Session::open(case_3()).expect("it opens");
+    session.seek(0.2);
+    let set: Vec<Edit> = [
+        ("design.keep_balanced", Value::from(true)),
+        ("design.clearance", 0.004.into()),
+        ("design.fixed.9", true.into()),
+        ("design.hold.link.5.mass", vec![0.4, 0.9].into()),
+        ("design.ratio.2", vec![-4.0, -1.0].into()),
+        ("design.penalties", "table-1".into()),
+        ("tolerance.moment_limit", 0.5.into()),
+    ]
+    .map(|(path, value)| Edit::set(path, value))
+    .into();
+    let frames = session.frames().to_vec();
+    let known = session.frames().revision().mark();
+    for edit in &set {
+        assert!(edit.is_aside(), "{}", edit.title());
+        session.apply(edit.clone()).expect("it is set");
+        session.end_gesture();
+    }
+    let scenario = session.scenario().clone();
+    assert_eq!(scenario.design.hold.len() + scenario.design.fixed.len() + scenario.design.ratio.len(), 3);
+    let text = session.to_scenario().to_toml();
+    let again = Session::open(Scenario::parse(&text, "again.toml", None).expect("its own file")).expect("it opens");
+    assert_eq!(again.scenario().design, scenario.design);
+    // Frames that have come since stay.
+    session.seek(0.3);
+    let later = session.frames().to_vec();
+    for _ in &set {
+        session.undo().expect("it is undone");
+    }
+    assert_eq!((&session.scenario().design, &session.scenario().tolerance), (&case_3().design, &case_3().tolerance));
+    assert!(session.script().is_empty());
+    for _ in &set {
+        session.redo().expect("it is brought back");
+    }
+    assert_eq!(*session.scenario(), scenario);
+    assert_eq!((&later[..frames.len()], session.frames().to_vec()), (&frames[..], later.clone()));
+    assert!(session.frames().revision().kept_of(&known) >= frames.len(), "the frames were made again");
+}
+
 fn any_change() -> impl Strategy<Value = (String, Value)> {
     let all: Vec<(String, Holds)> = case_3().settings().into_iter().map(|(path, key, _)| (path, key.holds)).collect();
     (prop::sample::select(all), 0.0..1.0_f64, any::<bool>()).prop_map(|((path, holds), u, back)| {
@@ -198,6 +249,8 @@ fn any_change() -> impl Strategy<Value = (String, Value)> {
             Holds::Points(_) => Value::Array(vec![vec![0.5, 0.4 + 0.1 * u].into()]),
             Holds::Choice(words) => words[(u * words.len() as f64) as usize % words.len()].into(),
             Holds::Switch => (u > 0.5).into(),
+            Holds::Bounds(_) if u > 0.5 => BOUNDS[(u * 8.0) as usize % 2].into(),
+            Holds::Bounds(range) => vec![within(range.low(), range.high()); 2].into(),
             Holds::Spread(_) => format!("normal:{}", 0.01 * u).into(),
             Holds::Rows => DEFAULT.into(),
         };

@@ -126,6 +126,25 @@ fn weight(mass: f64, at: f64) -> Edit {
     Edit::set("counterweight", toml::Value::Array(vec![one.into()]))
 }
 
+/// What is asked of the machine while it is designed; no frame depends on it.
+fn any_brief() -> impl Strategy<Value = Edit> {
+    let hold = prop_oneof![
+        Just(toml::Value::from("fixed")),
+        Just("free".into()),
+        (0.1..0.5).prop_map(|low: f64| vec![low, low + 0.2].into()),
+        Just("default".into()),
+    ];
+    prop_oneof![
+        any::<bool>().prop_map(|keeps| Edit::set("design.keep_balanced", keeps)),
+        prop::option::of(0.0..0.01)
+            .prop_map(|x| Edit::set("design.clearance", x.map_or_else(|| "default".into(), toml::Value::from))),
+        (1e3..2e4).prop_map(|density: f64| Edit::set("design.density", density)),
+        any::<bool>().prop_map(|is_fixed| Edit::set("design.fixed.9", is_fixed)),
+        hold.prop_map(|hold| Edit::set("design.hold.link.5.mass", hold)),
+        Just(Edit::set("design", "default")),
+    ]
+}
+
 fn any_edit() -> impl Strategy<Value = Edit> {
     let spread = |key: &str, value: toml::Value| Edit::at(&["tolerance", key], value);
     prop_oneof![
@@ -143,6 +162,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         3 => any_task(),
         1 => (0.001..0.1).prop_map(move |most: f64| spread("moment_limit", most.into())),
         1 => Just(spread("link.*.com", toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())])))),
+        2 => any_brief(),
         1 => (0.3..1.5).prop_map(|time| Edit::set("task.time", time)),
         1 => prop::sample::select(vec![0.002, 0.004, 0.005]).prop_map(|step| Edit::set("step", step)),
         1 => (0.3..1.5).prop_map(|time| Edit::set("duration", time)),

@@ -2,12 +2,12 @@
 
 use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
-use super::fold::{fold, once, undo};
+use super::fold::{fold, undo};
 use crate::app::Command;
 use crate::app::facts::{Facts, Setting};
 use crate::app::place::fold_id;
 use crate::app::theme::{colour, plain};
-use crate::app::widgets::{name, note};
+use crate::app::widgets::{name, note, once};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::{Value, part_of};
@@ -20,7 +20,7 @@ use crate::settings::range::shortened;
 const TITLE: &str = "All settings";
 
 /// What the title above a part says already.
-const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance."];
+const HEADED: [&str; 7] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance.", "design."];
 
 /// The most rows that are shown at once.
 const SHOWN: usize = 24;
@@ -85,7 +85,10 @@ fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
         return Ok(DEFAULT.into());
     }
     let value = change::value(text);
-    let numbers = matches!(key.holds, Holds::Number(_) | Holds::Whole(_) | Holds::PerDrive(_) | Holds::List(..));
+    let numbers = matches!(
+        key.holds,
+        Holds::Number(_) | Holds::Whole(_) | Holds::PerDrive(_) | Holds::List(..) | Holds::Bounds(_)
+    );
     // Words, such as none, are for the key to take or not.
     if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
         return Ok(value);

@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
             let mut knows = control.knows_base;
             let tip = tip_of("control.knows_base");
             if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
-                super::fold::once(commands, Section::Control.set(&["knows_base"], knows));
+                crate::app::widgets::once(commands, Section::Control.set(&["knows_base"], knows));
             }
         }
     });

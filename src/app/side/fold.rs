@@ -5,7 +5,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 use crate::app::Command;
 use crate::app::place;
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, name, send};
+use crate::app::widgets::{Row, name, once, send};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::Value;
@@ -42,11 +42,6 @@ impl Section {
     pub fn all_back(self) -> Edit {
         self.back(&[])
     }
-}
-
-/// An edit that is an undo of its own.
-pub fn once(commands: &mut Vec<Command>, edit: Edit) {
-    commands.extend([Command::Edit(edit), Command::EndGesture]);
 }
 
 /// A section that opens and closes; it begins open if something in it is not as usual. `back` takes all of it back.

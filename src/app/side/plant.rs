@@ -3,8 +3,8 @@
 
 use egui::Ui;
 
-use super::fold::{NumberField, Section, Slide, choose, fold, once, switch, switch_nonzero};
-use crate::app::widgets::{HELD, Row, note, tip_of, unit};
+use super::fold::{NumberField, Section, Slide, choose, fold, switch, switch_nonzero};
+use crate::app::widgets::{HELD, Row, note, once, tip_of, unit};
 use crate::app::{Command, place};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::options::Handle;

@@ -161,6 +161,7 @@ impl AppState {
             match change {
                 // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
                 Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
+                Change::Edit(edit) if edit.is_aside() => self.view_state.refused = None,
                 Change::Edit(_) => {
                     self.view_state.refused = None;
                     self.foresee();
@@ -349,7 +350,7 @@ impl AppState {
         let machine = &self.session.scenario().machine;
         let pose = &self.session.frame().q.0[..machine.drives()];
         // Of the material that the design view has counterweights of.
-        let cut = Cut { density: self.view_state.brief.disc.density, ..Cut::default() };
+        let cut = Cut { density: self.session.scenario().design.density, ..Cut::default() };
         let text = form.written(machine, pose, &cut).map_err(|e| e.to_string())?;
         let path = path.to_owned();
         let job = self.background.start(move |_| {

@@ -186,10 +186,10 @@ const NOTHING: f64 = 1e-9;
 
 impl Facts {
     /// Of the machine on display, with its front.
-    pub fn weighed(queries: &Queries, session: &Session, brief: &Brief, by: Option<FrontMeasure>) -> Self {
-        let mut facts = Self::of(queries, session, brief);
+    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>) -> Self {
+        let mut facts = Self::of(queries, session);
         let Some(bare) = &facts.sums.bare else { return facts };
-        let front = queries.ask_beside::<FrontSearch>(&asked(bare, brief));
+        let front = queries.ask_beside::<FrontSearch>(&asked(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
         // One that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
@@ -203,12 +203,12 @@ impl Facts {
     }
 
     /// The same with its equations.
-    pub fn learned(queries: &Queries, session: &Session, brief: &Brief) -> Self {
-        let lesson = Lesson::of(queries, session, brief.preset);
-        Self { lesson, ..Self::of(queries, session, brief) }
+    pub fn learned(queries: &Queries, session: &Session) -> Self {
+        let lesson = Lesson::of(queries, session, session.scenario().design.penalties);
+        Self { lesson, ..Self::of(queries, session) }
     }
 
-    fn of(queries: &Queries, session: &Session, brief: &Brief) -> Self {
+    fn of(queries: &Queries, session: &Session) -> Self {
         let (machine, run) = (&session.scenario().machine, session.run());
         let sums = queries.ask::<Whole<Sums>>(machine);
         let cost = |bare: &Machine| {
@@ -218,7 +218,7 @@ impl Facts {
         Self {
             terms: queries.ask::<Whole<Terms>>(machine),
             measures: sums.bare.as_ref().and_then(cost),
-            payloads: brief.payload.and_then(over),
+            payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
             told: None,
@@ -268,9 +268,9 @@ impl Facts {
 }
 
 /// One machine of the front that is on display; of the machine and the brief as they are.
-pub fn of_front(queries: &Queries, session: &Session, brief: &Brief, i: usize) -> Option<Machine> {
+pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
     let sums = queries.ask::<Whole<Sums>>(&session.scenario().machine);
-    let front = queries.ask::<FrontSearch>(&asked(sums.bare.as_ref()?, brief));
+    let front = queries.ask::<FrontSearch>(&asked(sums.bare.as_ref()?, &session.scenario().design));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 

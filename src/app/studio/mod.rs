@@ -43,9 +43,8 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
         one.exact_size(TABLE).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
-                let spec = session.scenario().machine.spec();
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
-                asked::show(ui, spec, is_balanced, view_state, commands);
+                asked::show(ui, session.scenario(), is_balanced, &p, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

@@ -2,16 +2,16 @@
 
 use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
-use crate::app::command::DesignCommand;
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, heading, name, send};
+use crate::app::widgets::{Row, heading, name, once, send, tip_of};
 use crate::app::{Command, ViewState, place};
 use crate::mechanics::balance::Hold;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
-use crate::session::design::length_of;
-use crate::session::scenario::{Change, Value};
+use crate::session::design::{Brief, length_of};
+use crate::session::scenario::{Change, Value, to_value};
 use crate::session::{Edit, Session};
+use crate::settings::change::DEFAULT;
 
 /// Widths of the columns, points: the link's name, and each number.
 const NAME: f32 = 34.0;
@@ -31,7 +31,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
             cell(ui, NUMBER, Align::Max, |ui| head(ui, p, words));
         }
     });
-    let spec = session.scenario().machine.spec();
+    let (spec, brief) = (session.scenario().machine.spec(), &session.scenario().design);
     for (i, link) in spec.links.iter().enumerate() {
         let weight = spec.counterweights.iter().position(|weight| weight.link == link.name);
         place::of(ui, Handle::Link(i), p, |ui| {
@@ -47,33 +47,33 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                     ui,
                     (&format!("mass of link {}", link.name), &path("mass"), 3),
                     link.mass,
-                    (view_state, &mut *commands),
+                    (brief, p, &mut *commands),
                     |x| Edit::at(&["link", &link.name, "mass"], x),
                 );
                 let label = format!("centre of mass of link {}", link.name);
-                number(ui, (&label, &path("com"), 4), link.com, (view_state, &mut *commands), |x| {
+                number(ui, (&label, &path("com"), 4), link.com, (brief, p, &mut *commands), |x| {
                     Edit::at(&["link", &link.name, "com"], x)
                 });
                 let Some((n, weight)) = weight.map(|n| (n, &spec.counterweights[n])) else {
                     for _ in 0..2 {
                         cell(ui, NUMBER, Align::Max, |ui| head(ui, p, "–"));
                     }
-                    return fixed(ui, &link.name, view_state, commands);
+                    return fixed(ui, &link.name, brief, commands);
                 };
                 let place = (n + 1).to_string();
                 let path = |key: &str| format!("counterweight.{place}.{key}");
                 let label = format!("mass of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("mass"), 3), weight.mass, (view_state, &mut *commands), |mass| {
+                number(ui, (&label, &path("mass"), 3), weight.mass, (brief, p, &mut *commands), |mass| {
                     // A disc of the same plate.
                     let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
                     let both = Change::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
                     Edit::of("counterweight", Change::from_iter([(place.clone(), Value::from(both))]))
                 });
                 let label = format!("place of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("at"), 4), weight.at, (view_state, &mut *commands), |x| {
+                number(ui, (&label, &path("at"), 4), weight.at, (brief, p, &mut *commands), |x| {
                     Edit::at(&["counterweight", &place, "at"], x)
                 });
-                fixed(ui, &link.name, view_state, commands);
+                fixed(ui, &link.name, brief, commands);
             });
         });
     }
@@ -116,18 +116,13 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
 }
 
 /// Whether a link stays as it is while the balance is kept.
-fn fixed(ui: &mut Ui, link: &str, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let mut is_fixed = view_state.brief.fixed.contains(link);
-    let tip = "Stays as it is: neither what keeps the balance nor new counterweights change it";
-    let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip);
+fn fixed(ui: &mut Ui, link: &str, brief: &Brief, commands: &mut Vec<Command>) {
+    let mut is_fixed = brief.fixed.contains(link);
+    let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip_of("design.fixed.*"));
     name(&ticked, &format!("link {link} stays"));
     if ticked.changed() {
-        let mut brief = view_state.brief.clone();
-        match is_fixed {
-            true => brief.fixed.insert(link.to_owned()),
-            false => brief.fixed.remove(link),
-        };
-        commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
+        let value = if is_fixed { true.into() } else { Value::from(DEFAULT) };
+        once(commands, Edit::at(&["design", "fixed", link], value));
     }
 }
 
@@ -150,14 +145,14 @@ fn number(
     ui: &mut Ui,
     (label, path, decimals): (&str, &str, usize),
     now: f64,
-    (view_state, commands): (&ViewState, &mut Vec<Command>),
+    (brief, p, commands): (&Brief, &Palette, &mut Vec<Command>),
     edit: impl Fn(f64) -> Edit,
 ) {
     cell(ui, NUMBER, Align::Max, |ui| {
         let mut value = now;
         let row = Row::of(label, path).with(decimals, 0.002);
         let response = row.number(ui, &mut value);
-        holding(ui, &response, (label, path, decimals), now, view_state, commands);
+        holding(ui, &response, (label, path, decimals), (now, brief.hold.get(path).copied()), p, commands);
         send(commands, &[response], || edit(value));
     });
 }
@@ -167,12 +162,10 @@ fn holding(
     ui: &Ui,
     response: &Response,
     (label, path, decimals): (&str, &str, usize),
-    now: f64,
-    view_state: &ViewState,
+    (now, hold): (f64, Option<Hold>),
+    p: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let p = &view_state.palette();
-    let hold = view_state.brief.holds.get(path).copied();
     let tone = match hold {
         None => None,
         Some(Hold::Fixed) => Some(p.ink),
@@ -183,42 +176,36 @@ fn holding(
         let (rect, y) = (response.rect, response.rect.bottom() - 2.0);
         ui.painter().hline(rect.x_range().shrink(3.0), y, Stroke::new(1.5, colour(tone)));
     }
-    let mut chosen = hold;
+    let key: Vec<&str> = ["design", "hold"].into_iter().chain(path.split('.')).collect();
+    let held = |hold: Option<Hold>| Edit::at(&key, hold.map_or_else(|| DEFAULT.into(), to_value));
     response.context_menu(|ui| {
         ui.set_min_width(190.0);
         ui.label(RichText::new(format!("{label}, while the balance is kept")).font(plain(11.0)).color(colour(p.dim)));
-        let around = match hold {
-            Some(Hold::Within(ends)) => ends,
-            _ => [now - 0.1 * now.abs().max(0.1), now + 0.1 * now.abs().max(0.1)],
-        };
-        let within = matches!(hold, Some(Hold::Within(_)));
+        let path = key.join(".");
+        let away = 0.1 * now.abs().max(0.1);
+        let (least, greatest) = Row::of(label, &path).range.into_inner();
+        let around = [(now - away).max(least), (now + away).min(greatest)];
+        let ends = if let Some(Hold::Within(ends)) = hold { Some(ends) } else { None };
         for (words, one, is) in [
             ("follows if its kind does", None, hold.is_none()),
             ("stays", Some(Hold::Fixed), hold == Some(Hold::Fixed)),
             ("may change", Some(Hold::Free), hold == Some(Hold::Free)),
-            ("may change within", Some(Hold::Within(around)), within),
+            ("may change within", Some(Hold::Within(ends.unwrap_or(around))), ends.is_some()),
         ] {
-            if ui.radio(is, words).clicked() {
-                chosen = one;
+            if ui.radio(is, words).clicked() && hold != one {
+                once(commands, held(one));
             }
         }
-        if let Some(Hold::Within([low, high])) = &mut chosen {
+        if let Some([mut low, mut high]) = ends {
             ui.horizontal(|ui| {
                 let end = |label: &str, ui: &mut Ui, value: &mut f64| {
-                    Row::of(label, path).with(decimals, 0.002).number(ui, value);
+                    Row::of(label, &path).with(decimals, 0.002).number(ui, value)
                 };
-                end(&format!("least {label}"), ui, low);
+                let one = end(&format!("least {label}"), ui, &mut low);
                 ui.label("to");
-                end(&format!("greatest {label}"), ui, high);
+                let other = end(&format!("greatest {label}"), ui, &mut high);
+                send(commands, &[one, other], || held(Some(Hold::Within([low, high]))));
             });
         }
     });
-    if chosen != hold {
-        let mut brief = view_state.brief.clone();
-        match chosen {
-            Some(hold) => brief.holds.insert(path.to_owned(), hold),
-            None => brief.holds.remove(path),
-        };
-        commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
-    }
 }

@@ -39,6 +39,14 @@ impl Preset {
     pub const ALL: [(Self, &str); 3] =
         [(Self::Table1, "table-1"), (Self::AsPrinted, "as-printed"), (Self::MinimumNorm, "minimum-norm")];
 
+    /// Their names.
+    pub const NAMES: [&str; 3] = [Self::ALL[0].1, Self::ALL[1].1, Self::ALL[2].1];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(preset, _)| *preset == self).map_or("", |(_, name)| *name)
+    }
+
     /// The penalty on each of `links` links.
     ///
     /// # Errors

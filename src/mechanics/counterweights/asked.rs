@@ -41,8 +41,9 @@ pub const MATERIALS: [(&str, f64); 5] =
     [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
 
 /// What a plate may be: no gas, and no foil from which a gram would be as wide as a room.
-const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
-const THICKNESS: Range = Range::new(1e-4, 1.0, "m");
+pub const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
+/// The same of its thickness.
+pub const THICKNESS: Range = Range::new(1e-4, 1.0, "m");
 
 impl Disc {
     /// Steel, 30 mm thick.

@@ -29,7 +29,7 @@ mod tolerance;
 mod unknowns;
 mod way;
 
-pub use asked::{Disc, Free, FreeRotor, MATERIALS, Objective, Sites, Weighing};
+pub use asked::{DENSITY, Disc, Free, FreeRotor, MATERIALS, Objective, Sites, THICKNESS, Weighing};
 pub use front::{Front, FrontSearch, front};
 pub use payload::{Residual, over_payloads};
 pub use place::{Placed, place, place_with, unreachable_by_weights};

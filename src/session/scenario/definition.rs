@@ -1,5 +1,6 @@
 //! [`Scenario`]: what a run starts from.
 
+use super::design::Brief;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, Branch};
 use super::task::Task;
@@ -38,6 +39,8 @@ pub struct Scenario {
     pub duration: Option<f64>,
     /// How machines that are built differ from it.
     pub tolerance: Tolerance,
+    /// What is asked of the machine while it is designed.
+    pub design: Brief,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
     /// Instants to find again, by time; no motion depends on them.
@@ -71,7 +74,7 @@ impl Scenario {
     /// The same before anything was done to it.
     pub(crate) fn without_edits(&self) -> Self {
         let Self { name, title, machine, plant, base, task, control, step, .. } = self;
-        let Self { pose_acceleration, compare_b, duration, tolerance, .. } = self;
+        let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
         Self {
             name: name.clone(),
             title: title.clone(),
@@ -85,6 +88,7 @@ impl Scenario {
             compare_b: *compare_b,
             duration: *duration,
             tolerance: tolerance.clone(),
+            design: design.clone(),
             edits: Vec::new(),
             bookmarks: Vec::new(),
             branches: Vec::new(),

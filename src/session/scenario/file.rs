@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
+use super::design::Brief;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
 use super::task::Task;
@@ -43,6 +44,8 @@ struct File {
     base: Base,
     #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
     tolerance: Tolerance,
+    #[serde(default, skip_serializing_if = "is_default")]
+    design: Brief,
     /// As they stand there, so that a wrong one can be named.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<toml::Table>,
@@ -175,6 +178,7 @@ impl Scenario {
             duration: file.duration,
             task,
             tolerance: file.tolerance,
+            design: file.design,
             edits,
             bookmarks: file.bookmarks,
             branches: Vec::new(),
@@ -244,6 +248,7 @@ impl Scenario {
             compare_b,
             duration,
             tolerance,
+            design,
             edits,
             bookmarks,
             branches,
@@ -262,6 +267,7 @@ impl Scenario {
             plant,
             base,
             tolerance,
+            design,
             edits: edits.iter().map(TimedEdit::to_table).collect(),
             bookmarks,
             branches: branches.into_iter().map(StatedBranch::from).collect(),

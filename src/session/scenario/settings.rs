@@ -7,64 +7,14 @@ use toml::{Table, Value};
 use super::bounds::{DURATION, POSE_ACCELERATION, STEP, USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::choices::TaskKind;
 use super::definition::Scenario;
-use super::task::{POSE_CONSTANT, Task};
-use super::tolerance::{self, Tolerance};
-use crate::mechanics::machine::{self, PARTS, is_of_machine, ranges};
+use super::keys::{KEYS, OWN, TABLES, key_of, keys};
+use super::task::POSE_CONSTANT;
+use super::tolerance::Tolerance;
+use crate::mechanics::machine::{self, PARTS, is_of_machine};
 use crate::planning::curves::Samples;
 use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{self, Holds, Key};
+use crate::settings::key::{self, Effect, Holds, Key};
 use crate::settings::range::{Check, Range, clipped};
-use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
-
-/// The keys that stand alone.
-const OWN: [Key; 4] = [
-    Key::number("step", STEP, "0.001", "Fixed step of the simulation."),
-    Key::number(
-        "duration",
-        DURATION,
-        Key::NONE,
-        "Time that a recording and every command that runs to the end covers.",
-    )
-    .instead("that of the planned motion"),
-    Key::number("pose_acceleration", POSE_ACCELERATION, "2", "Bound on |b̈| while b is slid by hand."),
-    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with.")
-        .instead("there is no second one"),
-];
-
-/// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance.
-pub const KEYS: [(&str, &[&[Key]]); 8] = [
-    ("The scenario itself", &[&OWN]),
-    ("Task", &[Task::KEYS]),
-    ("Control", &[Control::KEYS]),
-    (
-        "Plant: what differs in the machine that moves",
-        &[PlantDifferences::KEYS, Load::KEYS, Friction::KEYS, LENGTH_KEYS, LinkDifference::KEYS],
-    ),
-    ("Base", &[Base::KEYS]),
-    ("Reaction wheel", &[Wheel::KEYS]),
-    ("Machine", &[&ranges::KEYS]),
-    ("Tolerances", &[&tolerance::KEYS]),
-];
-
-/// Every key.
-pub fn keys() -> impl Iterator<Item = &'static Key> {
-    KEYS.iter().flat_map(|(_, keys)| keys.iter().copied().flatten())
-}
-
-/// The title of the part that a key is of.
-pub fn part_of(key: &Key) -> &'static str {
-    let of = KEYS.iter().find(|(_, tables)| tables.iter().any(|keys| keys.contains(key)));
-    of.map_or("", |(part, _)| *part)
-}
-
-/// The key of a path, such as `plant.link.5.com`.
-pub fn key_of(path: &str) -> Option<&'static Key> {
-    keys().find(|key| key.matches(path))
-}
-
-/// The parts of a scenario that are tables of their own.
-const TABLES: [&str; 5] = ["task", "control", "plant", "base", "tolerance"];
 
 /// Why settings cannot be laid over a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -143,6 +93,7 @@ impl Scenario {
                 ("tolerance", Value::Table(change)) => {
                     self.tolerance = change::with(&self.tolerance, &Tolerance::flat(change)).map_err(wrong)?;
                 }
+                ("design", _) => self.design = laid(&self.design, value).map_err(wrong)?,
                 ("tolerance", _) => self.tolerance = laid(&self.tolerance, value).map_err(wrong)?,
                 ("step", _) => self.step_by(number(value, STEP).map_err(wrong)?.unwrap_or(USUAL_STEP)),
                 ("duration", _) => self.duration = number(value, DURATION).map_err(wrong)?,
@@ -205,6 +156,7 @@ impl Scenario {
             ("plant", Table::try_from(&self.plant)),
             ("base", Table::try_from(self.base)),
             ("tolerance", Table::try_from(&self.tolerance)),
+            ("design", Table::try_from(&self.design)),
         ];
         let mut all: Table =
             parts.into_iter().filter_map(|(part, table)| Some((part.to_owned(), Value::Table(table.ok()?)))).collect();
@@ -249,11 +201,15 @@ impl Scenario {
         let spec = self.machine.spec();
         let names = |pattern: &str| -> Vec<String> {
             match pattern.split(".*").next().unwrap_or_default() {
-                "link" | "plant.link" => spec.links.iter().map(|link| link.name.clone()).collect(),
-                "counterweight" => (1..=spec.counterweights.len()).map(|number| number.to_string()).collect(),
+                "link" | "plant.link" | "design.fixed" | "design.hold.link" => {
+                    spec.links.iter().map(|link| link.name.clone()).collect()
+                }
+                "counterweight" | "design.hold.counterweight" => {
+                    (1..=spec.counterweights.len()).map(|number| number.to_string()).collect()
+                }
                 "length" | "plant.length" => spec.lengths.keys().cloned().collect(),
                 "limits" => spec.angles.iter().map(|angle| angle.name.clone()).collect(),
-                "drive" => spec.drives.iter().map(|drive| drive.name.clone()).collect(),
+                "drive" | "design.ratio" => spec.drives.iter().map(|drive| drive.name.clone()).collect(),
                 _ => vec!["*".into()],
             }
         };
@@ -274,6 +230,7 @@ impl Scenario {
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
+            Some(("design", key)) => self.design.uses(key, &self.machine),
             Some(("payload", _)) => self.machine.uses(path, self.is_pushed()),
             _ => true,
         };
@@ -317,7 +274,20 @@ impl Scenario {
         }
         list.extend(key::checks(key_of, &stated));
         list.extend(self.plant.fits(n));
+        list.extend(self.design.fits());
         list
+    }
+
+    /// The same with what another one has of the keys that change no frame.
+    ///
+    /// # Errors
+    /// If those cannot be laid over it.
+    pub(crate) fn with_asides_of(&self, other: &Self) -> Result<Self, SettingError> {
+        let asides = || keys().filter(|key| key.effect == Effect::Aside).map(|key| key.part().to_owned());
+        let none: Table = asides().map(|part| (part, DEFAULT.into())).collect();
+        let mut stated = other.stated();
+        stated.retain(|part, _| asides().any(|aside| aside == *part));
+        self.with(&none)?.with(&stated)
     }
 }
 

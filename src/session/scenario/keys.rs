@@ -1,0 +1,89 @@
+//! Every key of a scenario, and what a change of it reaches.
+
+use toml::{Table, Value};
+
+use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
+use super::task::{POSE_CONSTANT, Task};
+use super::{design, tolerance};
+use crate::mechanics::machine::ranges;
+use crate::settings::change;
+use crate::settings::key::{Effect, Key};
+use crate::simulation::control::Control;
+use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
+
+/// The keys that stand alone.
+pub(super) const OWN: [Key; 4] = [
+    Key::number("step", STEP, "0.001", "Fixed step of the simulation.").reaching(Effect::Plan),
+    Key::number(
+        "duration",
+        DURATION,
+        Key::NONE,
+        "Time that a recording and every command that runs to the end covers.",
+    )
+    .instead("that of the planned motion")
+    .reaching(Effect::Aside),
+    Key::number("pose_acceleration", POSE_ACCELERATION, "2", "Bound on |b̈| while b is slid by hand."),
+    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with.")
+        .instead("there is no second one")
+        .reaching(Effect::Picture),
+];
+
+// What is planned from, and what no frame depends on: all keys of these parts.
+const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS);
+const BASE: [Key; Base::KEYS.len()] = Key::all_reaching(Effect::Plan, Base::KEYS);
+const WHEEL: [Key; Wheel::KEYS.len()] = Key::all_reaching(Effect::Plan, Wheel::KEYS);
+const TOLERANCE: [Key; tolerance::KEYS.len()] = Key::all_reaching(Effect::Aside, &tolerance::KEYS);
+const DESIGN: [Key; design::KEYS.len()] = Key::all_reaching(Effect::Aside, &design::KEYS);
+
+/// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance, design.
+pub const KEYS: [(&str, &[&[Key]]); 9] = [
+    ("The scenario itself", &[&OWN]),
+    ("Task", &[&TASK]),
+    ("Control", &[Control::KEYS]),
+    (
+        "Plant: what differs in the machine that moves",
+        &[PlantDifferences::KEYS, Load::KEYS, Friction::KEYS, LENGTH_KEYS, LinkDifference::KEYS],
+    ),
+    ("Base", &[&BASE]),
+    ("Reaction wheel", &[&WHEEL]),
+    ("Machine", &[&ranges::KEYS]),
+    ("Tolerances", &[&TOLERANCE]),
+    ("Design: what is asked of a machine that is changed by hand", &[&DESIGN]),
+];
+
+/// Every key.
+pub fn keys() -> impl Iterator<Item = &'static Key> {
+    KEYS.iter().flat_map(|(_, keys)| keys.iter().copied().flatten())
+}
+
+/// The title of the part that a key is of.
+pub fn part_of(key: &Key) -> &'static str {
+    let of = KEYS.iter().find(|(_, tables)| tables.iter().any(|keys| keys.contains(key)));
+    of.map_or("", |(part, _)| *part)
+}
+
+/// The key of a path, such as `plant.link.5.com`.
+pub fn key_of(path: &str) -> Option<&'static Key> {
+    keys().find(|key| key.matches(path))
+}
+
+/// The parts of a scenario that are tables of their own.
+pub(super) const TABLES: [&str; 6] = ["task", "control", "plant", "base", "tolerance", "design"];
+
+/// What a change of settings reaches: the most that one of its keys does.
+pub fn effect_of(change: &Table) -> Effect {
+    change.iter().map(|(part, value)| effect_in(part, value)).max().unwrap_or(Effect::Aside)
+}
+
+/// The same of a change of one part.
+pub fn effect_in(part: &str, value: &Value) -> Effect {
+    let of_part = || keys().filter(|key| key.part() == part).map(|key| key.effect);
+    let most = of_part().max().unwrap_or(Effect::Motion);
+    // A part of which all keys reach the same need not be looked at key by key.
+    if of_part().all(|effect| effect == most) {
+        return most;
+    }
+    let whole = change::one(part, value.clone());
+    let effects = change::leaves(&whole).into_iter().map(|(path, _)| key_of(&path).map_or(most, |key| key.effect));
+    effects.max().unwrap_or(most)
+}
