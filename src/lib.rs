@@ -125,6 +125,9 @@
 //!   an answer of the library (most in `study/`), which the command serialises and the window can show.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
 //!   the tests draw it at random.
+//! * **Something that the window can be asked for**: of the session a variant of `SessionCommand`, of how it is shown one
+//!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
+//!   words and its keys are one row of `app/actions.rs`: keyboard, list of commands, card of keys and menus follow.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
 //!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.

@@ -5,7 +5,9 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::Look;
 use super::theme::other;
-use super::{Command, ComparisonCommand, FileDialog, Layout, PlotFile, Purpose, ViewState, set_b};
+use super::{
+    Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, set_b,
+};
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -25,8 +27,22 @@ pub struct Action {
     pub keys: &'static [KeyboardShortcut],
     /// Where it is found in the window.
     pub place: &'static str,
+    /// What it turns on and off, if it does.
+    pub turns: Option<Switch>,
+    /// What it asks for as things are, where that is not the other state of its switch; `None` while there is nothing to
+    /// do.
+    asks: Option<fn(&Session, &ViewState) -> Option<Command>>,
+}
+
+impl Action {
     /// What it asks for as things are; `None` while there is nothing to do.
-    pub command: fn(&Session, &ViewState) -> Option<Command>,
+    pub fn command(&self, session: &Session, view_state: &ViewState) -> Option<Command> {
+        let other = |switch| view_state.has(switch, session).then(|| view_state.other(switch));
+        match self.asks {
+            Some(asks) => asks(session, view_state),
+            None => self.turns.and_then(other),
+        }
+    }
 }
 
 /// What actions are about, in the order in which they are listed.
@@ -82,25 +98,25 @@ const ZOOM: f64 = 1.15;
 fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
     session.run().pose_space().ok()?;
     let now = session.frame().target.at;
-    Some(Command::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y }))
+    Some(Command::Session(SessionCommand::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y })))
 }
 
 fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
     session.run().pose_space().ok()?;
-    Some(Command::Edit(set_b(session, view_state, session.b_aim() + by)))
+    Some(Command::Session(SessionCommand::Edit(set_b(session, view_state, session.b_aim() + by))))
 }
 
 fn case(i: usize) -> Option<Command> {
-    Scenario::cases().nth(i).map(Command::Case)
+    Scenario::cases().nth(i).map(|it| Command::Session(SessionCommand::Case(it)))
 }
 
 fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
-    Some(Command::Dialog(Some(FileDialog::suggest(session, purpose))))
+    Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
 }
 
 /// The machine and the task as they stand, with nothing done to them.
 fn new_session(session: &Session) -> Option<Command> {
-    Some(Command::Open(Box::new(session.scenario().without_edits())))
+    Some(Command::Session(SessionCommand::Open(Box::new(session.scenario().without_edits()))))
 }
 
 /// The plot that stands first, in a file.
@@ -117,14 +133,14 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
         Some(factor) => extent.zoomed(extent.shown(chosen), session.frame().time, factor),
         None => extent.all(chosen),
     };
-    Some(Command::Charts(Change::Range(range)))
+    Some(Command::View(ViewChange::Charts(Change::Range(range))))
 }
 
 /// The next view that the machine has.
 fn next_view(session: &Session, view_state: &ViewState) -> Option<Command> {
     let next = view_state.view.next();
     let has = Views::has(next, session.run()).is_ok();
-    Some(Command::View(if has { next } else { ViewKind::Flat }))
+    Some(Command::View(ViewChange::Kind(if has { next } else { ViewKind::Flat })))
 }
 
 /// A view of joint space or of all workspaces, if the machine has one.
@@ -139,43 +155,47 @@ fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
 }
 
 macro_rules! actions {
-    ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal, $command:expr;)+) => {
+    ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal
+        $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
         &[$(Action {
             group: Group::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            command: $command,
+            turns: actions!(@of Switch $($switch)?), asks: actions!(@given $($asks)?),
         }),+]
     };
+    (@of $kind:ident) => { None };
+    (@of $kind:ident $of:ident) => { Some($kind::$of) };
+    (@given) => { None };
+    (@given $given:expr) => { Some($given) };
 }
 
 /// Every action.
 pub const ACTIONS: &[Action] = actions![
-    Run, "Play, pause, start over" = "run start stop animate", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::TogglePlay);
-    Run, "One step on", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Step(1));
-    Run, "One step back", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-1));
-    Run, "Ten steps on", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Step(10));
-    Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-10));
-    Run, "To the start" = "rewind reset beginning", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
-    Run, "To the newest instant" = "end last", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
+    Run, "Play, pause, start over" = "run start stop animate", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::Session(SessionCommand::TogglePlay));
+    Run, "One step on", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Session(SessionCommand::Step(1)));
+    Run, "One step back", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-1)));
+    Run, "Ten steps on", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(10)));
+    Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-10)));
+    Run, "To the start" = "rewind reset beginning", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Session(SessionCommand::Seek(0.0)));
+    Run, "To the newest instant" = "end last", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Session(SessionCommand::Seek(s.length())));
     Run, "Bookmark here, or away" = "remember mark pin", [on(PLAIN, Key::K)], "time line", |s, _| {
         let time = s.frame().time;
         let name = if s.bookmark_at(time).is_some() { String::new() } else { s.free_name() };
-        Some(Command::Bookmark(time, name))
+        Some(Command::Session(SessionCommand::Bookmark(time, name)))
     };
     Run, "Name the bookmark here", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
-        (v.layout != Layout::Present).then(|| Command::NameBookmark(Some(s.frame().time)))
+        (v.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
     };
     Run, "To the next mark: bookmark, event, branch", [on(PLAIN, Key::N)], "time line", |_, _| {
-        Some(Command::ToMark(true))
+        Some(Command::Session(SessionCommand::ToMark(true)))
     };
-    Run, "To the mark before", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::ToMark(false));
+    Run, "To the mark before", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::Session(SessionCommand::ToMark(false)));
     Run, "The newest branch; again: back", [on(PLAIN, Key::G)], "history", |s, _| {
-        s.branch_count().checked_sub(1).map(Command::Branch)
+        s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::Branch(it)))
     };
     Run, "Compare with the newest branch", [on(SHIFT, Key::G)], "history", |s, _| {
-        s.branch_count().checked_sub(1).map(Command::CompareBranch)
+        s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::CompareBranch(it)))
     };
-    Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop",
-        |_, v| Some(Command::Loop(!v.loops));
+    Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
     Run, "Twice as slow" = "speed slow motion", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast" = "speed faster", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 
@@ -183,7 +203,7 @@ pub const ACTIONS: &[Action] = actions![
     Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
     Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
     Task, "Put the machine back on its planned path" = "reset return stop leading by hand", [on(PLAIN, Key::B)], "left panel", |s, _| {
-        s.is_led().then_some(Command::BackToPath)
+        s.is_led().then_some(Command::Session(SessionCommand::BackToPath))
     };
     Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
         nudge(s, [NUDGE[0], 0.0])
@@ -201,13 +221,9 @@ pub const ACTIONS: &[Action] = actions![
     Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
         turn(s, v, -TURN[0])
     };
-    Task, "Turn the task along with b", [], "left panel", |_, v| Some(Command::TurnTask(!v.turn_task));
-    Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar", |_, v| {
-        of_machine(v, Command::Draw(v.stroke.is_none()))
-    };
-    Task, "Push the end effector with the pointer" = "force disturb", [on(PLAIN, Key::U)], "tool bar", |_, v| {
-        of_machine(v, Command::Push(!v.pushing))
-    };
+    Task, "Turn the task along with b", [], "left panel" turns TurnTask;
+    Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar" turns Drawing;
+    Task, "Push the end effector with the pointer" = "force disturb", [on(PLAIN, Key::U)], "tool bar" turns Pushing;
 
     View, "The next view: 2D, 3D, joint space, tower, design", [on(PLAIN, Key::V)], "tool bar", |s, v| {
         next_view(s, v)
@@ -217,15 +233,14 @@ pub const ACTIONS: &[Action] = actions![
     View, "Joint space" = "configuration plane q", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
     View, "Tower of workspaces" = "b height stack", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
     View, "Design: masses, centres of mass, lengths and counterweights" = "balance edit machine links trim", [on(PLAIN, Key::D)], "tool bar", |_, v| {
-        Some(Command::View(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design }))
+        Some(Command::View(ViewChange::Kind(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design })))
     };
-    View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab",
-        |_, v| learn(v);
-    View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
+    View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
+    View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
-        Some(Command::Look(Look::Zoom(ZOOM)))
+        Some(Command::View(ViewChange::Look(Look::Zoom(ZOOM))))
     };
-    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::Look(Look::Zoom(1.0 / ZOOM)));
+    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(Look::Zoom(1.0 / ZOOM))));
     View, "Plots closer to the instant shown", [on(ALT, Key::Plus), on(ALT, Key::Equals)], "plots, Ctrl wheel", |s, v| {
         charts(s, v, Some(1.5))
     };
@@ -235,67 +250,49 @@ pub const ACTIONS: &[Action] = actions![
     View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
     View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
     View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -ORBIT);
-    View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour", [on(PLAIN, Key::J)], "tool bar",
-        |_, v| of_machine(v, Command::Dexterity(Measure::after(v.dexterity)));
-    View, "Snapshots along the motion" = "ghost poses strobe", [on(PLAIN, Key::S)], "tool bar", |_, v| {
-        of_machine(v, Command::Snapshots(!v.snapshots))
-    };
-    View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
-        s.scenario().base.moves().then_some(Command::Exaggerate(!v.exaggerates_base))
-    };
-    View, "Panel of settings, shown or hidden" = "left sidebar parameters", [on(PLAIN, Key::Num8)], "tool bar, layout", |_, v| {
-        Some(Command::Side(!v.side.shown))
-    };
-    View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout", |_, v| {
-        Some(Command::Plots(!v.plots.shown))
-    };
-    View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
-        Some(Command::Panels(!(v.side.shown || v.plots.shown)))
-    };
-    View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout", |_, v| {
-        Some(Command::Swap(!v.swapped))
-    };
+    View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour", [on(PLAIN, Key::J)], "tool bar" turns Dexterity,
+        |_, v| of_machine(v, Command::View(ViewChange::Dexterity(Measure::after(v.dexterity))));
+    View, "Snapshots along the motion" = "ghost poses strobe", [on(PLAIN, Key::S)], "tool bar" turns Snapshots;
+    View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base" turns Exaggeration;
+    View, "Panel of settings, shown or hidden" = "left sidebar parameters", [on(PLAIN, Key::Num8)], "tool bar, layout" turns Side;
+    View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout" turns Plots;
+    View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard" turns Panels;
+    View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout" turns Swapped;
     View, "Explore: settings, scene and plots", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {
-        Some(Command::Layout(Layout::Explore))
+        Some(Command::View(ViewChange::Layout(Layout::Explore)))
     };
     View, "Compare: scene, wide plots and the runs side by side", [on(PLAIN, Key::Num6)], "tool bar, layout", |_, _| {
-        Some(Command::Layout(Layout::Compare))
+        Some(Command::View(ViewChange::Layout(Layout::Compare)))
     };
     View, "Present: the scene alone, what counts in large type" = "presentation slides talk full screen", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
-        Some(Command::Layout(Layout::Present))
+        Some(Command::View(ViewChange::Layout(Layout::Present)))
     };
-    View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard", |_, v| Some(Command::Times(!v.times));
-    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
+    View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard" turns Times;
+    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.theme))));
 
-    Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar", |_, v| {
-        Some(Command::Compare(!v.compare))
-    };
+    Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
-        v.compare.then_some(Command::Comparison(ComparisonCommand::Keep))
+        v.compare.then_some(Command::Session(SessionCommand::KeepRun))
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
-        "tool bar", |_, v| Some(Command::Study(!v.study));
-    Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar", |_, v| {
-        Some(Command::Pins(!v.pins))
-    };
-    Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::LookFor);
+        "tool bar" turns Study;
+    Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
+    Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
-        Some(Command::Charts(Change::Statistics(!v.charts.statistics)))
+        Some(Command::View(ViewChange::Charts(Change::Statistics(!v.charts.statistics))))
     };
     Analysis, "Second cursor here, or away", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
-        Some(Command::Mark(v.mark.is_none().then(|| s.frame().time)))
+        Some(Command::View(ViewChange::Mark(v.mark.is_none().then(|| s.frame().time))))
     };
 
-    File, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Undo);
-    File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Redo);
-    File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar", |_, v| {
-        (v.layout != Layout::Present).then_some(Command::History(!v.history))
-    };
+    File, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
+    File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
+    File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, scenario", |s, _| new_session(s);
     File, "Open a session, scenario, machine or model" = "load file import machine model urdf mjcf xml toml recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
     File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
-    File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Quit);
+    File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
     File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
         "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
     File, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
@@ -304,9 +301,9 @@ pub const ACTIONS: &[Action] = actions![
         |s, v| plot_file(s, v, PlotFile::Svg);
     File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, Purpose::Machine);
     File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
-    File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
-    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Tour(v.tour.is_none()));
-    File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?", |_, v| Some(Command::Help(!v.help));
+    File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
+    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.tour.is_none())));
+    File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 
 /// The same keys with Shift move by less.
@@ -345,34 +342,33 @@ pub const GESTURES: [(&str, &str); 22] = [
     ("Esc", "close what is open, cancel a drag"),
 ];
 
-/// The equations, or the balance again where they are on display.
-fn learn(view_state: &ViewState) -> Option<Command> {
-    let is_shown = view_state.view == ViewKind::Design && view_state.plots.shown && view_state.learns;
-    Some(Command::Learn(!is_shown))
-}
-
 fn view(view_state: &ViewState, kind: ViewKind) -> Option<Command> {
-    (view_state.view != kind).then_some(Command::View(kind))
+    (view_state.view != kind).then_some(Command::View(ViewChange::Kind(kind)))
 }
 
 fn look(right: f64, up: f64) -> Option<Command> {
-    Some(Command::Look(Look::Turn([right, up])))
+    Some(Command::View(ViewChange::Look(Look::Turn([right, up]))))
 }
 
 /// The speeds that a run is played at.
 pub const SPEEDS: [f64; 6] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0];
 
 fn slower(view_state: &ViewState) -> Option<Command> {
-    SPEEDS.into_iter().rev().find(|speed| *speed < view_state.speed).map(Command::Speed)
+    SPEEDS.into_iter().rev().find(|speed| *speed < view_state.speed).map(|it| Command::View(ViewChange::Speed(it)))
 }
 
 fn faster(view_state: &ViewState) -> Option<Command> {
-    SPEEDS.into_iter().find(|speed| *speed > view_state.speed).map(Command::Speed)
+    SPEEDS.into_iter().find(|speed| *speed > view_state.speed).map(|it| Command::View(ViewChange::Speed(it)))
 }
 
 /// The first key of the action of a name, if it has one.
 pub fn key_of(action: &str) -> Option<String> {
     ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shown)
+}
+
+/// The first key of the action that turns this on and off, if it has one.
+pub fn key_of_switch(switch: Switch) -> Option<String> {
+    ACTIONS.iter().find(|known| known.turns == Some(switch))?.keys.first().map(shown)
 }
 
 /// A key as it stands on the keyboard.

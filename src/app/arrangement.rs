@@ -2,10 +2,10 @@
 
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, Ui, Vec2};
 
-use super::actions::key_of;
+use super::actions::{key_of, key_of_switch};
 use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour};
-use super::{Command, Layout, ViewState};
+use super::{Command, Layout, Switch, ViewChange, ViewState};
 
 /// Draws its button, and itself while it is open.
 pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<Command>) {
@@ -18,10 +18,10 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         let heading = |ui: &mut Ui, text: &str| {
             ui.label(RichText::new(text).font(bold(11.0)).color(colour(p.dim)));
         };
-        let mut line = |ui: &mut Ui, (text, action, tip): (&str, &str, &str), on: bool, command: Command| {
+        let mut line = |ui: &mut Ui, (text, key, tip): (&str, Option<String>, &str), on: bool, command: Command| {
             let words = RichText::new(format!("     {text}")).color(colour(p.ink));
             let line = egui::Button::new(words).frame_when_inactive(false).wrap_mode(egui::TextWrapMode::Extend);
-            let key = RichText::new(key_of(action).unwrap_or_default()).color(colour(p.dim));
+            let key = RichText::new(key.unwrap_or_default()).color(colour(p.dim));
             let line = ui.add(line.right_text(key));
             if on {
                 dot(ui, &p, &line);
@@ -35,17 +35,17 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         for layout in Layout::ALL {
             // As the table of actions calls it.
             let action = format!("{}: {}", layout.name(), layout.words());
-            let what = (layout.name(), action.as_str(), layout.words());
-            line(ui, what, view_state.layout == layout, Command::Layout(layout));
+            let what = (layout.name(), key_of(&action), layout.words());
+            line(ui, what, view_state.layout == layout, Command::View(ViewChange::Layout(layout)));
         }
         ui.separator();
         heading(ui, "PANELS");
-        let (side, plots) = (view_state.side.shown, view_state.plots.shown);
-        let what = ("Settings", "Panel of settings, shown or hidden", "b, limits, path, plant, base, control");
-        line(ui, what, side, Command::Side(!side));
-        let what = ("Plots", "Panel of plots, shown or hidden", "Signals over time, and which b serves");
-        line(ui, what, plots, Command::Plots(!plots));
-        let what = ("Settings on the right", "Settings and plots change sides", "Settings and plots change sides");
-        line(ui, what, view_state.swapped, Command::Swap(!view_state.swapped));
+        for (text, switch, tip) in [
+            ("Settings", Switch::Side, "b, limits, path, plant, base, control"),
+            ("Plots", Switch::Plots, "Signals over time, and which b serves"),
+            ("Settings on the right", Switch::Swapped, "Settings and plots change sides"),
+        ] {
+            line(ui, (text, key_of_switch(switch), tip), view_state.is_on(switch), view_state.other(switch));
+        }
     });
 }

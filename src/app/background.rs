@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::change::{Change, NotOpened, Opened};
-use super::{Activity, Command};
+use super::{Activity, SessionCommand};
 use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
@@ -19,7 +19,7 @@ pub(super) type Slot<K, T> = Option<(K, Job<T>)>;
 pub(super) type Keeping = (Option<&'static str>, Job<Result<Compared, Refusal>>);
 
 /// What to do with a session that has been opened.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Opening {
     /// Whether time passes at once.
     pub plays: bool,
@@ -61,7 +61,7 @@ pub(super) struct Background {
     /// A change of the session, made of a copy; and for how many repaints.
     pub change: Slot<(Change, u32), Changed>,
     /// What is to be done after that.
-    pub later: VecDeque<Command>,
+    pub later: VecDeque<SessionCommand>,
     /// A session that takes the place of the present one.
     pub opening: Slot<Opening, Result<Opened, NotOpened>>,
     /// Runs to keep beside them, each with what to say when it is there.
@@ -143,10 +143,10 @@ impl Background {
 
     /// Does something to the session after all that waits already. Of a drag only the newest edit counts, and of
     /// instants to show the newest.
-    pub fn after(&mut self, command: Command) {
+    pub fn after(&mut self, command: SessionCommand) {
         let replaced = match (self.later.back(), &command) {
-            (Some(Command::Edit(earlier)), Command::Edit(later)) => earlier.is_replaced_by(later),
-            (Some(Command::Seek(_)), Command::Seek(_)) => true,
+            (Some(SessionCommand::Edit(earlier)), SessionCommand::Edit(later)) => earlier.is_replaced_by(later),
+            (Some(SessionCommand::Seek(_)), SessionCommand::Seek(_)) => true,
             _ => false,
         };
         if replaced {

@@ -1,4 +1,4 @@
-//! What a person asks for.
+//! What a person asks for: of the session, of how it is shown, and of the window itself.
 
 use std::path::PathBuf;
 
@@ -16,6 +16,35 @@ use crate::study::front_point::FrontMeasure;
 /// What a person can ask for.
 #[derive(Clone, Debug)]
 pub enum Command {
+    /// Read or change the session; this waits while the session is being changed beside the window.
+    Session(SessionCommand),
+    /// Change how it is shown.
+    View(ViewChange),
+    /// What is neither: the window itself, and what works beside it.
+    Window(WindowCommand),
+}
+
+impl From<SessionCommand> for Command {
+    fn from(command: SessionCommand) -> Self {
+        Self::Session(command)
+    }
+}
+
+impl From<ViewChange> for Command {
+    fn from(change: ViewChange) -> Self {
+        Self::View(change)
+    }
+}
+
+impl From<WindowCommand> for Command {
+    fn from(command: WindowCommand) -> Self {
+        Self::Window(command)
+    }
+}
+
+/// What reads or changes the session.
+#[derive(Clone, Debug)]
+pub enum SessionCommand {
     /// Change the machine, the run or its parameters.
     Edit(Edit),
     /// The drag is over: the next edit is an undo of its own.
@@ -26,8 +55,8 @@ pub enum Command {
     Seek(f64),
     /// Put a bookmark at an instant, s, or give the one there this name; without a name it is taken away.
     Bookmark(f64, String),
-    /// Ask for the name of the bookmark at an instant, s, or no longer; where there is none it is put there.
-    NameBookmark(Option<f64>),
+    /// Ask for the name of the bookmark at an instant, s; where there is none it is put there.
+    NameBookmark(f64),
     /// Show the next mark of the time line, or the one before.
     ToMark(bool),
     /// Show a branch, by its place among them; the run on display becomes one.
@@ -38,18 +67,24 @@ pub enum Command {
     DropBranch(usize),
     /// Move by steps; time stops.
     Step(i64),
-    /// Play faster or slower: simulated seconds a second.
-    Speed(f64),
-    /// Play over and over, or once.
-    Loop(bool),
     /// Replace everything by another scenario.
     Open(Box<Scenario>),
+    /// Open one of the paper's cases, by name.
+    Case(&'static str),
     /// Open a saved session or scenario.
     OpenFile(PathBuf),
+    /// What becomes of a session that was left behind.
+    Recover(Recovery),
     /// Save the session.
     SaveFile(PathBuf),
     /// Write a recording for the Rerun viewer.
     Record(PathBuf),
+    /// Write the plot of a name to a file.
+    WritePlot(PathBuf, String, PlotFile),
+    /// Write the machine to a file for another program, which its ending names.
+    TakeElsewhere(PathBuf),
+    /// The next file that is written may take the place of this one: the person has agreed to that.
+    Replace(PathBuf),
     /// Undo the last edit.
     Undo,
     /// Undo what has been done since there were so many changes to undo: what a drag did that is given up.
@@ -58,76 +93,115 @@ pub enum Command {
     GiveUp,
     /// Redo what was undone last.
     Redo,
+    /// Undo or redo up to where there are so many changes to undo.
+    GoTo(usize),
+    /// Put the machine back at the start of its planned path.
+    BackToPath,
+    /// Take the counterweights of a machine of the front, by its place.
+    Take(usize),
+    /// Take the counterweights and ratios of rotors with which the drives give least to the base.
+    TakeStillest,
+    /// Keep the session's own run in the table of runs.
+    KeepRun,
+    /// Open the scenario of a row of that table in the session.
+    OpenRun(usize),
+}
+
+/// What is shown or not, done or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switch {
+    /// The panel of settings.
+    Side,
+    /// The panel of plots.
+    Plots,
+    /// Both panels, or nothing but the scene.
+    Panels,
+    /// Settings on the right and plots on the left.
+    Swapped,
+    /// What was done.
+    History,
+    /// Runs side by side.
+    Compare,
+    /// The study of tolerances.
+    Study,
+    /// What pins carry.
+    Pins,
+    /// Snapshots along the motion.
+    Snapshots,
+    /// The keys.
+    Help,
+    /// What a repaint takes.
+    Times,
+    /// The list of commands.
+    Finder,
+    /// The equations beside the machine that is designed, and not its balance.
+    Equations,
+    /// Play over and over, not once.
+    Loop,
+    /// Exaggerate the motion of the base as much as it takes to be seen.
+    Exaggeration,
+    /// Let b leave the range that serves the points of the task, and turn the points along with it.
+    TurnTask,
+    /// The workspace is shaded by a measure of dexterity.
+    Dexterity,
+    /// The pointer takes hold of things: it neither draws nor pushes.
+    Holding,
+    /// The pointer draws a path.
+    Drawing,
+    /// The pointer pushes the end effector when it drags it.
+    Pushing,
+}
+
+/// A change of how the session is shown, or of what a person is about to do: no more than a [`ViewState`] knows.
+///
+/// [`ViewState`]: super::ViewState
+#[derive(Clone, Debug)]
+pub enum ViewChange {
+    /// Turn something on or off.
+    Switch(Switch, bool),
     /// Show one of the linked views.
-    View(ViewKind),
-    /// Show the equations beside the machine that is designed, or its balance.
-    Learn(bool),
+    Kind(ViewKind),
+    /// Lay the window out for what it is for now; again: as that is at first.
+    Layout(Layout),
+    /// Light or dark colours.
+    Theme(Theme),
+    /// Play faster or slower: simulated seconds a second.
+    Speed(f64),
     /// Shade the workspace by a measure of dexterity, or not.
     Dexterity(Option<Measure>),
     /// Point the camera so that everything is seen.
     Fit,
     /// Move the camera.
     Look(Look),
-    /// Light or dark colours.
-    Theme(Theme),
-    /// Show how A would be held on the plane of another b, rad.
-    Preview(Option<f64>),
-    /// Start or stop drawing a path with the pointer.
-    Draw(bool),
-    /// Show where in the panel of settings a thing of the scene stands.
-    Reveal(Handle),
-    /// Show a setting there, by its path.
-    LookUp(String),
-    /// Show or hide the panel of settings on the left.
-    Side(bool),
-    /// Show or hide the panel of plots on the right.
-    Plots(bool),
-    /// Show both panels, or nothing but the scene.
-    Panels(bool),
-    /// Lay the window out for what it is for now; again: as that is at first.
-    Layout(Layout),
-    /// Put the settings on the right and the plots on the left, or the other way round.
-    Swap(bool),
-    /// Show or hide what was done.
-    History(bool),
-    /// Undo or redo up to where there are so many changes to undo.
-    GoTo(usize),
-    /// Show or hide runs side by side.
-    Compare(bool),
-    /// Show or hide the study of tolerances.
-    Study(bool),
-    /// Show or hide what pins carry.
-    Pins(bool),
     /// Put these drives, counted from 0, along the axes of joint space, where there are more than three.
     Drives([usize; 3]),
-    /// Change what is asked of the machine that is designed.
-    Design(DesignCommand),
-    /// Change the table of runs.
-    Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
     Mark(Option<f64>),
     /// Change what plots show.
     Charts(Change),
+    /// Show how A would be held on the plane of another b, rad.
+    Preview(Option<f64>),
+    /// Show the counterweights of a machine of the front, by its place, or none.
+    Ghost(Option<usize>),
+    /// Tell the machines of the front apart by this, or by nothing more.
+    FrontBy(Option<FrontMeasure>),
+    /// Show where in the panel of settings a thing of the scene stands.
+    Reveal(Handle),
+    /// Show a setting there, by its path.
+    LookUp(String),
+    /// Ask for the name of a bookmark no longer.
+    LeaveNaming,
+    /// Show or hide the dialog for a file.
+    Dialog(Option<FileDialog>),
+}
+
+/// What is asked of the window itself, and of what works beside it.
+#[derive(Clone, Debug)]
+pub enum WindowCommand {
+    /// Change the table of runs.
+    Comparison(ComparisonCommand),
     /// Put the cursor where a signal to plot is sought.
     LookFor,
-    /// Write the plot of a name to a file.
-    WritePlot(PathBuf, String, PlotFile),
-    /// Write the machine to a file for another program, which its ending names.
-    TakeElsewhere(PathBuf),
-    /// Show or hide snapshots along the motion.
-    Snapshots(bool),
-    /// The pointer neither draws nor pushes.
-    TakeHold,
-    /// Let the pointer push the end effector when it drags it, or no longer.
-    Push(bool),
-    /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
-    Exaggerate(bool),
-    /// Let b leave the range that serves the points of the task, and turn the points along with it.
-    TurnTask(bool),
-    /// Open one of the paper's cases, by name.
-    Case(&'static str),
-    /// Put the machine back at the start of its planned path.
-    BackToPath,
     /// Show why a number that was typed is refused.
     Refuse(String),
     /// Stop what is under way beside the window.
@@ -138,105 +212,12 @@ pub enum Command {
     Quit,
     /// Close the window as it is.
     Leave,
-    /// What becomes of a session that was left behind.
-    Recover(Recovery),
     /// Show no more hints, now and at the next start.
     SkipHints,
     /// Begin the tour, or leave it.
     Tour(bool),
     /// On to its next step, or back.
     TurnTour(bool),
-    /// Show or hide the list of commands.
-    Find(bool),
-    /// Show or hide the keys.
-    Help(bool),
-    /// Shows what a repaint takes, or no longer.
-    Times(bool),
-    /// Show or hide the dialog for a file.
-    Dialog(Option<FileDialog>),
-    /// The next file that is written may take the place of this one: the person has agreed to that.
-    Replace(PathBuf),
-}
-
-impl Command {
-    /// Whether it reads or changes the session, not only how that is shown: it waits while the session is being changed.
-    pub(super) fn is_of_session(&self) -> bool {
-        match self {
-            Self::Edit(_)
-            | Self::EndGesture
-            | Self::TogglePlay
-            | Self::Seek(_)
-            | Self::Bookmark(..)
-            | Self::NameBookmark(Some(_))
-            | Self::ToMark(_)
-            | Self::Branch(_)
-            | Self::CompareBranch(_)
-            | Self::DropBranch(_)
-            | Self::Step(_)
-            | Self::Open(_)
-            | Self::OpenFile(_)
-            | Self::Recover(_)
-            | Self::SaveFile(_)
-            | Self::Replace(_)
-            | Self::Record(_)
-            | Self::WritePlot(..)
-            | Self::TakeElsewhere(_)
-            | Self::Undo
-            | Self::TakeBack(_)
-            | Self::GiveUp
-            | Self::GoTo(_)
-            | Self::Redo
-            | Self::Design(DesignCommand::Take(_))
-            | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
-            | Self::Case(_)
-            | Self::BackToPath => true,
-            Self::Speed(_)
-            | Self::Loop(_)
-            | Self::View(_)
-            | Self::Learn(_)
-            | Self::Dexterity(_)
-            | Self::Fit
-            | Self::Look(_)
-            | Self::NameBookmark(None)
-            | Self::Reveal(_)
-            | Self::LookUp(_)
-            | Self::Side(_)
-            | Self::Plots(_)
-            | Self::Panels(_)
-            | Self::Layout(_)
-            | Self::Swap(_)
-            | Self::History(_)
-            | Self::SkipHints
-            | Self::AskToLeave(_)
-            | Self::Quit
-            | Self::Leave
-            | Self::Find(_)
-            | Self::Theme(_)
-            | Self::Preview(_)
-            | Self::Draw(_)
-            | Self::Compare(_)
-            | Self::Study(_)
-            | Self::Pins(_)
-            | Self::Design(_)
-            | Self::Comparison(_)
-            | Self::Mark(_)
-            | Self::Charts(_)
-            | Self::LookFor
-            | Self::Snapshots(_)
-            | Self::TakeHold
-            | Self::Push(_)
-            | Self::Exaggerate(_)
-            | Self::TurnTask(_)
-            | Self::Refuse(_)
-            | Self::Cancel(_)
-            | Self::Help(_)
-            | Self::Tour(_)
-            | Self::TurnTour(_)
-            | Self::Times(_)
-            | Self::Drives(_)
-            | Self::Dialog(_) => false,
-        }
-    }
 }
 
 /// What can be under way beside the window.
@@ -318,14 +299,10 @@ pub enum ComparisonCommand {
     Sort(usize),
     /// Draw a row's run in plots and scene, or no longer.
     Show(usize, bool),
-    /// Keep the session's own run.
-    Keep,
     /// Add a scenario.
     Add(Box<Scenario>),
     /// Take a kept row away.
     Remove(usize),
-    /// Open a row's scenario in the session.
-    Open(usize),
 }
 
 /// Asking for a file name.
@@ -405,13 +382,13 @@ impl Purpose {
 
 impl FileDialog {
     /// What to do with a file that was named.
-    pub fn named(self, file: PathBuf) -> Command {
+    pub fn named(self, file: PathBuf) -> SessionCommand {
         match self.purpose {
-            Purpose::Open => Command::OpenFile(file),
-            Purpose::Save => Command::SaveFile(file),
-            Purpose::Record => Command::Record(file),
-            Purpose::Plot(plot, kind) => Command::WritePlot(file, plot, kind),
-            Purpose::Machine => Command::TakeElsewhere(file),
+            Purpose::Open => SessionCommand::OpenFile(file),
+            Purpose::Save => SessionCommand::SaveFile(file),
+            Purpose::Record => SessionCommand::Record(file),
+            Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
+            Purpose::Machine => SessionCommand::TakeElsewhere(file),
         }
     }
 
@@ -428,17 +405,4 @@ impl FileDialog {
         };
         Self { purpose, path: name }
     }
-}
-
-/// What a person asks of the machine that is designed.
-#[derive(Clone, Debug)]
-pub enum DesignCommand {
-    /// Show the counterweights of a machine of the front, by its place, or none.
-    Ghost(Option<usize>),
-    /// Take them.
-    Take(usize),
-    /// Take the counterweights and ratios of rotors with which the drives give least to the base.
-    TakeStillest,
-    /// Tell the machines of the front apart by this, or by nothing more.
-    FrontBy(Option<FrontMeasure>),
 }

@@ -2,7 +2,7 @@
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ComparisonCommand, ViewState};
+use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use crate::picture::charts::figure::dashes;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
 fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     let close = ui.button("Close").on_hover_text("C");
     if close.clicked() {
-        commands.push(Command::Compare(false));
+        commands.push(ViewChange::Switch(Switch::Compare, false).into());
     }
     if ui.button("Copy").on_hover_text("Copies the table as text, for a spreadsheet").clicked() {
         ui.ctx().copy_text(comparison.to_text());
@@ -47,12 +47,12 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
         .on_hover_text("Adds the session's run, also if you led it by hand; the row stays when the task changes")
         .clicked()
     {
-        commands.push(Command::Comparison(ComparisonCommand::Keep));
+        commands.push(SessionCommand::KeepRun.into());
     }
     let add = egui::ComboBox::from_id_salt("add run").selected_text("Add…").width(84.0).show_ui(ui, |ui| {
         for scenario in Scenario::builtins() {
             if ui.selectable_label(false, &scenario.title).clicked() {
-                commands.push(Command::Comparison(ComparisonCommand::Add(Box::new(scenario.clone()))));
+                commands.push(WindowCommand::Comparison(ComparisonCommand::Add(Box::new(scenario.clone()))).into());
             }
         }
     });
@@ -119,7 +119,7 @@ fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, comman
         name(&head, &format!("Sort by {}", column.meaning));
         let head = head.on_hover_cursor(CursorIcon::PointingHand);
         if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.unit)).clicked() {
-            commands.push(Command::Comparison(ComparisonCommand::Sort(i)));
+            commands.push(WindowCommand::Comparison(ComparisonCommand::Sort(i)).into());
         }
     });
 }
@@ -130,7 +130,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[Head], comm
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
         name(&tick, &format!("Lay over: {}", entry.title));
         if tick.on_hover_text("Draw this run in plots and scene").changed() {
-            commands.push(Command::Comparison(ComparisonCommand::Show(i, shown)));
+            commands.push(WindowCommand::Comparison(ComparisonCommand::Show(i, shown)).into());
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
@@ -150,13 +150,13 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[Head], comm
         let apart = entry.design.as_ref().and_then(|design| design.apart.as_ref());
         let apart = apart.map_or_else(String::new, |why| format!(". Its machine: {why}"));
         if label.on_hover_text(format!("Open this run in place of the present one{apart}")).clicked() {
-            commands.push(Command::Comparison(ComparisonCommand::Open(i)));
+            commands.push(SessionCommand::OpenRun(i).into());
         }
         if entry.kept {
             let remove = ui.small_button("×");
             name(&remove, &format!("Remove {}", entry.title));
             if remove.on_hover_text("Remove this row").clicked() {
-                commands.push(Command::Comparison(ComparisonCommand::Remove(i)));
+                commands.push(WindowCommand::Comparison(ComparisonCommand::Remove(i)).into());
             }
         }
     });

@@ -4,7 +4,7 @@ use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
-use super::{Command, ViewState};
+use super::{Command, ViewChange, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::joint_items::SYMBOLS;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -61,7 +61,7 @@ pub fn show(
                         &format!("{symbol} {}", if on { "has an axis" } else { "stands still: give it an axis" }),
                     );
                     if let (true, false, [_, second, third]) = (button.clicked(), on, shown) {
-                        commands.push(Command::Drives([*second, *third, k]));
+                        commands.push(ViewChange::Drives([*second, *third, k]).into());
                     }
                 }
             });

@@ -4,7 +4,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
-use super::{Command, ViewState};
+use super::{Command, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::section::Section;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -52,7 +52,7 @@ pub fn way_back(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut 
     let button = ui.put(at, button).on_hover_text("A part of the machine, or its target, is out of view");
     super::widgets::name(&button, "Show everything: a part is out of view");
     if button.clicked() {
-        commands.push(Command::Fit);
+        commands.push(ViewChange::Fit.into());
     }
 }
 
@@ -63,7 +63,7 @@ fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut
     let words = RichText::new(measure.symbol()).font(plain(11.5)).color(colour(p.ink));
     let help = format!("{} (click for another)", measure.explanation());
     if ui.add(Button::new(words)).on_hover_text(help).clicked() {
-        commands.push(Command::Dexterity(Measure::after(Some(measure)).or(Some(Measure::Det))));
+        commands.push(ViewChange::Dexterity(Measure::after(Some(measure)).or(Some(Measure::Det))).into());
     }
     let least = if least == 0.0 { "0".into() } else { format!("{least:.3}") };
     ui.label(RichText::new(least).font(plain(11.5)).color(colour(p.dim)));

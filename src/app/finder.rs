@@ -9,7 +9,7 @@ use super::facts::{Facts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
-use super::{Command, ViewState, search};
+use super::{Command, SessionCommand, Switch, ViewChange, ViewState, search};
 use crate::mechanics::machine;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
@@ -42,7 +42,7 @@ fn entries<'a>(
     view_state: &ViewState,
 ) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
-        let command = (action.command)(session, view_state)?;
+        let command = action.command(session, view_state)?;
         let keys = action.keys.first().map(shown).unwrap_or_default();
         let (title, place, also) = (action.name.into(), action.place, action.also);
         Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
@@ -56,7 +56,12 @@ fn entries<'a>(
         command,
     };
     let open = |title: String, place, scenario: Box<dyn FnOnce() -> Scenario + 'a>| {
-        entry(title, place, "open example demo", Box::new(|| Command::Open(Box::new(scenario()))))
+        entry(
+            title,
+            place,
+            "open example demo",
+            Box::new(|| Command::Session(SessionCommand::Open(Box::new(scenario())))),
+        )
     };
     let scenarios = Scenario::builtins().map(|scenario| {
         open(format!("Scenario: {}", scenario.title), "top bar, scenario", Box::new(|| scenario.clone()))
@@ -67,11 +72,16 @@ fn entries<'a>(
     });
     let recent = recent.iter().map(|file| {
         let title = format!("Recent: {}", file.file_name().unwrap_or(file.as_os_str()).to_string_lossy());
-        entry(title, "top bar, scenario", "open file last", Box::new(|| Command::OpenFile(file.clone())))
+        entry(
+            title,
+            "top bar, scenario",
+            "open file last",
+            Box::new(|| Command::Session(SessionCommand::OpenFile(file.clone()))),
+        )
     });
     let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
-        let look_up = || Command::LookUp(setting.path.clone());
+        let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.words, Box::new(look_up)) }
     });
     actions.chain(recent).chain(scenarios).chain(machines).chain(settings).collect()
@@ -151,8 +161,12 @@ pub fn show(
     });
     let elsewhere = shown.response.clicked_elsewhere();
     match picked.and_then(|i| list.into_iter().nth(i)) {
-        Some(entry) => commands.extend([Command::Find(false), (entry.command)(), Command::EndGesture]),
-        None if elsewhere => commands.push(Command::Find(false)),
+        Some(entry) => commands.extend([
+            Command::View(ViewChange::Switch(Switch::Finder, false)),
+            (entry.command)(),
+            Command::Session(SessionCommand::EndGesture),
+        ]),
+        None if elsewhere => commands.push(ViewChange::Switch(Switch::Finder, false).into()),
         None => view_state.finder = Some(finder),
     }
 }

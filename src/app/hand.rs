@@ -3,7 +3,7 @@
 use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
 use super::widgets::FINE;
-use super::{Command, ViewState, place, set_b};
+use super::{Command, SessionCommand, ViewChange, ViewState, place, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::paint::Spot;
 use crate::picture::scene::exaggeration::Shown;
@@ -104,7 +104,7 @@ impl<'a> Hand<'a> {
             let origin = origin();
             view_state.pressed = origin.and_then(|pos| self.under(pos));
             if self.session.is_playing() && origin.and_then(|pos| self.arm(pos)).is_some() {
-                commands.push(Command::TogglePlay);
+                commands.push(SessionCommand::TogglePlay.into());
             }
         }
         if self.response.drag_started_by(PointerButton::Primary) {
@@ -127,7 +127,7 @@ impl<'a> Hand<'a> {
         if let Aim::Target(at) | Aim::Waypoint(_, at) = aim {
             view_state.held = Some(at);
         }
-        edit_of(aim, session, view_state).map(Command::Edit)
+        edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
     }
 
     /// Pulls at what is held, and lets go of it.
@@ -148,7 +148,7 @@ impl<'a> Hand<'a> {
             let at = pos - *behind;
             commands.extend(self.asks(pick, at, view_state));
             if pushes && !self.session.is_playing() {
-                commands.push(Command::TogglePlay);
+                commands.push(SessionCommand::TogglePlay.into());
             }
         }
         let gives_up = self.ui.input(|i| i.key_pressed(egui::Key::Escape));
@@ -157,11 +157,11 @@ impl<'a> Hand<'a> {
             if pushes && view_state.dragged {
                 // Back to the force that acted before the push.
                 let [x, y] = view_state.force.take().unwrap_or_default();
-                commands.push(Command::Edit(Edit::Push { x, y }));
+                commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
             }
-            commands.push(Command::EndGesture);
+            commands.push(SessionCommand::EndGesture.into());
             if gives_up && view_state.dragged {
-                commands.push(Command::TakeBack(view_state.undone_to));
+                commands.push(SessionCommand::TakeBack(view_state.undone_to).into());
             }
             view_state.dragged = false;
         }
@@ -185,10 +185,10 @@ impl<'a> Hand<'a> {
             && let Some(pick) = self.under(pos).filter(|pick| pick.handle == Handle::Bar)
             && let Some(edit) = self.asks(pick, pos, view_state)
         {
-            commands.extend([edit, Command::EndGesture]);
+            commands.extend([edit, Command::Session(SessionCommand::EndGesture)]);
         }
         if clicked && let Some(thing) = view_state.hot.filter(|thing| place::is_in_panel(*thing)) {
-            commands.push(Command::Reveal(thing));
+            commands.push(ViewChange::Reveal(thing).into());
         }
         let beside = !view_state.hot.is_some_and(Handle::can_be_dragged);
         let twice = self.response.double_clicked_by(PointerButton::Primary) && beside && self.view.shows_machine();
@@ -197,7 +197,10 @@ impl<'a> Hand<'a> {
             && let Some([x, y]) = self.spot.pointer(pos).ray().and_then(|ray| ray.at_height(height))
             && let Some(change) = self.session.scenario().task.adding(Vector::new(x, y))
         {
-            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+            commands.extend([
+                Command::Session(SessionCommand::Edit(Edit::of("task", change))),
+                Command::Session(SessionCommand::EndGesture),
+            ]);
         }
     }
 
@@ -209,7 +212,10 @@ impl<'a> Hand<'a> {
         if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
             && let Some(change) = self.session.scenario().task.removing(i)
         {
-            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+            commands.extend([
+                Command::Session(SessionCommand::Edit(Edit::of("task", change))),
+                Command::Session(SessionCommand::EndGesture),
+            ]);
             view_state.hot = None;
         }
     }

@@ -2,11 +2,11 @@
 
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
-use super::actions::key_of;
+use super::actions::key_of_switch;
 use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ViewState};
+use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::{Fork, Session};
 
@@ -24,12 +24,12 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
-    let key = key_of("History: what was done, to go back and forth in").unwrap_or_default();
+    let key = key_of_switch(Switch::History).unwrap_or_default();
     let tip = format!("history ({key})\nWhat was done, to go back and forth in; Ctrl Z undoes, Ctrl Y redoes");
     let on = Some(view_state.history);
     let button = IconButton { size, on, ..IconButton::of(Icon::History, "history", &tip) }.show(ui, &p);
     if button.clicked() {
-        commands.push(Command::History(!view_state.history));
+        commands.push(ViewChange::Switch(Switch::History, !view_state.history).into());
     }
     let mut open = view_state.history;
     let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
@@ -46,7 +46,7 @@ pub fn show(
         }
     });
     if view_state.history && !open && !button.clicked() {
-        commands.push(Command::History(false));
+        commands.push(ViewChange::Switch(Switch::History, false).into());
     }
 }
 
@@ -76,7 +76,7 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
             ui.memory_mut(|m| m.data.insert_temp(seen_id(), present));
         }
         if line.clicked() && i != present {
-            commands.push(Command::GoTo(i));
+            commands.push(SessionCommand::GoTo(i).into());
         }
     }
 }
@@ -100,15 +100,15 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
             }
             name(&line, &format!("Branch {}: {}, {when}", i + 1, branch.title));
             if line.on_hover_text("Shows it; what is shown now becomes a branch").clicked() {
-                commands.push(Command::Branch(i));
+                commands.push(SessionCommand::Branch(i).into());
             }
             let beside = IconButton::of(Icon::Beside, "compare branch", "Adds it to the runs side by side");
             if beside.show_in(ui, p, dim).clicked() {
-                commands.push(Command::CompareBranch(i));
+                commands.push(SessionCommand::CompareBranch(i).into());
             }
             let away = IconButton::of(Icon::Cross, "remove branch", "Removes it; Ctrl Z brings it back");
             if away.show_in(ui, p, dim).clicked() {
-                commands.push(Command::DropBranch(i));
+                commands.push(SessionCommand::DropBranch(i).into());
             }
         });
     }

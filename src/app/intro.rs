@@ -7,7 +7,7 @@ use egui::{Align2, Area, Id, RichText, Ui, vec2};
 
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
-use super::{Command, Layout, ViewState};
+use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use crate::picture::numbers::signed;
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
@@ -137,16 +137,21 @@ impl Intro {
     /// A command was carried out.
     pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
-            Command::Edit(_) | Command::Open(_) | Command::OpenFile(_) | Command::Case(_) => !held,
-            Command::Draw(_)
-            | Command::Push(_)
-            | Command::Compare(true)
-            | Command::Study(true)
-            | Command::Reveal(_)
-            | Command::LookUp(_) => true,
-            Command::Layout(layout) => *layout != Layout::Explore,
-            Command::View(view) => !view.shows_machine(),
-            Command::EndGesture => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
+            Command::Session(
+                SessionCommand::Edit(_)
+                | SessionCommand::Open(_)
+                | SessionCommand::OpenFile(_)
+                | SessionCommand::Case(_),
+            ) => !held,
+            Command::View(
+                ViewChange::Switch(Switch::Drawing | Switch::Pushing, _)
+                | ViewChange::Switch(Switch::Compare | Switch::Study, true)
+                | ViewChange::Reveal(_)
+                | ViewChange::LookUp(_),
+            ) => true,
+            Command::View(ViewChange::Layout(layout)) => *layout != Layout::Explore,
+            Command::View(ViewChange::Kind(view)) => !view.shows_machine(),
+            Command::Session(SessionCommand::EndGesture) => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
             _ => false,
         };
         if touches {
@@ -154,7 +159,7 @@ impl Intro {
         }
         let frame = session.frame();
         let done = match self.hint {
-            0 => matches!(command, Command::Edit(Edit::DragTarget { .. })) && session.is_led(),
+            0 => matches!(command, Command::Session(SessionCommand::Edit(Edit::DragTarget { .. }))) && session.is_led(),
             1 => session.is_led() && frame.target.reach != Reach::Inside,
             2 => (session.b_aim() - self.b).abs() > 0.05,
             _ => false,
@@ -238,7 +243,7 @@ impl Intro {
                     let skip = ui.add(skip.frame(false)).on_hover_text("No more hints, now and at the next start");
                     name(&skip, "No more hints");
                     if skip.clicked() {
-                        commands.push(Command::SkipHints);
+                        commands.push(WindowCommand::SkipHints.into());
                     }
                 });
             });

@@ -5,7 +5,7 @@ use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea
 use super::actions::{ACTIONS, Action, FINE_ACTIONS, GESTURES, Group, shown};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Layout, ViewState, search};
+use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, search};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
@@ -34,18 +34,18 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
     // What asks for text has the rest of a slow pass for itself: what is typed after it is no shortcut.
     if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
-        commands.extend((action.command)(session, view_state));
+        commands.extend(action.command(session, view_state));
         return;
     }
     for (action, key) in all.into_iter().filter(|(_, key)| at_hand(key)) {
         if taken(key) {
-            commands.extend((action.command)(session, view_state));
+            commands.extend(action.command(session, view_state));
         }
     }
     // What a held key moves is one undo.
     let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
     if !typing && view_state.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
-        commands.push(Command::EndGesture);
+        commands.push(SessionCommand::EndGesture.into());
     }
 }
 
@@ -62,15 +62,15 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 /// What Esc closes.
 fn escape(view_state: &ViewState) -> Command {
     match view_state {
-        ViewState { dialog: Some(_), .. } => Command::Dialog(None),
-        ViewState { finder: Some(_), .. } => Command::Find(false),
-        ViewState { help: true, .. } => Command::Help(false),
-        ViewState { stroke: Some(_), .. } => Command::Draw(false),
-        ViewState { mark: Some(_), .. } => Command::Mark(None),
-        ViewState { pushing: true, .. } => Command::Push(false),
-        ViewState { layout: Layout::Present, .. } => Command::Layout(Layout::Explore),
-        ViewState { tour: Some(_), .. } => Command::Tour(false),
-        _ => Command::SkipHints,
+        ViewState { dialog: Some(_), .. } => Command::View(ViewChange::Dialog(None)),
+        ViewState { finder: Some(_), .. } => Command::View(ViewChange::Switch(Switch::Finder, false)),
+        ViewState { help: true, .. } => Command::View(ViewChange::Switch(Switch::Help, false)),
+        ViewState { stroke: Some(_), .. } => Command::View(ViewChange::Switch(Switch::Drawing, false)),
+        ViewState { mark: Some(_), .. } => Command::View(ViewChange::Mark(None)),
+        ViewState { pushing: true, .. } => Command::View(ViewChange::Switch(Switch::Pushing, false)),
+        ViewState { layout: Layout::Present, .. } => Command::View(ViewChange::Layout(Layout::Explore)),
+        ViewState { tour: Some(_), .. } => Command::Window(WindowCommand::Tour(false)),
+        _ => Command::Window(WindowCommand::SkipHints),
     }
 }
 
@@ -85,7 +85,7 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         ui.horizontal(|ui| {
             if ui.button("Take the tour").clicked() {
-                commands.push(Command::Tour(true));
+                commands.push(WindowCommand::Tour(true).into());
             }
             ui.label(RichText::new("what this is about, in seven steps on the machine itself").color(colour(p.dim)));
         });
@@ -123,7 +123,7 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
         });
     });
     if !open {
-        commands.push(Command::Help(false));
+        commands.push(ViewChange::Switch(Switch::Help, false).into());
     }
 }
 

@@ -3,7 +3,7 @@
 use egui::{Id, PointerButton, Response, Ui};
 
 use super::widgets::HELD;
-use super::{Command, place};
+use super::{Command, SessionCommand, ViewChange, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::options::Handle;
@@ -41,9 +41,10 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
             ui.close();
         }
     };
-    let once = |edit: Edit| vec![Command::Edit(edit), Command::EndGesture];
+    let once =
+        |edit: Edit| vec![Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)];
     if let Some(thing) = thing.filter(|thing| place::is_in_panel(*thing)) {
-        entry(ui, "Show in the panel", vec![Command::Reveal(thing)]);
+        entry(ui, "Show in the panel", vec![Command::View(ViewChange::Reveal(thing))]);
     }
     if let Some(Handle::Waypoint(i)) = thing
         && let Some(change) = task.removing(i)
@@ -51,7 +52,7 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
         entry(ui, &format!("Leave point {} out", task.name_of(i)), once(Edit::of("task", change)));
     }
     if thing == Some(Handle::Target) && session.is_led() {
-        entry(ui, "Back to the path", vec![Command::BackToPath]);
+        entry(ui, "Back to the path", vec![Command::Session(SessionCommand::BackToPath)]);
     }
     if thing == Some(Handle::Payload) {
         entry(ui, "Take the payload off", once(Edit::set("plant.payload", "default")));
@@ -76,5 +77,5 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
         }
     }
     ui.separator();
-    entry(ui, "Show everything", vec![Command::Fit]);
+    entry(ui, "Show everything", vec![Command::View(ViewChange::Fit)]);
 }

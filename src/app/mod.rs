@@ -45,13 +45,17 @@ mod theme;
 mod timeline;
 mod top;
 mod tour;
+mod view_change;
 mod view_state;
 mod viewport;
 mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Activity, Command, ComparisonCommand, DesignCommand, FileDialog, Look, PlotFile, Purpose, Recovery};
+pub use command::{
+    Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery, SessionCommand, Switch,
+    ViewChange, WindowCommand,
+};
 use intro::Intro;
 pub use layout::{Layout, Panel, Panels};
 pub use left_off::LeftOff;

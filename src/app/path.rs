@@ -6,7 +6,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::theme::{colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
-use super::{Command, place};
+use super::{Command, SessionCommand, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::options::Handle;
@@ -70,7 +70,10 @@ fn choose<T: Choice>(
                         change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
                     }
                 }
-                commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+                commands.extend([
+                    Command::Session(SessionCommand::Edit(Edit::of("task", change))),
+                    Command::Session(SessionCommand::EndGesture),
+                ]);
             }
         }
     });
@@ -79,7 +82,10 @@ fn choose<T: Choice>(
 
 /// Sets one key of the task, as an undo of its own.
 fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
-    commands.extend([Command::Edit(Edit::at(&["task", key], value)), Command::EndGesture]);
+    commands.extend([
+        Command::Session(SessionCommand::Edit(Edit::at(&["task", key], value))),
+        Command::Session(SessionCommand::EndGesture),
+    ]);
 }
 
 fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
@@ -115,10 +121,10 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
     }
     let change = |commands: &mut Vec<Command>, change: Option<Change>, lasts: bool| {
         if let Some(change) = change {
-            commands.push(Command::Edit(Edit::of("task", change)));
+            commands.push(SessionCommand::Edit(Edit::of("task", change)).into());
         }
         if !lasts {
-            commands.push(Command::EndGesture);
+            commands.push(SessionCommand::EndGesture.into());
         }
     };
     for (i, at) in all.iter().enumerate() {
@@ -156,7 +162,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
                     change(commands, task.moving(i, Vector::new(xy[0], xy[1])), true);
                 }
                 if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
-                    commands.push(Command::EndGesture);
+                    commands.push(SessionCommand::EndGesture.into());
                 }
             });
         };

@@ -4,7 +4,7 @@ use egui::{Align, Layout, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
 use super::icon::{Icon, IconButton};
 use super::theme::{bold, colour, plain};
-use super::{Command, Layout as WindowLayout, ViewState, status};
+use super::{Command, Layout as WindowLayout, ViewChange, ViewState, status};
 use crate::picture::numbers::signed;
 use crate::session::Session;
 
@@ -53,6 +53,6 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let tip = "Back to Explore (Esc or 5); Space plays";
     let back = IconButton { size: at.size(), ..IconButton::of(Icon::Panes, "Leave the presentation", tip) };
     if back.show_in(&mut right, &p, colour(p.dim)).clicked() {
-        commands.push(Command::Layout(WindowLayout::Explore));
+        commands.push(ViewChange::Layout(WindowLayout::Explore).into());
     }
 }

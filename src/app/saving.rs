@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, Recovery, ViewState};
+use super::{Command, FileDialog, Purpose, Recovery, SessionCommand, ViewChange, ViewState, WindowCommand};
 use crate::picture::scene::palette::faded;
 use crate::session::Session;
 
@@ -79,7 +79,7 @@ pub(super) fn show(
             1 => "One change of this session is in no file.".to_owned(),
             n => format!("{n} changes of this session are in no file."),
         };
-        let save = Command::Dialog(Some(FileDialog::suggest(session, Purpose::Save)));
+        let save = Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Save))));
         card(
             ctx,
             view_state,
@@ -87,9 +87,9 @@ pub(super) fn show(
             &words,
             commands,
             [
-                ("Save…", vec![Command::AskToLeave(false), save]),
-                ("Close without saving", vec![Command::Leave]),
-                ("Cancel", vec![Command::AskToLeave(false)]),
+                ("Save…", vec![Command::Window(WindowCommand::AskToLeave(false)), save]),
+                ("Close without saving", vec![Command::Window(WindowCommand::Leave)]),
+                ("Cancel", vec![Command::Window(WindowCommand::AskToLeave(false))]),
             ],
         );
     } else if let Some((_, when)) = &saving.found {
@@ -101,9 +101,9 @@ pub(super) fn show(
             &words,
             commands,
             [
-                ("Open that session", vec![Command::Recover(Recovery::Open)]),
-                ("Forget it", vec![Command::Recover(Recovery::Forget)]),
-                ("Later", vec![Command::Recover(Recovery::Later)]),
+                ("Open that session", vec![Command::Session(SessionCommand::Recover(Recovery::Open))]),
+                ("Forget it", vec![Command::Session(SessionCommand::Recover(Recovery::Forget))]),
+                ("Later", vec![Command::Session(SessionCommand::Recover(Recovery::Later))]),
             ],
         );
     }

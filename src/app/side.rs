@@ -13,7 +13,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
-use super::{Command, ViewState, path, place, set_b};
+use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
 use crate::mechanics::machine::MAX_ANGLE;
 use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
@@ -115,9 +115,12 @@ fn pose_constant(
     if typed && stops {
         let band = serving.map_or_else(String::new, |common| common.near(shown).in_words());
         let who = all_points(session);
-        commands.push(Command::Refuse(format!(
-            "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
-        )));
+        commands.push(
+            WindowCommand::Refuse(format!(
+                "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
+            ))
+            .into(),
+        );
     } else {
         send(commands, &responses, || edit);
     }
@@ -128,7 +131,7 @@ fn pose_constant(
                 let words = RichText::new("back to the path").font(plain(11.0));
                 let tip = "Puts the machine back at the start of its planned path (B)";
                 if ui.add(egui::Button::new(words)).on_hover_text(tip).clicked() {
-                    commands.push(Command::BackToPath);
+                    commands.push(SessionCommand::BackToPath.into());
                 }
             });
         });
@@ -152,7 +155,7 @@ fn pose_constant(
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
         let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");
         if ui.checkbox(&mut turn, words).on_hover_text(tip).changed() {
-            commands.push(Command::TurnTask(turn));
+            commands.push(ViewChange::Switch(Switch::TurnTask, turn).into());
         }
     }
     // One line whatever the base, so that nothing below jumps.
@@ -164,9 +167,11 @@ fn pose_constant(
     ui.horizontal(|ui| {
         let tick = ui.checkbox(&mut shown, "compare").on_hover_text("A second workspace, as in Fig. 4");
         if tick.changed() {
-            commands
-                .push(Command::Edit(Edit::set("compare_b", if shown { Value::from(other) } else { DEFAULT.into() })));
-            commands.push(Command::EndGesture);
+            commands.push(Command::Session(SessionCommand::Edit(Edit::set(
+                "compare_b",
+                if shown { Value::from(other) } else { DEFAULT.into() },
+            ))));
+            commands.push(SessionCommand::EndGesture.into());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if shown {

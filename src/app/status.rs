@@ -5,7 +5,7 @@ use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 use super::facts::Facts;
 use super::theme::{colour, plain};
 use super::widgets::name;
-use super::{Activity, Command, ViewState};
+use super::{Activity, Command, SessionCommand, ViewState, WindowCommand};
 use crate::picture::numbers::signed;
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
@@ -65,7 +65,10 @@ pub fn news(
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
                 if way_out.on_hover_text("Asks for the same on the nearest plane that allows it").clicked() {
-                    commands.extend([Command::Edit(edit), Command::EndGesture]);
+                    commands.extend([
+                        Command::Session(SessionCommand::Edit(edit)),
+                        Command::Session(SessionCommand::EndGesture),
+                    ]);
                 }
             }
         });
@@ -212,7 +215,7 @@ pub fn show(
                         let stop = ui.button("Cancel").on_hover_text("Stops it; what is shown stays as it is");
                         name(&stop, &format!("Cancel {}", activity.words()));
                         if stop.clicked() {
-                            commands.push(Command::Cancel(activity));
+                            commands.push(WindowCommand::Cancel(activity).into());
                         }
                     }
                     let text = format!("{}, {:.0} %", activity.words(), 100.0 * done);
@@ -227,7 +230,7 @@ pub fn show(
                             let back = ui.button("show it").on_hover_text("Shows the branch; G leads there and back");
                             name(&back, "Show the branch");
                             if back.clicked() {
-                                commands.push(Command::Branch(branch));
+                                commands.push(SessionCommand::Branch(branch).into());
                             }
                         }
                         (text.clone(), p.ink)
@@ -243,8 +246,8 @@ pub fn show(
                             )
                             .clicked()
                         {
-                            commands.push(Command::Edit(Edit::SlideB { b }));
-                            commands.push(Command::EndGesture);
+                            commands.push(SessionCommand::Edit(Edit::SlideB { b }).into());
+                            commands.push(SessionCommand::EndGesture.into());
                         }
                         ("the target is outside".into(), p.ink)
                     }

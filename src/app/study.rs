@@ -7,7 +7,7 @@ use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, Plot
 use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, send};
-use super::{Command, ViewState};
+use super::{Command, Switch, ViewChange, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::Edit;
@@ -38,7 +38,7 @@ pub fn show(
             };
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.button("Close").on_hover_text("T").clicked() {
-                    commands.push(Command::Study(false));
+                    commands.push(ViewChange::Switch(Switch::Study, false).into());
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());

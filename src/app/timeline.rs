@@ -8,7 +8,7 @@ use super::icon::{Icon, IconButton};
 use super::marks::{Group, Marks, Tone};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ViewState};
+use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
@@ -29,7 +29,7 @@ pub fn show(
     let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
     let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
     if again.show(ui, &p).clicked() {
-        commands.push(Command::Loop(!view_state.loops));
+        commands.push(ViewChange::Switch(Switch::Loop, !view_state.loops).into());
     }
     ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
     ui.spacing_mut().interact_size.y = 15.0;
@@ -37,7 +37,7 @@ pub fn show(
     let response = ui.add(slider).on_hover_text("Time, s");
     name(&response, "Time");
     if response.changed() {
-        commands.push(Command::Seek(time));
+        commands.push(SessionCommand::Seek(time).into());
     }
     // The middle of the handle goes from end to end less its radius.
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
@@ -55,7 +55,7 @@ pub fn show(
     }
     // It has gone meanwhile.
     if view_state.naming.is_some() && !named {
-        commands.push(Command::NameBookmark(None));
+        commands.push(ViewChange::LeaveNaming.into());
     }
 }
 
@@ -110,12 +110,12 @@ fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut 
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &group.words));
     Tooltip::for_enabled(&response).gap(BELOW).show(|ui| told(ui, p, group));
     if response.clicked() {
-        commands.push(Command::Seek(group.time));
+        commands.push(SessionCommand::Seek(group.time).into());
     }
     match group.tone {
-        Tone::Own if response.secondary_clicked() => commands.push(Command::NameBookmark(Some(group.time))),
+        Tone::Own if response.secondary_clicked() => commands.push(SessionCommand::NameBookmark(group.time).into()),
         // The list has its branches.
-        Tone::Fork if response.secondary_clicked() => commands.push(Command::History(true)),
+        Tone::Fork if response.secondary_clicked() => commands.push(ViewChange::Switch(Switch::History, true).into()),
         _ => {}
     }
     response
@@ -158,19 +158,19 @@ fn naming(mark: &Response, p: &Palette, session: &Session, time: f64, commands: 
         ui.horizontal(|ui| {
             if enter || ui.button("Rename").clicked() {
                 let new = if typed.trim().is_empty() { known.name.clone() } else { typed.clone() };
-                commands.push(Command::Bookmark(time, new));
-                commands.push(Command::NameBookmark(None));
+                commands.push(SessionCommand::Bookmark(time, new).into());
+                commands.push(ViewChange::LeaveNaming.into());
             }
             if ui.button("Remove").clicked() {
-                commands.push(Command::Bookmark(time, String::new()));
-                commands.push(Command::NameBookmark(None));
+                commands.push(SessionCommand::Bookmark(time, String::new()).into());
+                commands.push(ViewChange::LeaveNaming.into());
             }
         });
         ui.data_mut(|data| data.insert_temp(id, typed));
     });
-    let done = commands.iter().any(|command| matches!(command, Command::NameBookmark(None)));
+    let done = commands.iter().any(|command| matches!(command, Command::View(ViewChange::LeaveNaming)));
     if !open && !done {
-        commands.push(Command::NameBookmark(None));
+        commands.push(ViewChange::LeaveNaming.into());
     }
     if !open || done {
         mark.ctx.data_mut(|data| data.remove_temp::<String>(id));

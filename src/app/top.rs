@@ -11,7 +11,7 @@ use super::facts::Facts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, ViewState, gallery, timeline};
+use super::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChange, ViewState, gallery, timeline};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
@@ -64,7 +64,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
         .truncate();
     let response = combo.show_ui(ui, |ui| {
         if let Some(machine) = gallery::show(ui, present, &view_state.palette()) {
-            commands.push(Command::Open(Box::new(with_machine(session, machine))));
+            commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
         }
     });
     name(&response.response.on_hover_text(tip), "Machine");
@@ -93,16 +93,16 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
                 if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
             if ui.selectable_label(chosen, label).clicked() {
                 commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
-                    Some(name) => Command::Case(name),
+                    Some(name) => Command::Session(SessionCommand::Case(name)),
                     // These bring the machine that they are about.
-                    None => Command::Open(Box::new(builtin.clone())),
+                    None => Command::Session(SessionCommand::Open(Box::new(builtin.clone()))),
                 });
             }
         }
         ui.separator();
         for (label, purpose) in [("Open…   Ctrl O", Purpose::Open), ("Save session…   Ctrl S", Purpose::Save)] {
             if ui.selectable_label(false, label).clicked() {
-                commands.push(Command::Dialog(Some(FileDialog::suggest(session, purpose))));
+                commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose))).into());
             }
         }
         if !recent.is_empty() {
@@ -111,7 +111,7 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
         for file in recent {
             let shown = file.file_name().map_or_else(|| file.to_string_lossy(), |name| name.to_string_lossy());
             if ui.selectable_label(false, format!("     {shown}")).on_hover_text(file.to_string_lossy()).clicked() {
-                commands.push(Command::OpenFile(file.clone()));
+                commands.push(SessionCommand::OpenFile(file.clone()).into());
             }
         }
     });
@@ -131,18 +131,18 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
             commands.push(command);
         }
     };
-    button(Icon::Start, "Start", "To the start (Home)", Command::Seek(0.0));
+    button(Icon::Start, "Start", "To the start (Home)", Command::Session(SessionCommand::Seek(0.0)));
     match session.is_playing() {
-        true => button(Icon::Pause, "Pause", "Pause (Space)", Command::TogglePlay),
-        false => button(Icon::Play, "Play", "Play (Space)", Command::TogglePlay),
+        true => button(Icon::Pause, "Pause", "Pause (Space)", Command::Session(SessionCommand::TogglePlay)),
+        false => button(Icon::Play, "Play", "Play (Space)", Command::Session(SessionCommand::TogglePlay)),
     }
-    button(Icon::Step, "Step", "One step on (→)", Command::Step(1));
+    button(Icon::Step, "Step", "One step on (→)", Command::Session(SessionCommand::Step(1)));
     let text = |s: f64| format!("{s}×");
     let combo = ComboBox::from_id_salt("speed").selected_text(text(view_state.speed)).width(58.0);
     let response = combo.show_ui(ui, |ui| {
         for speed in SPEEDS {
             if ui.selectable_label(speed == view_state.speed, text(speed)).clicked() {
-                commands.push(Command::Speed(speed));
+                commands.push(ViewChange::Speed(speed).into());
             }
         }
     });
@@ -156,7 +156,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     let help = ui.add(egui::Button::new(dim("?")).frame(false)).on_hover_text("Tour and keys (F1)");
     name(&help, "Help");
     if help.clicked() {
-        commands.push(Command::Help(!view_state.help));
+        commands.push(ViewChange::Switch(Switch::Help, !view_state.help).into());
     }
     // Where there is room it reads as what it is.
     let words = if is_narrow(ui) { "Ctrl K" } else { "Search commands   Ctrl K" };
@@ -165,15 +165,15 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     let find = ui.add(find).on_hover_text("Every command, by a few letters of its name (Ctrl K)");
     name(&find, "Search commands");
     if find.clicked() {
-        commands.push(Command::Find(true));
+        commands.push(ViewChange::Switch(Switch::Finder, true).into());
     }
     let word = if view_state.theme == Theme::Dark { "Light" } else { "Dark" };
     if IconButton::of(Icon::Halves, word, "Light or dark (L)").show_in(ui, &p, colour(p.dim)).clicked() {
-        commands.push(Command::Theme(other(view_state.theme)));
+        commands.push(ViewChange::Theme(other(view_state.theme)).into());
     }
     let record = IconButton::of(Icon::Record, "Record", "Write this run for the Rerun viewer (R)");
     if record.show_in(ui, &p, colour(p.reaction)).clicked() {
-        commands.push(Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record))));
+        commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Record))).into());
     }
 }
 
@@ -199,10 +199,10 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 let ready = !dialog.path.trim().is_empty();
                 if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {
                     let path = dialog.path.trim().into();
-                    commands.push(dialog.clone().named(path));
+                    commands.push(dialog.clone().named(path).into());
                 }
                 if ui.button("Cancel").clicked() {
-                    commands.push(Command::Dialog(None));
+                    commands.push(ViewChange::Dialog(None).into());
                 }
                 if dialog.purpose == Purpose::Open {
                     ui.label(RichText::new("or drop a file on the window").weak());

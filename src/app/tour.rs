@@ -2,7 +2,7 @@
 
 pub mod card;
 
-use super::Command;
+use super::{Command, SessionCommand};
 use crate::mechanics::planar::Vector;
 use crate::session::scenario::{Scenario, TaskKind};
 use crate::session::verdict::Verdict;
@@ -108,12 +108,15 @@ const DRAGGED: f64 = 0.02;
 const TURNED: [f64; 2] = [0.2, 0.05];
 
 fn payload(mass: f64) -> Vec<Command> {
-    vec![Command::Edit(Edit::set("plant.payload.mass", mass)), Command::EndGesture]
+    vec![
+        Command::Session(SessionCommand::Edit(Edit::set("plant.payload.mass", mass))),
+        Command::Session(SessionCommand::EndGesture),
+    ]
 }
 
 /// One of the paper's cases, with the paper's machine.
 fn case(name: &str) -> Vec<Command> {
-    Scenario::builtin(name).into_iter().map(|case| Command::Open(Box::new(case))).collect()
+    Scenario::builtin(name).into_iter().map(|case| Command::Session(SessionCommand::Open(Box::new(case)))).collect()
 }
 
 /// The paper's machine, where the present one has no plane to drag on.
@@ -140,7 +143,12 @@ const STEPS: [Step; 7] = [
                 f_B = 0. Hang something on the end effector, and the force is there. (Eq. 7)",
         asks: "Let it hold 0.3 kg, and run it.",
         shows: |_| {
-            let commands = [vec![Command::Seek(0.0)], payload(LOAD), vec![Command::TogglePlay]].concat();
+            let commands = [
+                vec![Command::Session(SessionCommand::Seek(0.0))],
+                payload(LOAD),
+                vec![Command::Session(SessionCommand::TogglePlay)],
+            ]
+            .concat();
             Some(("Hang 0.3 kg on it", commands))
         },
         done: |session, seen| {

@@ -9,7 +9,9 @@ use super::hand::Hand;
 use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::name;
-use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, present, status};
+use super::{
+    Command, Layout, SessionCommand, Switch, ViewChange, ViewState, coordinates, corner, framing, menu, present, status,
+};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
@@ -224,9 +226,12 @@ fn draw(
     }
     if response.drag_stopped() {
         let points: Vec<Vector> = stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
-        commands.push(Command::Draw(false));
+        commands.push(ViewChange::Switch(Switch::Drawing, false).into());
         if let Some(change) = Task::drawing(&points) {
-            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
+            commands.extend([
+                Command::Session(SessionCommand::Edit(Edit::of("task", change))),
+                Command::Session(SessionCommand::EndGesture),
+            ]);
         }
     }
 }

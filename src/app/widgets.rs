@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 use egui::response::Flags;
 use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClamping, Ui};
 
-use super::command::Command;
 use super::theme::{bold, colour, plain};
+use super::{Command, SessionCommand};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
@@ -272,14 +272,14 @@ pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
 /// Sends an edit when a widget has changed, and ends the gesture when it is let go.
 pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
     if responses.iter().any(Response::changed) {
-        commands.push(Command::Edit(edit()));
+        commands.push(SessionCommand::Edit(edit()).into());
     }
     if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
-        commands.push(Command::EndGesture);
+        commands.push(SessionCommand::EndGesture.into());
     }
 }
 
 /// An edit that is an undo of its own.
 pub(super) fn once(commands: &mut Vec<Command>, edit: Edit) {
-    commands.extend([Command::Edit(edit), Command::EndGesture]);
+    commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
 }

@@ -12,7 +12,7 @@ pub use error::WindowError;
 pub use guest::{App, Clock};
 
 use crate::app::jobs::Threads;
-use crate::app::{AppState, Command, Preferences};
+use crate::app::{AppState, Preferences, SessionCommand};
 use crate::files::preferences;
 use crate::picture::scene::palette::Theme;
 use crate::session::scenario::Scenario;
@@ -30,7 +30,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         .with_preferences(&liked)
         .finding(keeper::found());
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
-        app_state.carry_out(Command::TogglePlay);
+        app_state.carry_out(SessionCommand::TogglePlay);
     }
     let place = egui::ViewportBuilder::default()
         .with_title("Stillbase")

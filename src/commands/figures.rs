@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stillbase::app::{AppState, Command, ComparisonCommand, DesignCommand};
+use stillbase::app::{AppState, Command, ComparisonCommand, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase::files::write_new;
 use stillbase::picture::canvas::Canvas;
 use stillbase::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
@@ -90,7 +90,7 @@ impl Shown {
     fn draw(&self, canvas: &mut Canvas, app_state: &mut AppState, theme: Theme) -> Result<Picture, NoPicture> {
         match *self {
             Self::Window(_) => {
-                app_state.carry_out(Command::Theme(theme));
+                app_state.carry_out(ViewChange::Theme(theme));
                 canvas.draw(|ui| app_state.ui(ui))
             }
             Self::Scene(view) => {
@@ -105,19 +105,31 @@ impl Shown {
 
 /// Two of the other ways laid over plots and scene, and snapshots along the motion.
 fn side_by_side() -> Vec<Command> {
-    let show = |row| Command::Comparison(ComparisonCommand::Show(row, true));
-    vec![Command::Compare(true), Command::Snapshots(true), show(0), show(2)]
+    let show = |row| Command::Window(WindowCommand::Comparison(ComparisonCommand::Show(row, true)));
+    vec![
+        Command::View(ViewChange::Switch(Switch::Compare, true)),
+        Command::View(ViewChange::Switch(Switch::Snapshots, true)),
+        show(0),
+        show(2),
+    ]
 }
 
 /// The bare bars with counterweights between the lightest and the quickest.
 fn designed() -> Vec<Command> {
-    vec![Command::View(ViewKind::Design), Command::Design(DesignCommand::Take(16)), Command::EndGesture]
+    vec![
+        Command::View(ViewChange::Kind(ViewKind::Design)),
+        Command::Session(SessionCommand::Take(16)),
+        Command::Session(SessionCommand::EndGesture),
+    ]
 }
 
 /// Tolerances against a limit on |n_B| of 10 mN m.
 fn study() -> Vec<Command> {
     let limit: (String, Value) = ("moment_limit".into(), 0.01.into());
-    vec![Command::Edit(Edit::of("tolerance", Change::from_iter([limit]))), Command::Study(true)]
+    vec![
+        Command::Session(SessionCommand::Edit(Edit::of("tolerance", Change::from_iter([limit])))),
+        Command::View(ViewChange::Switch(Switch::Study, true)),
+    ]
 }
 
 /// A scenario run through once, shown at an instant.
@@ -125,6 +137,8 @@ fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase::files::scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;
     let task_time = app_state.session().length();
-    [Command::Seek(task_time), Command::Seek(time)].into_iter().for_each(|command| app_state.carry_out(command));
+    [Command::Session(SessionCommand::Seek(task_time)), Command::Session(SessionCommand::Seek(time))]
+        .into_iter()
+        .for_each(|command| app_state.carry_out(command));
     Ok(app_state)
 }

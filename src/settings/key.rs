@@ -169,6 +169,7 @@ impl Holds {
             Self::PerDrive(_) => Self::PerDrive(range),
             Self::List(count, _) => Self::List(count, range),
             Self::Points(_) => Self::Points(range),
+            Self::Bounds(_) => Self::Bounds(range),
             Self::Choice(_) | Self::Switch | Self::Spread(_) | Self::Rows => self,
         }
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::Command;
+use stillbase::app::SessionCommand;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
@@ -247,7 +247,7 @@ fn a_model_of_another_program_is_opened_as_a_machine() {
     let mut h = window("two-drive", Theme::Dark);
     for name in ["arm.urdf", "arm.xml"] {
         let file = folder.path(name);
-        h.state_mut().app_state_mut().carry_out(Command::TakeElsewhere(file.clone()));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(file.clone()));
         h.run_steps(3);
         let mass = session(&h).scenario().machine.mass();
         drop_on(&mut h, &file);
@@ -333,7 +333,7 @@ fn a_run_is_recorded_whole_or_not() {
     h.run_steps(2);
     h.state_mut()
         .app_state_mut()
-        .carry_out(Command::Edit(Edit::set("limits.a1", stillbase::settings::change::value("0,2.618"))));
+        .carry_out(SessionCommand::Edit(Edit::set("limits.a1", stillbase::settings::change::value("0,2.618"))));
     h.run_steps(2);
     assert!(session(&h).run().waiting().is_some());
     name_file(&mut h, Ask::Record, &folder.path("waits.rrd"));

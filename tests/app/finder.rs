@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::Command;
 use stillbase::app::actions::{ACTIONS, FINE_ACTIONS};
+use stillbase::app::{SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 
@@ -41,7 +41,7 @@ fn type_text(h: &mut Window, text: &str) {
 fn every_command_is_found_by_a_few_letters() {
     let folder = Folder::new("recent");
     let mut h = window("case-3", Theme::Dark);
-    h.state_mut().app_state_mut().carry_out(Command::SaveFile(folder.path("mine.toml")));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::SaveFile(folder.path("mine.toml")));
     h.run_steps(2);
     for (typed, first) in [
         ("snap", "Snapshots along the motion"),
@@ -108,7 +108,7 @@ fn the_list_of_commands_grows_again() {
 
 fn a_setting_that_is_found_is_shown_in_the_panel() {
     let mut h = window("case-3", Theme::Dark);
-    h.state_mut().app_state_mut().carry_out(Command::Side(false));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Switch(Switch::Side, false));
     h.run_steps(2);
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "setting friction coulomb");

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::Command;
+use stillbase::app::{SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
@@ -73,7 +73,7 @@ fn things_say_what_they_are() {
     // A payload beside the tip; the target covers one without an offset.
     hold(&mut h);
     let edit = Edit::set("plant.payload.offset", vec![0.1, 0.0]);
-    h.state_mut().app_state_mut().carry_out(Command::Edit(edit));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(edit));
     h.run_steps(2);
     let shown = *session(&h).frame();
     let at = h.state().app_state().stage().payload(&(&shown).into()).expect("it is held");
@@ -87,7 +87,7 @@ fn a_click_shows_the_place_in_the_panel() {
     h.run_steps(2);
     let row = |h: &Window| h.query_by_label("link 5 mass kg").map(|row| row.rect());
     assert_eq!(row(&h), None);
-    h.state_mut().app_state_mut().carry_out(Command::Side(false));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Switch(Switch::Side, false));
     h.run_steps(2);
     let (_, at) = link(&h, "5");
     h.hover_at(at);

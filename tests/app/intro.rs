@@ -4,7 +4,7 @@ use egui::{Key, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, Preferences};
+use stillbase::app::{AppState, Command, Preferences, SessionCommand, WindowCommand};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -42,7 +42,7 @@ fn liked(h: &Window) -> Preferences {
 
 fn the_first_start_shows_the_contrast_over_and_over() {
     let mut h = window("case-3", &Preferences::default());
-    h.state_mut().app_state_mut().carry_out(Command::TogglePlay);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TogglePlay);
     h.run_steps(14);
     assert!(h.query_by_label("POSE CONSTANT").is_none(), "the settings make room");
     assert!(h.query_by_label("Drag the white ring.").is_some());
@@ -70,7 +70,7 @@ fn hints_go_when_they_are_done() {
     h.run_steps(4);
     assert!(h.query_by_label("Turn b: the amber ring at the base, or the slider.").is_some());
     let b = session(&h).b_aim();
-    h.state_mut().app_state_mut().carry_out(Command::Edit(stillbase::session::Edit::PoseB { b: b + 0.2 }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(stillbase::session::Edit::PoseB { b: b + 0.2 }));
     h.key_press(Key::F);
     h.run_steps(4);
     assert!(h.query_by_label("Turn b: the amber ring at the base, or the slider.").is_none());
@@ -162,16 +162,16 @@ fn the_tour_is_passed_by_doing() {
     h.run_steps(20);
     on(&mut h, "Next");
     let b = session(&h).b_aim();
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: b + 0.1 }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::SlideB { b: b + 0.1 }));
     h.run_steps(3);
     assert!(!is_done(&h), "half of it");
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: b + 0.21 }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::SlideB { b: b + 0.21 }));
     h.run_steps(3);
     on(&mut h, "Next");
     h.get_by_label("Start time").click();
     h.run_steps(15);
     assert!(session(&h).is_moving() && !is_done(&h));
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: 2.6 }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::SlideB { b: 2.6 }));
     h.run_steps(30);
     h.get_by_label("Back: tour").click();
     h.run_steps(3);
@@ -188,20 +188,21 @@ fn the_tour_says_done_of_what_happened_alone() {
         h.state_mut().app_state_mut().carry_out(command);
         h.run_steps(3);
     };
-    let case = |name: &str| Command::Open(Box::new(Scenario::builtin(name).expect("built in")));
+    let case =
+        |name: &str| Command::Session(SessionCommand::Open(Box::new(Scenario::builtin(name).expect("built in"))));
     // A run that has ended before the tour, of another task; then the straight line, jumped through.
     let mut h = window("case-2", &Preferences { hints: false, ..Preferences::default() });
-    tell(&mut h, Command::TogglePlay);
+    tell(&mut h, Command::Session(SessionCommand::TogglePlay));
     h.run_steps(70);
     assert!(session(&h).is_at_end() && session(&h).frame().peaks.moment > 0.05);
-    tell(&mut h, Command::Tour(true));
+    tell(&mut h, Command::Window(WindowCommand::Tour(true)));
     assert!(!is_done(&h), "1: that was another run, before");
     tell(&mut h, case("case-1"));
     let end = session(&h).length();
-    tell(&mut h, Command::Seek(end));
+    tell(&mut h, Command::Session(SessionCommand::Seek(end)));
     assert!(session(&h).frame().peaks.moment > 0.05 && !is_done(&h), "1: nothing was run");
     for step in 2..=7 {
-        tell(&mut h, Command::TurnTour(true));
+        tell(&mut h, Command::Window(WindowCommand::TurnTour(true)));
         assert!(!is_done(&h), "{step}: as things stand, nothing was done");
     }
     // 2: a heavy load that was there and an end that is jumped to.
@@ -210,46 +211,46 @@ fn the_tour_says_done_of_what_happened_alone() {
         h.run_steps(2);
         before(&mut h);
         h.run_steps(2);
-        tell(&mut h, Command::Tour(true));
-        (1..step).for_each(|_| tell(&mut h, Command::TurnTour(true)));
+        tell(&mut h, Command::Window(WindowCommand::Tour(true)));
+        (1..step).for_each(|_| tell(&mut h, Command::Window(WindowCommand::TurnTour(true))));
         assert!(!is_done(&h), "{step}");
         h
     };
     let mut loaded = |h: &mut Window| {
-        tell(h, Command::Edit(Edit::set("plant.payload.mass", 0.3)));
-        tell(h, Command::TogglePlay);
+        tell(h, Command::Session(SessionCommand::Edit(Edit::set("plant.payload.mass", 0.3))));
+        tell(h, Command::Session(SessionCommand::TogglePlay));
         h.run_steps(70);
     };
     tour_at(2, &mut loaded);
     // 4: the run on its plane was before.
     let mut ran = |h: &mut Window| {
-        tell(h, Command::TogglePlay);
+        tell(h, Command::Session(SessionCommand::TogglePlay));
         h.run_steps(70);
     };
     tour_at(4, &mut ran);
     // 5: what was dragged before; 6: b that another session has, and that the machine is opened at.
     let mut led = |h: &mut Window| {
-        tell(h, Command::Edit(Edit::DragTarget { x: 0.45, y: 0.55 }));
-        tell(h, Command::TogglePlay);
+        tell(h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 0.45, y: 0.55 })));
+        tell(h, Command::Session(SessionCommand::TogglePlay));
         h.run_steps(60);
     };
     tour_at(5, &mut led);
     let mut h = tour_at(6, &mut |_| ());
     let mut other = Scenario::builtin("case-3").expect("built in");
     other.task.b = 2.65;
-    tell(&mut h, Command::Open(Box::new(other)));
+    tell(&mut h, Command::Session(SessionCommand::Open(Box::new(other))));
     assert!(!is_done(&h), "6: nobody turned b");
     // 7: b that is turned while time stands costs nothing.
     let mut h = tour_at(7, &mut |_| ());
     let b = session(&h).b_aim();
-    tell(&mut h, Command::Edit(Edit::PoseB { b: b + 0.2 }));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::PoseB { b: b + 0.2 })));
     assert!((session(&h).b_aim() - b).abs() > 0.1 && !is_done(&h));
 }
 
 /// The arm of the first screen is drawn shaking. What is said of it is true all the same: it misses nothing.
 fn numbers_of_the_first_screen_are_those_of_the_run() {
     let mut h = window("case-3", &Preferences::default());
-    h.state_mut().app_state_mut().carry_out(Command::TogglePlay);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TogglePlay);
     for _ in 0..4 {
         h.run_steps(12);
         let said = painted(&h);
@@ -283,7 +284,7 @@ fn hints_speak_of_what_there_is_and_cover_none_of_it() {
         let mut h = window("case-3", &Preferences::default());
         h.run_steps(2);
         let scenario = Scenario::builtin(machine).expect("built in");
-        h.state_mut().app_state_mut().carry_out(Command::Open(Box::new(scenario)));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Open(Box::new(scenario)));
         h.run_steps(4);
         assert!(h.query_by_label_contains("amber area").is_none(), "{machine}");
         assert_eq!(h.query_by_label("Drag the white ring.").is_some(), words.is_some(), "{machine}");

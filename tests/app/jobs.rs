@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::Threads;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, ComparisonCommand};
+use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -94,7 +94,7 @@ fn studies_run_beside_the_window() {
     let workers = Waiting::default();
     let mut h = window("case-3", &workers);
     h.run_steps(2);
-    tell(&mut h, Command::Study(true));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Study, true)));
     assert!(h.query_by_label("drawing machines …").is_some(), "a panel without a study says so");
     assert!(h.query_by_label("drawing machines, 0 %").is_some(), "the line at the bottom says how far");
     assert_eq!(workers.work(), 1);
@@ -103,8 +103,8 @@ fn studies_run_beside_the_window() {
     assert!(h.query_by_label_contains("To blame").is_some(), "the study is on display");
     // Two edits, one after the other: the first study is not wanted any more, the last one stays on display.
     for time in [1.5, 2.0] {
-        tell(&mut h, Command::Edit(Edit::set("task.time", time)));
-        tell(&mut h, Command::EndGesture);
+        tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", time))));
+        tell(&mut h, Command::Session(SessionCommand::EndGesture));
     }
     assert!(h.query_by_label("drawing machines …").is_none(), "the last study is on display");
     assert_eq!(session(&h).scenario().task.time, 2.0, "the hand has not waited");
@@ -136,15 +136,15 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
     h.run_steps(2);
     assert!(outlined(&h), "it comes when it is found");
     // What does not change the machine does not ask for it again.
-    tell(&mut h, Command::Edit(Edit::set("task.time", 2.0)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 2.0))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     workers.work();
     h.run_steps(2);
     assert!(outlined(&h) && workers.work() == 0);
     assert_eq!(session(&h).scenario().task.time, 2.0);
     for limit in [1.2, 1.3] {
-        tell(&mut h, Command::Edit(Edit::set("limits.a3", vec![-limit, limit])));
-        tell(&mut h, Command::EndGesture);
+        tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("limits.a3", vec![-limit, limit]))));
+        tell(&mut h, Command::Session(SessionCommand::EndGesture));
         workers.work();
         h.run_steps(2);
         assert!(!outlined(&h), "of a machine with other limits it is found anew");
@@ -158,7 +158,7 @@ fn what_a_machine_reaches_is_outlined_beside_the_window() {
 fn counterweights_are_looked_for_beside_the_window() {
     let workers = Waiting::slow();
     let mut h = window("nine-link-bare", &workers);
-    tell(&mut h, Command::View(ViewKind::Design));
+    tell(&mut h, Command::View(ViewChange::Kind(ViewKind::Design)));
     let front = |h: &Window| {
         let plot = h.query_by_label_contains("Counterweights to choose from");
         plot.map(|node| node.accesskit_node().label().unwrap_or_default())
@@ -170,7 +170,7 @@ fn counterweights_are_looked_for_beside_the_window() {
     let first = front(&h).expect("found");
     assert!(!said(&h));
     // What is planned anew is planned beside the window, too.
-    tell(&mut h, Command::Edit(Edit::set("link.9.mass", 0.9)));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("link.9.mass", 0.9))));
     workers.work();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().machine.links()[8].mass, 0.9);
@@ -181,7 +181,7 @@ fn counterweights_are_looked_for_beside_the_window() {
     h.run_steps(2);
     let next = front(&h).expect("found");
     assert_ne!(next, first);
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     workers.work();
     h.run_steps(2);
     assert_eq!((front(&h), workers.work()), (Some(next), 0), "nothing is left to do");
@@ -191,24 +191,24 @@ fn the_ways_of_a_task_run_beside_the_window() {
     let workers = Waiting::default();
     let mut h = window("case-3", &workers);
     h.run_steps(2);
-    tell(&mut h, Command::Compare(true));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Compare, true)));
     let entries = |h: &Window| h.state().app_state().comparison().map(|c| c.entries().len());
     assert_eq!(entries(&h), Some(0), "an empty table, until the runs are there");
     // What is sorted and kept meanwhile stays so.
-    tell(&mut h, Command::Comparison(ComparisonCommand::Keep));
+    tell(&mut h, Command::Session(SessionCommand::KeepRun));
     assert_eq!(entries(&h), Some(0));
     assert_eq!(workers.work(), 2);
     h.run_steps(3);
     let count = entries(&h).expect("a table");
     assert!(count > 3, "{count}");
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.5))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert_eq!(entries(&h), Some(count), "the last runs stay");
     assert_eq!(workers.work(), 1);
     h.run_steps(3);
     let task = h.state().app_state().comparison().map(|c| c.task().task.time);
     assert_eq!((entries(&h), task), (Some(count), Some(1.5)));
-    tell(&mut h, Command::Compare(false));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Compare, false)));
     assert_eq!(entries(&h), None);
     assert_eq!(workers.work(), 0);
 }
@@ -222,12 +222,12 @@ fn a_recording_is_written_beside_the_window() {
     let file = folder.path("run.rrd");
     let mut h = window("case-3", &workers);
     h.run_steps(2);
-    tell(&mut h, Command::Record(file.clone()));
+    tell(&mut h, Command::Session(SessionCommand::Record(file.clone())));
     assert!(h.query_by_label("recording, 0 %").is_some());
-    tell(&mut h, Command::Record(folder.path("other.rrd")));
+    tell(&mut h, Command::Session(SessionCommand::Record(folder.path("other.rrd"))));
     assert!(h.query_by_label_contains("one recording is under way").is_some());
     // The machine goes on under the hand.
-    tell(&mut h, Command::Edit(Edit::SlideB { b: 2.5 }));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::SlideB { b: 2.5 })));
     assert!(!file.exists());
     assert_eq!(workers.work(), 1);
     h.run_steps(2);
@@ -245,7 +245,7 @@ fn what_is_cancelled_is_stopped() {
         h.run_steps(3);
     };
     if cfg!(feature = "record") {
-        tell(&mut h, Command::Record(folder.path("run.rrd")));
+        tell(&mut h, Command::Session(SessionCommand::Record(folder.path("run.rrd"))));
         // Esc is for what is dragged or open: it stops no recording.
         h.key_press(egui::Key::Escape);
         h.run_steps(2);
@@ -256,25 +256,25 @@ fn what_is_cancelled_is_stopped() {
         assert!(folder.names().is_empty(), "{:?}", folder.names());
     }
     // A study: what is on display stays, and it is not begun again until something changes.
-    tell(&mut h, Command::Study(true));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Study, true)));
     cancel(&mut h, "drawing machines");
     assert!(h.query_by_label_contains("cancelled: to change something").is_some());
     assert_eq!(workers.work(), 1);
     h.run_steps(3);
     assert!(h.query_by_label_contains("To blame").is_none(), "nobody waits for it any more");
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.5))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     work_all(&mut h, &workers);
     assert!(h.query_by_label_contains("To blame").is_some(), "the run has changed: it is studied");
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.6)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.6))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     cancel(&mut h, "drawing machines");
     workers.work();
     h.run_steps(2);
     assert!(h.query_by_label_contains("To blame").is_some(), "the last study stays");
     assert_eq!(workers.work(), 0, "and is not begun again");
     // The ways of the task, the same.
-    tell(&mut h, Command::Compare(true));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Compare, true)));
     cancel(&mut h, "running the ways of the task");
     workers.work();
     h.run_steps(2);
@@ -297,10 +297,10 @@ fn a_change_that_is_being_made_is_asked_for() {
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
     assert!(h.state().app_state().may_leave());
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.7)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.7))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert!(!h.state().app_state().may_leave(), "it is in no count yet");
-    tell(&mut h, Command::Quit);
+    tell(&mut h, Command::Window(WindowCommand::Quit));
     assert!(!h.state().app_state().wants_to_leave());
     assert!(h.query_by_label("A change of this session is being made.").is_some());
     workers.work();
@@ -314,15 +314,15 @@ fn a_change_that_takes_long_is_made_beside_the_window() {
     h.run_steps(2);
     let time = |h: &Window| session(h).scenario().task.time;
     let was = time(&h);
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.7)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.7))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert_eq!(time(&h), was, "what was shown stays until the new run is there");
     h.run_steps(8);
     assert!(h.query_by_label("making the run again, 0 %").is_some(), "the line at the bottom says so");
     // Meanwhile the window goes on: views turn, and what is done to the session waits for its turn.
-    tell(&mut h, Command::Snapshots(true));
+    tell(&mut h, Command::View(ViewChange::Switch(Switch::Snapshots, true)));
     assert!(h.state().app_state().view_state().snapshots);
-    tell(&mut h, Command::Undo);
+    tell(&mut h, Command::Session(SessionCommand::Undo));
     assert_eq!(workers.work(), 1);
     h.run_steps(1);
     assert_eq!(time(&h), 1.7, "it has been made, and what waited is under way");
@@ -331,8 +331,8 @@ fn a_change_that_takes_long_is_made_beside_the_window() {
     assert_eq!(time(&h), was);
     assert_eq!(session(&h).redo_title(), Some("set motion time to 1.700 s"));
     // Cancelled, nothing has changed, and what waited for it goes too.
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.8)));
-    tell(&mut h, Command::Edit(Edit::set("task.b", 2.45)));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.8))));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.b", 2.45))));
     h.run_steps(8);
     h.get_by_label("Cancel making the run again").click();
     h.run_steps(3);
@@ -349,16 +349,19 @@ fn of_a_drag_the_newest_edit_counts() {
     h.run_steps(2);
     let to = session(&h).scenario().task.points()[1];
     for i in 1..=20 {
-        tell(&mut h, Command::Edit(Edit::set("task.to", vec![to.re - 1e-3 * f64::from(i), to.im])));
+        tell(
+            &mut h,
+            Command::Session(SessionCommand::Edit(Edit::set("task.to", vec![to.re - 1e-3 * f64::from(i), to.im]))),
+        );
     }
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert_eq!(workers.work(), 1, "the first");
     h.run_steps(2);
     assert_eq!(workers.work(), 1, "the last, and none between");
     h.run_steps(2);
     assert_eq!(workers.work(), 0);
     assert_eq!(session(&h).scenario().task.points()[1].re, to.re - 0.02);
-    tell(&mut h, Command::Undo);
+    tell(&mut h, Command::Session(SessionCommand::Undo));
     work_all(&mut h, &workers);
     assert_eq!(session(&h).scenario().task.points()[1], to, "all of the drag is one undo");
 }
@@ -367,8 +370,8 @@ fn a_drag_that_is_given_up_takes_back_what_it_did() {
     let workers = Waiting::slow();
     let mut h = window("least-reaction", &workers);
     h.run_steps(2);
-    tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.5))));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     work_all(&mut h, &workers);
     let before = session(&h).to_scenario();
     let handle = h.state().app_state().stage().handle(Handle::Waypoint(1), &session(&h).frame().into()).expect("B");
@@ -392,22 +395,22 @@ fn a_file_is_opened_beside_the_window() {
     std::fs::write(&file, Scenario::builtin("circle").expect("built in").to_toml()).expect("a file");
     let mut h = window("case-3", &workers);
     h.run_steps(2);
-    tell(&mut h, Command::OpenFile(folder.path("none.toml")));
-    tell(&mut h, Command::OpenFile(file.clone()));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(folder.path("none.toml"))));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(file.clone())));
     assert!(h.query_by_label("opening, 0 %").is_some());
     // The session that is there can be worked with until then.
-    tell(&mut h, Command::Edit(Edit::SlideB { b: 2.5 }));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::SlideB { b: 2.5 })));
     assert_eq!(session(&h).b_aim(), 2.5);
     assert_eq!(session(&h).scenario().name, "case-3");
     work_all(&mut h, &workers);
     assert_eq!(session(&h).scenario().task, Scenario::builtin("circle").expect("built in").task);
     let said = h.state().app_state().view_state().message.clone();
     assert_eq!(said, Some((format!("opened {}", file.display()), false)), "of two only the newest counts");
-    tell(&mut h, Command::Undo);
+    tell(&mut h, Command::Session(SessionCommand::Undo));
     work_all(&mut h, &workers);
     assert_eq!(session(&h).b_aim(), 2.5, "undo brings back what was there");
     // What cannot be opened is said when it is known, and nothing has changed.
-    tell(&mut h, Command::OpenFile(folder.path("none.toml")));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(folder.path("none.toml"))));
     workers.work();
     h.run_steps(2);
     assert!(h.query_by_label_contains("none.toml").is_some());
@@ -415,7 +418,7 @@ fn a_file_is_opened_beside_the_window() {
     // Bad news goes with the next thing that is done.
     h.key_press(egui::Key::F);
     h.run_steps(2);
-    tell(&mut h, Command::OpenFile(file));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(file)));
     h.get_by_label("Cancel opening").click();
     h.run_steps(3);
     work_all(&mut h, &workers);
@@ -441,14 +444,14 @@ fn any_commands() -> impl Strategy<Value = Vec<Command>> {
         prop::sample::select(vec!["quintic", "fastest"]).prop_map(|law| Edit::set("task.law", law)),
     ];
     let command = prop_oneof![
-        8 => edit.prop_map(Command::Edit),
-        3 => Just(Command::Undo),
-        2 => Just(Command::Redo),
-        2 => Just(Command::TogglePlay),
-        2 => (0.0..0.8).prop_map(Command::Seek),
-        1 => (-30i64..30).prop_map(Command::Step),
-        1 => Just(Command::BackToPath),
-        1 => prop::sample::select(vec!["case-1", "case-2"]).prop_map(Command::Case),
+        8 => edit.prop_map(|it| Command::Session(SessionCommand::Edit(it))),
+        3 => Just(Command::Session(SessionCommand::Undo)),
+        2 => Just(Command::Session(SessionCommand::Redo)),
+        2 => Just(Command::Session(SessionCommand::TogglePlay)),
+        2 => (0.0..0.8).prop_map(|it| Command::Session(SessionCommand::Seek(it))),
+        1 => (-30i64..30).prop_map(|it| Command::Session(SessionCommand::Step(it))),
+        1 => Just(Command::Session(SessionCommand::BackToPath)),
+        1 => prop::sample::select(vec!["case-1", "case-2"]).prop_map(|it| Command::Session(SessionCommand::Case(it))),
     ];
     prop::collection::vec(command, 1..12)
 }
@@ -464,7 +467,7 @@ fn what_is_done_beside_equals_what_is_done_at_once() {
     let until_done = |app_state: &mut AppState| {
         for _ in 0..6000 {
             // Commands that wait are carried out with the next.
-            app_state.carry_out(Command::Preview(None));
+            app_state.carry_out(ViewChange::Preview(None));
             if !app_state.is_working() {
                 return;
             }
@@ -479,10 +482,10 @@ fn what_is_done_beside_equals_what_is_done_at_once() {
         for (command, wait) in commands.into_iter().zip(waits) {
             for app_state in [&mut at_once, &mut beside] {
                 app_state.carry_out(command.clone());
-                app_state.carry_out(Command::EndGesture);
+                app_state.carry_out(SessionCommand::EndGesture);
             }
             // What is opened takes the place of all; until then one works with what is there.
-            if wait || matches!(command, Command::Case(_)) {
+            if wait || matches!(command, Command::Session(SessionCommand::Case(_))) {
                 until_done(&mut beside);
                 at_once.pass(0.1);
                 beside.pass(0.1);

@@ -4,7 +4,7 @@ use egui::{Key, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, Preferences};
+use stillbase::app::{AppState, Command, Preferences, SessionCommand};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
@@ -164,7 +164,9 @@ fn history_is_a_list_to_jump_in() {
     let mut h = window([1440.0, 900.0], &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(3);
     for b in [2.3, 2.5, 2.6] {
-        for command in [Command::Edit(Edit::PoseB { b }), Command::EndGesture] {
+        for command in
+            [Command::Session(SessionCommand::Edit(Edit::PoseB { b })), Command::Session(SessionCommand::EndGesture)]
+        {
             h.state_mut().app_state_mut().carry_out(command);
         }
     }

@@ -3,7 +3,7 @@
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::Command;
+use stillbase::app::{SessionCommand, ViewChange};
 use stillbase::mechanics::planar::PerDrive;
 use stillbase::picture::scene::exaggeration::{Exaggeration, Shown};
 use stillbase::picture::scene::options::Handle;
@@ -310,10 +310,10 @@ fn a_part_out_of_view_offers_the_way_back() {
     assert!(!offered(&h));
     let before = camera(&h);
     for b in [3.4, 4.4, 5.4] {
-        h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b }));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::SlideB { b }));
         h.run_steps(120);
     }
-    h.state_mut().app_state_mut().carry_out(Command::EndGesture);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
     h.run_steps(3);
     let out = |h: &Window| {
         let ends = h.state().app_state().stage().outline(&session(h).frame().into()).collect::<Vec<_>>();
@@ -345,7 +345,7 @@ fn what_can_be_done_is_said_whole() {
     let mut h = sized([960.0, 600.0]);
     h.run_steps(3);
     for view in ViewKind::ALL {
-        h.state_mut().app_state_mut().carry_out(Command::View(view));
+        h.state_mut().app_state_mut().carry_out(ViewChange::Kind(view));
         h.run_steps(3);
         let font = egui::FontId::new(11.5, egui::FontFamily::Proportional);
         let words = h.ctx.fonts_mut(|f| f.layout_no_wrap(view.invitation().into(), font, egui::Color32::WHITE));

@@ -3,7 +3,7 @@
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{Command, PlotFile};
+use stillbase::app::{Command, PlotFile, SessionCommand, ViewChange};
 use stillbase::picture::charts::choice::Change;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
@@ -28,7 +28,7 @@ pub const TESTS: &[Test] = tests![
 fn after_case(case: &str, theme: Theme, height: f32) -> Window {
     let mut h = window_of(Scenario::builtin(case).expect("built in"), theme, height);
     h.run_steps(2);
-    h.state_mut().app_state_mut().carry_out(Command::Seek(1.0));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(1.0));
     h.run_steps(2);
     h
 }
@@ -113,7 +113,7 @@ fn hands_move_the_time_that_plots_show() {
     h.run_steps(2);
     assert_eq!(range(&h), None);
     // A cursor is a handle: the second one moves alone.
-    h.state_mut().app_state_mut().carry_out(Command::Mark(Some(0.2)));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Mark(Some(0.2)));
     h.run_steps(2);
     let before = session(&h).frame().time;
     let way = [0.2, 0.4].map(|share| at_share(&h, "Base force over time", share));
@@ -164,7 +164,7 @@ fn hands_move_the_values_that_a_plot_shows() {
     h.run_steps(2);
     assert_eq!(values(&h), Some([moved, end]));
     for place in [at, inside] {
-        h.state_mut().app_state_mut().carry_out(Command::Charts(Change::Values(name.into(), Some([-0.1, 0.1]))));
+        h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Values(name.into(), Some([-0.1, 0.1]))));
         h.run_steps(20);
         for _ in 0..2 {
             h.drag_at(place);
@@ -182,7 +182,7 @@ fn hands_move_the_values_that_a_plot_shows() {
 
 fn keys_zoom_mark_and_show_all() {
     let mut h = after_case("case-3", Theme::Dark, 800.0);
-    h.state_mut().app_state_mut().carry_out(Command::Seek(0.5));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.5));
     h.run_steps(2);
     h.key_press_modifiers(Modifiers::ALT, Key::Plus);
     h.run_steps(2);
@@ -253,7 +253,7 @@ fn a_signal_is_sought_and_plotted_by_keys_alone() {
     h.run_steps(2);
     assert_eq!(session(&h).frame().step, 0);
     // What nothing answers to is said; Esc leaves, and takes nothing else away.
-    h.state_mut().app_state_mut().carry_out(Command::Mark(Some(0.2)));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Mark(Some(0.2)));
     h.key_press(Key::A);
     h.run_steps(2);
     say(&mut h, "cheese");
@@ -273,7 +273,7 @@ fn a_signal_is_sought_and_plotted_by_keys_alone() {
 
 fn one_signal_stands_against_another() {
     let mut h = after_case("case-1", Theme::Dark, 1400.0);
-    h.state_mut().app_state_mut().carry_out(Command::Charts(Change::Plot("tip/y".into())));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Plot("tip/y".into())));
     h.run_steps(2);
     h.get_by_label("End effector, y: menu").focus();
     h.run_steps(2);
@@ -325,11 +325,11 @@ fn values_under_the_pointer_are_those_of_the_frame() {
 fn a_plot_is_written_to_files() {
     let folder = Folder::new("plots");
     let mut h = after_case("case-1", Theme::Dark, 800.0);
-    h.state_mut().app_state_mut().carry_out(Command::Charts(Change::Range(Some([0.2, 0.3]))));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Range(Some([0.2, 0.3]))));
     h.run_steps(2);
     let mut write = |file: PlotFile, name: &str| {
         let path = folder.path(name);
-        h.state_mut().app_state_mut().carry_out(Command::WritePlot(path.clone(), "Torque".into(), file));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::WritePlot(path.clone(), "Torque".into(), file));
         let message = h.state().app_state().view_state().message.clone().expect("it is said");
         (std::fs::read(&path).unwrap_or_default(), message)
     };
@@ -376,15 +376,15 @@ fn plots_look_as_they_should() {
     let mut h = window("case-1", Theme::Dark);
     h.run_steps(2);
     for command in [
-        Command::Seek(1.0),
-        Command::Seek(0.62),
-        Command::Mark(Some(0.3)),
-        Command::Charts(Change::Close("Base force".into())),
-        Command::Charts(Change::Show("Torque".into(), "torque/2".into(), false)),
-        Command::Charts(Change::Plot("tip/y".into())),
-        Command::Charts(Change::Against("plot 1".into(), Some("tip/x".into()))),
-        Command::Charts(Change::Statistics(true)),
-        Command::Charts(Change::Range(Some([0.1, 0.9]))),
+        Command::Session(SessionCommand::Seek(1.0)),
+        Command::Session(SessionCommand::Seek(0.62)),
+        Command::View(ViewChange::Mark(Some(0.3))),
+        Command::View(ViewChange::Charts(Change::Close("Base force".into()))),
+        Command::View(ViewChange::Charts(Change::Show("Torque".into(), "torque/2".into(), false))),
+        Command::View(ViewChange::Charts(Change::Plot("tip/y".into()))),
+        Command::View(ViewChange::Charts(Change::Against("plot 1".into(), Some("tip/x".into())))),
+        Command::View(ViewChange::Charts(Change::Statistics(true))),
+        Command::View(ViewChange::Charts(Change::Range(Some([0.1, 0.9])))),
     ] {
         h.state_mut().app_state_mut().carry_out(command);
     }

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, Command, Preferences};
+use stillbase::app::{AppState, Preferences, SessionCommand};
 use stillbase::mechanics::planar::unit;
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
@@ -240,7 +240,7 @@ fn first_minute() -> Window {
 fn the_moving_arm_is_caught_at_the_first_press() {
     for aside in [egui::vec2(35.0, -30.0), egui::vec2(-45.0, 3.0)] {
         let mut h = first_minute();
-        h.state_mut().app_state_mut().carry_out(Command::TogglePlay);
+        h.state_mut().app_state_mut().carry_out(SessionCommand::TogglePlay);
         h.run_steps(24);
         assert!(session(&h).is_moving());
         let camera = *h.state().app_state().view_state().camera();
@@ -357,7 +357,7 @@ fn a_hand_is_named_and_let_go() {
         assert!(session(&h).is_led(), "the hand comes back");
     }
     let gravity = Edit::set("gravity", stillbase::settings::change::value("0,-9.81"));
-    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(gravity));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(gravity));
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
@@ -371,7 +371,7 @@ fn a_hand_is_named_and_let_go() {
             stillbase::mechanics::machine::builtins().iter().map(|m| m.name().to_owned()).collect::<Vec<_>>()
         )
     });
-    let open = stillbase::app::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
+    let open = SessionCommand::Open(Box::new(Scenario { machine: other.clone(), ..case }));
     h.state_mut().app_state_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, Command};
+use stillbase::app::{AppState, SessionCommand, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -41,7 +41,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
         ("to".to_owned(), vec![0.0, 0.5].into()),
     ]);
     let before = session(&h).scenario().task.clone();
-    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::of("task", change)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::of("task", change)));
     h.run_steps(2);
     assert_eq!(session(&h).scenario().task, before, "nothing has changed");
     assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
@@ -66,7 +66,7 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     assert!(bad && words.contains("the path stops at"), "{words}");
     let (edit, _) =
         app_state.view_state().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
-    app_state.carry_out(stillbase::app::Command::Edit(edit));
+    app_state.carry_out(SessionCommand::Edit(edit));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }
@@ -145,10 +145,10 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     };
     assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().message);
     // What is refused meanwhile stands above it.
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
     h.run_steps(3);
     assert!(has_way_out(&h), "the same reason is said once");
-    h.state_mut().app_state_mut().carry_out(Command::Refuse("no such number".into()));
+    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into()));
     h.run_steps(3);
     assert!(has_way_out(&h) && h.query_by_label("no such number").is_some());
     h.snapshot("waits-refused-dark");

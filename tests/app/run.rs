@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::Command;
+use stillbase::app::{SessionCommand, ViewChange};
 use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::planning::common::common;
@@ -102,7 +102,7 @@ fn lamps_of_a_run_to_come() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     assert!(h.query_by_label("run: none yet, open").is_some());
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::set("link.5.com", -0.05)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("link.5.com", -0.05)));
     h.run_steps(3);
     assert!(h.query_by_label_contains("machine: off balance by ").is_some());
     assert!(
@@ -194,7 +194,7 @@ fn b_leaves_the_task_as_it_is() {
     h.key_press(Key::Num3);
     h.run_steps(70);
     let period = session(&h).run().planes().expect("planes").map().period();
-    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SlideB { b: 2.4 + period }));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::SlideB { b: 2.4 + period }));
     h.run_steps(2);
     assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
     let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
@@ -209,7 +209,7 @@ fn a_run_is_played_over_and_over() {
     let time = session(&h).frame().time;
     assert!(session(&h).is_playing() && time > 0.1 && time < 0.6, "after 1.4 s it is under way again: {time}");
     // A range of the plots is played alone.
-    h.state_mut().app_state_mut().carry_out(Command::Charts(charts::choice::Change::Range(Some([0.4, 0.6]))));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(charts::choice::Change::Range(Some([0.4, 0.6]))));
     let mut seen = [f64::INFINITY, 0.0];
     h.run_steps(30);
     for _ in 0..40 {

@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, LeftOff, Preferences};
+use stillbase::app::{AppState, Command, LeftOff, Preferences, SessionCommand, ViewChange, WindowCommand};
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::charts::choice::Change;
 use stillbase::picture::scene::palette::Theme;
@@ -35,7 +35,7 @@ fn tell(h: &mut Window, command: Command) {
 }
 
 fn heavier() -> Command {
-    Command::Edit(Edit::set("plant.payload.mass", 0.3))
+    Command::Session(SessionCommand::Edit(Edit::set("plant.payload.mass", 0.3)))
 }
 
 fn what_a_program_left_behind_is_found() {
@@ -90,7 +90,7 @@ fn a_session_that_was_left_behind_is_offered_and_opened() {
     let folder = Folder::new("left");
     let mut h = window("case-3", Theme::Dark);
     tell(&mut h, heavier());
-    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.52, y: 0.6 }));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 0.52, y: 0.6 })));
     h.run_steps(20);
     let kept = session(&h).to_scenario();
     let file = folder.file("session-0.toml", kept.to_toml());
@@ -127,25 +127,25 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     assert_eq!(state(&h), (true, "Case 3 · reactionless – Stillbase".into()));
     tell(&mut h, heavier());
     assert_eq!(state(&h), (false, "Case 3 · reactionless * – Stillbase".into()));
-    tell(&mut h, Command::Quit);
+    tell(&mut h, Command::Window(WindowCommand::Quit));
     assert!(h.query_by_label("One change of this session is in no file.").is_some());
     assert!(!h.state().app_state().wants_to_leave());
     h.get_by_label("Cancel").click();
     h.run_steps(3);
     assert!(h.query_by_label("Save before closing?").is_none() && !h.state().app_state().wants_to_leave());
     let file = folder.path("mine.toml");
-    tell(&mut h, Command::SaveFile(file.clone()));
+    tell(&mut h, Command::Session(SessionCommand::SaveFile(file.clone())));
     assert!(state(&h).0, "saved");
     assert_eq!(h.state().app_state().preferences([1280.0, 800.0]).recent, [file]);
-    tell(&mut h, Command::Undo);
-    tell(&mut h, Command::AskToLeave(true));
+    tell(&mut h, Command::Session(SessionCommand::Undo));
+    tell(&mut h, Command::Window(WindowCommand::AskToLeave(true)));
     h.get_by_label("Close without saving").click();
     h.run_steps(3);
     assert!(h.state().app_state().wants_to_leave());
     // With nothing to lose there is no question.
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    tell(&mut h, Command::Quit);
+    tell(&mut h, Command::Window(WindowCommand::Quit));
     assert!(h.state().app_state().wants_to_leave());
 }
 
@@ -153,7 +153,7 @@ fn changes_in_no_file_are_marked_and_asked_for() {
 fn a_question_has_keys_and_pointer_for_itself() {
     let mut h = window("case-3", Theme::Dark);
     tell(&mut h, heavier());
-    tell(&mut h, Command::Quit);
+    tell(&mut h, Command::Window(WindowCommand::Quit));
     let before = session(&h).to_scenario();
     for key in [Key::Num1, Key::Num2, Key::V, Key::L, Key::B, Key::T, Key::ArrowRight, Key::Home, Key::CloseBracket] {
         h.key_press(key);
@@ -202,14 +202,14 @@ fn files_are_remembered_by_the_whole_of_their_names() {
     let up: PathBuf = here.components().skip(1).map(|_| Path::new("..")).collect();
     let relative = up.join(file.strip_prefix("/").expect("whole"));
     assert!(relative.is_relative() && relative.exists());
-    tell(&mut h, Command::OpenFile(relative));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(relative)));
     let recent = |h: &Window| h.state().app_state().recent().to_vec();
     assert_eq!(recent(&h), [file.canonicalize().expect("it is there")]);
-    tell(&mut h, Command::OpenFile("case-1".into()));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile("case-1".into())));
     assert_eq!(recent(&h).len(), 1, "a built-in name is no file");
     std::fs::remove_file(&file).expect("removed");
     let gone = recent(&h)[0].clone();
-    tell(&mut h, Command::OpenFile(gone));
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(gone)));
     assert_eq!(recent(&h), [""; 0].map(PathBuf::from), "what is gone is forgotten");
     // What an older program remembered by half a name cannot be found any more.
     let liked = Preferences { recent: vec!["mine.toml".into(), file.clone()], ..Preferences::default() };
@@ -227,9 +227,9 @@ fn own_plots_and_the_instant_are_recovered() {
         Change::Show("Torque".into(), "torque/2".into(), false),
         Change::Statistics(true),
     ] {
-        tell(&mut h, Command::Charts(change));
+        tell(&mut h, Command::View(ViewChange::Charts(change)));
     }
-    tell(&mut h, Command::Seek(0.412));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.412)));
     let left_off = h.state().app_state().left_off();
     assert_eq!(left_off.time, session(&h).frame().time);
     let kept = session(&h).to_scenario();

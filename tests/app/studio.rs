@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::Command;
+use stillbase::app::SessionCommand;
 use stillbase::mechanics::machine::{Inertia, Link, Machine};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
@@ -76,7 +76,7 @@ fn bars_say_which_link_brings_what() {
         assert!(h.query_by_label_contains(words).is_some(), "{words}");
     }
     // Link 5 alone is made to weigh on drive 2.
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::at(&["link", "5", "com"], 0.05)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::at(&["link", "5", "com"], 0.05)));
     h.run_steps(3);
     let inertia = Inertia::of(machine(&h));
     let left = inertia.first_moment(1).re;
@@ -243,7 +243,7 @@ fn equations_follow_the_machine_and_are_remembered() {
     h.get_by_label("Equation 8").click();
     h.run_steps(6);
     assert!(said(&h, "(8) No coupling").ends_with("holds"));
-    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::at(&["link", "5", "com"], 0.05)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::at(&["link", "5", "com"], 0.05)));
     h.run_steps(3);
     let left = Inertia::of(machine(&h)).coupling(0, 1).re;
     assert!(said(&h, "(8) No coupling").contains("off by 0.0214"), "{left}");
@@ -311,7 +311,7 @@ fn single_numbers_are_held() {
     assert_eq!(holds.keys().collect::<Vec<_>>(), ["link.2.mass", "link.9.com"]);
     h.state_mut()
         .app_state_mut()
-        .carry_out(Command::Edit(Edit::at(&["link", "1", "com"], before.links()[0].com - 0.01)));
+        .carry_out(SessionCommand::Edit(Edit::at(&["link", "1", "com"], before.links()[0].com - 0.01)));
     h.run_steps(3);
     let after = machine(&h);
     assert!(is_balanced(after));

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::Command;
+use stillbase::app::{Command, SessionCommand};
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -62,9 +62,9 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 fn bookmarks_are_found_again() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    tell(&mut h, Command::Seek(0.4));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.4)));
     press(&mut h, PLAIN, Key::K);
-    tell(&mut h, Command::Seek(0.7));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.7)));
     press(&mut h, PLAIN, Key::K);
     let app_state = h.state().app_state();
     assert!(app_state.changes().1, "it is in no file yet");
@@ -76,21 +76,21 @@ fn bookmarks_are_found_again() {
     }
     press(&mut h, SHIFT, Key::N);
     assert!((time(&h) - 0.4).abs() < 1e-9, "there is none before");
-    tell(&mut h, Command::Bookmark(5.0, "beyond the end".into()));
+    tell(&mut h, Command::Session(SessionCommand::Bookmark(5.0, "beyond the end".into())));
     press(&mut h, PLAIN, Key::N);
     press(&mut h, PLAIN, Key::N);
     assert!((time(&h) - 0.7).abs() < 1e-9 && mark(&h, "beyond").is_none(), "{}", time(&h));
-    tell(&mut h, Command::Undo);
+    tell(&mut h, Command::Session(SessionCommand::Undo));
     h.get_by_label("bookmark 2 at 0.700 s").click();
     h.run_steps(3);
     assert!((time(&h) - 0.7).abs() < 1e-9, "a click goes there");
     let saved = session(&h).to_scenario();
     let read = Scenario::parse(&saved.to_toml(), "saved", None).expect("what was saved is read");
     assert_eq!(read.bookmarks.len(), 2);
-    tell(&mut h, Command::Open(Box::new(read)));
+    tell(&mut h, Command::Session(SessionCommand::Open(Box::new(read))));
     assert!(h.query_by_label("bookmark 1 at 0.400 s").is_some(), "opened again");
     press(&mut h, PLAIN, Key::Space);
-    tell(&mut h, Command::Seek(0.7));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.7)));
     press(&mut h, PLAIN, Key::K);
     assert!(h.query_by_label("bookmark 2 at 0.700 s").is_none(), "away");
     press(&mut h, Modifiers::COMMAND, Key::Z);
@@ -101,7 +101,7 @@ fn bookmarks_are_found_again() {
 fn a_bookmark_is_named_and_taken_away() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    tell(&mut h, Command::Seek(0.4));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.4)));
     press(&mut h, SHIFT, Key::K);
     assert!(h.get_by_label("Name of the bookmark").accesskit_node().is_focused());
     press(&mut h, Modifiers::COMMAND, Key::A);
@@ -117,12 +117,12 @@ fn a_bookmark_is_named_and_taken_away() {
     h.run_steps(3);
     assert!(session(&h).bookmarks().is_empty() && h.query_by_label("Name of the bookmark").is_none());
     // One of several that are one mark; what is undone meanwhile is not asked for any more.
-    tell(&mut h, Command::Bookmark(0.405, "near".into()));
-    tell(&mut h, Command::Bookmark(0.4, "first".into()));
-    tell(&mut h, Command::NameBookmark(Some(0.405)));
+    tell(&mut h, Command::Session(SessionCommand::Bookmark(0.405, "near".into())));
+    tell(&mut h, Command::Session(SessionCommand::Bookmark(0.4, "first".into())));
+    tell(&mut h, Command::Session(SessionCommand::NameBookmark(0.405)));
     assert_eq!(h.get_by_label("Name of the bookmark").value().as_deref(), Some("near"));
     for _ in 0..2 {
-        tell(&mut h, Command::Undo);
+        tell(&mut h, Command::Session(SessionCommand::Undo));
     }
     assert!(h.state().app_state().view_state().naming.is_none() && session(&h).bookmarks().is_empty());
     // Esc leaves it as it is.
@@ -156,9 +156,9 @@ fn events_stand_on_the_time_line() {
     assert!(mark(&h, "Other pose: peak").is_none());
     // A change in the run.
     press(&mut h, PLAIN, Key::Home);
-    tell(&mut h, Command::Seek(0.6));
-    tell(&mut h, Command::Edit(Edit::Push { x: 5.0, y: 0.0 }));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.6)));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::Push { x: 5.0, y: 0.0 })));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert!(mark(&h, "push with 5.00, 0.00 N at 0.600 s").is_some());
     assert!(h.query_by_label_contains("end of motion").is_none(), "that lies ahead again");
     // In the same words as a recording.
@@ -170,7 +170,7 @@ fn marks_that_are_close_are_one() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     for (i, at) in [0.300, 0.305, 0.310, 0.6].into_iter().enumerate() {
-        tell(&mut h, Command::Bookmark(at, format!("place {i}")));
+        tell(&mut h, Command::Session(SessionCommand::Bookmark(at, format!("place {i}"))));
     }
     let both = mark(&h, "place 0 at 0.300 s\nplace 1 at 0.305 s\nplace 2 at 0.310 s").expect("one").rect();
     let other = mark(&h, "place 3 at 0.600 s").expect("a mark").rect();
@@ -186,9 +186,9 @@ fn a_branch_is_shown_compared_and_removed() {
     let mut h = window("case-3", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(70);
-    tell(&mut h, Command::Seek(0.5));
-    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.5)));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.62 })));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     assert!(h.query_by_label("what came after 0.500 s is kept as a branch (H)").is_some());
     h.run_steps(40);
     press(&mut h, PLAIN, Key::Space);
@@ -226,8 +226,8 @@ fn a_branch_is_shown_compared_and_removed() {
 fn another_path_keeps_what_a_hand_did() {
     let mut h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1000.0);
     h.run_steps(2);
-    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
-    tell(&mut h, Command::EndGesture);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.62 })));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
     h.run_steps(20);
     press(&mut h, PLAIN, Key::Space);
     let led = session(&h).frames().to_vec();
@@ -251,9 +251,9 @@ fn the_branch_that_goes_is_named() {
     for i in 0..=MAX_BRANCHES {
         assert!(!said(&h).contains("is gone"), "{}", said(&h));
         let app_state = h.state_mut().app_state_mut();
-        app_state.carry_out(Command::Seek(0.1));
-        app_state.carry_out(Command::Edit(Edit::DragTarget { x: 0.48 + 0.001 * i as f64, y: 0.6 }));
-        app_state.carry_out(Command::EndGesture);
+        app_state.carry_out(SessionCommand::Seek(0.1));
+        app_state.carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.48 + 0.001 * i as f64, y: 0.6 }));
+        app_state.carry_out(SessionCommand::EndGesture);
         h.run_steps(2);
     }
     assert_eq!(session(&h).branch_count(), MAX_BRANCHES);
@@ -265,10 +265,13 @@ fn a_refused_bookmark_is_no_change() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     for i in 0..MAX_BOOKMARKS {
-        tell(&mut h, Command::Bookmark(0.009 * i as f64, format!("mark {i}")));
+        tell(&mut h, Command::Session(SessionCommand::Bookmark(0.009 * i as f64, format!("mark {i}"))));
     }
     let before = h.state().app_state().changes();
-    for command in [Command::Bookmark(0.9995, "more".into()), Command::NameBookmark(Some(0.9995))] {
+    for command in [
+        Command::Session(SessionCommand::Bookmark(0.9995, "more".into())),
+        Command::Session(SessionCommand::NameBookmark(0.9995)),
+    ] {
         tell(&mut h, command);
         let app_state = h.state().app_state();
         assert_eq!((app_state.changes(), app_state.view_state().naming), (before, None));
@@ -282,12 +285,12 @@ fn what_is_kept_outlives_a_crash() {
     let folder = Folder::new("kept");
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    tell(&mut h, Command::Seek(0.6));
-    tell(&mut h, Command::Seek(0.4));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.6)));
+    tell(&mut h, Command::Session(SessionCommand::Seek(0.4)));
     let before = h.state().app_state().changes().0;
     press(&mut h, PLAIN, Key::K);
     assert!(h.state().app_state().changes().0 > before, "the journal is told");
-    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.62 })));
     press(&mut h, PLAIN, Key::Space);
     let journal = Journal::begin(&folder.0).expect("the folder can be written");
     journal::write(journal.file(), &session(&h).to_scenario().to_toml()).expect("written");
@@ -296,7 +299,7 @@ fn what_is_kept_outlives_a_crash() {
     let file = journal.file().to_owned();
     drop(journal);
     let mut next = window("case-1", Theme::Dark);
-    tell(&mut next, Command::OpenFile(file));
+    tell(&mut next, Command::Session(SessionCommand::OpenFile(file)));
     assert_eq!((session(&next).bookmarks(), session(&next).forks()), (&kept[..], forks));
     assert!(mark(&next, "bookmark 1 at 0.400 s").is_some() && mark(&next, "a branch parts: as planned").is_some());
 }
@@ -304,7 +307,7 @@ fn what_is_kept_outlives_a_crash() {
 /// Where a step takes longer than it lasts, repaints do fewer of them, and the clock says how fast time passes.
 fn slow_time_is_said_and_stays_smooth() {
     let mut h = window("case-3", Theme::Dark);
-    tell(&mut h, Command::Edit(Edit::set("task.time", 10.0)));
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 10.0))));
     let bar = |h: &Window| h.get_by_role_and_label(Role::Slider, "Time").rect();
     h.get_by_label("Play").click();
     h.run_steps(40);

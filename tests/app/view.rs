@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::Command;
+use stillbase::app::SessionCommand;
 use stillbase::picture::paint::words::placed;
 use stillbase::picture::paint::{Spot, draw_drafts};
 use stillbase::picture::scene::framing::Room;
@@ -35,7 +35,7 @@ fn words_of_a_scene_stand_clear_of_each_other() {
         let mut h = window_of(scenario, Theme::Dark, 800.0);
         if i == 4 {
             let pull = Edit::at(&["limits", "a2"], vec![0.0, 0.93]);
-            h.state_mut().app_state_mut().carry_out(Command::Edit(pull));
+            h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(pull));
             assert!(session(&h).run().waiting().is_some());
         }
         h.run_steps(2);

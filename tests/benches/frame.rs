@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use egui::epaint::Primitive;
-use stillbase::app::{AppState, Command};
+use stillbase::app::{AppState, SessionCommand, ViewChange};
 use stillbase::picture::gui::{GuiRenderer, Sheet};
 use stillbase::picture::paint::{draw_drafts, install_fonts};
 use stillbase::picture::render::offscreen::{Gpu, surface};
@@ -56,13 +56,13 @@ fn main() {
 fn measure(gpu: &Gpu, case: &str, view: ViewKind, doing: Doing, size: [u32; 2], scale: f32) {
     let scenario = Scenario::builtin(case).expect("built in");
     let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
-    app_state.carry_out(Command::View(view));
+    app_state.carry_out(ViewChange::Kind(view));
     let mut screen = Screen::new(gpu, size, scale);
     for i in 0..10 {
         screen.frame(&mut app_state, i);
     }
     if doing == Doing::Plays {
-        app_state.carry_out(Command::TogglePlay);
+        app_state.carry_out(SessionCommand::TogglePlay);
     }
     let mut all: [Vec<Duration>; 5] = Default::default();
     let begun = processor_time();

@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use stillbase::app::jobs::Threads;
-use stillbase::app::{Activity, AppState, Command};
+use stillbase::app::{Activity, AppState, SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit};
@@ -37,12 +37,12 @@ fn drag(i: u32) -> Edit {
 fn events_of_a_drag() {
     for before in [10, 100_000] {
         let mut app_state = AppState::new(led(before, 1), Theme::Dark).expect("it starts");
-        app_state.carry_out(Command::Seek(1e9));
-        app_state.carry_out(Command::Edit(drag(before)));
+        app_state.carry_out(SessionCommand::Seek(1e9));
+        app_state.carry_out(SessionCommand::Edit(drag(before)));
         let event = |i: u32| {
             app_state.pass(0.001);
             let begun = Instant::now();
-            app_state.carry_out(Command::Edit(drag(before + i)));
+            app_state.carry_out(SessionCommand::Edit(drag(before + i)));
             begun.elapsed()
         };
         let all: Vec<Duration> = (1..2000).map(event).collect();
@@ -58,7 +58,7 @@ fn main() {
     scenario.tolerance.samples = Some(1_000_000);
     let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(Threads::Background);
     // A hand at an instant further back would cut off what comes after.
-    app_state.carry_out(Command::Seek(1e9));
+    app_state.carry_out(SessionCommand::Seek(1e9));
     let ctx = egui::Context::default();
     let mut repaint = Repaint { ctx: ctx.clone(), now: 0.0 };
     for _ in 0..60 {
@@ -70,14 +70,14 @@ fn main() {
     let file = std::env::temp_dir().join(format!("stillbase-interface-{}.rrd", std::process::id()));
     let begun = Instant::now();
     let mut seen: Vec<(Activity, usize)> = Vec::new();
-    app_state.carry_out(Command::Study(true));
+    app_state.carry_out(ViewChange::Switch(Switch::Study, true));
     if cfg!(feature = "record") {
-        app_state.carry_out(Command::Record(file.clone()));
+        app_state.carry_out(SessionCommand::Record(file.clone()));
     }
-    app_state.carry_out(Command::EndGesture);
-    app_state.carry_out(Command::Seek(30.0));
-    app_state.carry_out(Command::Edit(Edit::set("plant.payload.mass", 0.1)));
-    app_state.carry_out(Command::EndGesture);
+    app_state.carry_out(SessionCommand::EndGesture);
+    app_state.carry_out(SessionCommand::Seek(30.0));
+    app_state.carry_out(SessionCommand::Edit(Edit::set("plant.payload.mass", 0.1)));
+    app_state.carry_out(SessionCommand::EndGesture);
     let mut all = Vec::new();
     let mut said = None;
     while app_state.is_working() || all.len() < 300 {
@@ -95,7 +95,7 @@ fn main() {
         }
         // A drag goes on for as long as it likes: the study waits for its end.
         if all.len() == 200 {
-            app_state.carry_out(Command::EndGesture);
+            app_state.carry_out(SessionCommand::EndGesture);
         }
         assert!(begun.elapsed() < Duration::from_secs(120), "it does not end: {seen:?}");
     }
@@ -119,7 +119,7 @@ impl Repaint {
         let begun = Instant::now();
         app_state.pass(PACE.as_secs_f64());
         if let Some(edit) = hand {
-            app_state.carry_out(Command::Edit(edit));
+            app_state.carry_out(SessionCommand::Edit(edit));
         }
         let input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1440.0, 900.0))),

@@ -374,7 +374,7 @@ impl Unseen {
 #[cfg(feature = "ui")]
 #[test]
 fn what_any_window_shows_is_what_one_made_afresh_shows() {
-    use stillbase::app::{AppState, Command};
+    use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange};
     use stillbase::picture::charts::choice::Change;
     use stillbase::picture::scene::palette::Theme;
     use stillbase::picture::scene::views::ViewKind;
@@ -388,22 +388,23 @@ fn what_any_window_shows_is_what_one_made_afresh_shows() {
         Change::Against("Torque".into(), Some("tip/x".into())),
     ];
     let others = [
-        Command::Undo,
-        Command::Redo,
-        Command::Seek(0.0),
-        Command::Seek(0.3),
-        Command::TogglePlay,
-        Command::Step(-20),
-        Command::Branch(0),
-        Command::Compare(true),
-        Command::Compare(false),
-        Command::Learn(true),
-        Command::Learn(false),
-        Command::Bookmark(0.1, "here".into()),
-        Command::BackToPath,
+        Command::Session(SessionCommand::Undo),
+        Command::Session(SessionCommand::Redo),
+        Command::Session(SessionCommand::Seek(0.0)),
+        Command::Session(SessionCommand::Seek(0.3)),
+        Command::Session(SessionCommand::TogglePlay),
+        Command::Session(SessionCommand::Step(-20)),
+        Command::Session(SessionCommand::Branch(0)),
+        Command::View(ViewChange::Switch(Switch::Compare, true)),
+        Command::View(ViewChange::Switch(Switch::Compare, false)),
+        Command::View(ViewChange::Switch(Switch::Equations, true)),
+        Command::View(ViewChange::Switch(Switch::Equations, false)),
+        Command::Session(SessionCommand::Bookmark(0.1, "here".into())),
+        Command::Session(SessionCommand::BackToPath),
     ];
-    let views = ViewKind::ALL.map(Command::View);
-    let others: Vec<Command> = others.into_iter().chain(views).chain(charts.map(Command::Charts)).collect();
+    let views = ViewKind::ALL.map(|view| Command::View(ViewChange::Kind(view)));
+    let others: Vec<Command> =
+        others.into_iter().chain(views).chain(charts.map(|it| Command::View(ViewChange::Charts(it)))).collect();
     let (mut done, mut drawn) = (0, 0);
     for _ in 0..3 {
         let start = Scenario { step: 0.005, ..any_start().new_tree(&mut runner).expect("drawn").current() };
@@ -412,16 +413,16 @@ fn what_any_window_shows_is_what_one_made_afresh_shows() {
         window.repaint(&mut app, 0.0);
         for i in 0..60 {
             let command = match i % 2 {
-                0 => Command::Edit(any_edit().new_tree(&mut runner).expect("drawn").current()),
+                0 => Command::Session(SessionCommand::Edit(any_edit().new_tree(&mut runner).expect("drawn").current())),
                 _ => prop::sample::select(others.clone()).new_tree(&mut runner).expect("drawn").current(),
             };
             let before = app.session().to_scenario();
             app.carry_out(command.clone());
-            app.carry_out(Command::EndGesture);
-            if matches!(command, Command::Edit(Edit::Push { .. })) {
+            app.carry_out(SessionCommand::EndGesture);
+            if matches!(command, Command::Session(SessionCommand::Edit(Edit::Push { .. }))) {
                 // How far the base will move is not foreseen again at each push: too many come one after the other.
-                app.carry_out(Command::Undo);
-                app.carry_out(Command::Redo);
+                app.carry_out(SessionCommand::Undo);
+                app.carry_out(SessionCommand::Redo);
             }
             done += usize::from(before != app.session().to_scenario());
             // Not before each is everything asked for.
@@ -467,7 +468,7 @@ fn what_any_window_shows_is_what_one_made_afresh_shows() {
 #[cfg(all(feature = "ui", feature = "record"))]
 #[test]
 fn no_store_of_answers_outlives_its_window() {
-    use stillbase::app::{AppState, Command};
+    use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange};
     use stillbase::picture::scene::palette::Theme;
     use stillbase::picture::scene::views::ViewKind;
     use stillbase::query::Queries;
@@ -487,17 +488,17 @@ fn no_store_of_answers_outlives_its_window() {
         let mut app = AppState::new(scenario.clone(), Theme::Dark).expect("it starts");
         let mut window = Unseen { ctx: egui::Context::default(), now: 0.0 };
         let acts = [
-            Command::TogglePlay,
-            Command::Compare(true),
-            Command::Study(true),
-            Command::Learn(true),
-            Command::Learn(false),
-            Command::Edit(Edit::set("plant.payload.mass", 0.1)),
-            Command::EndGesture,
-            Command::View(ViewKind::Tower),
-            Command::View(ViewKind::Joints),
-            Command::Open(Box::new(scenario.clone())),
-            Command::Undo,
+            Command::Session(SessionCommand::TogglePlay),
+            Command::View(ViewChange::Switch(Switch::Compare, true)),
+            Command::View(ViewChange::Switch(Switch::Study, true)),
+            Command::View(ViewChange::Switch(Switch::Equations, true)),
+            Command::View(ViewChange::Switch(Switch::Equations, false)),
+            Command::Session(SessionCommand::Edit(Edit::set("plant.payload.mass", 0.1))),
+            Command::Session(SessionCommand::EndGesture),
+            Command::View(ViewChange::Kind(ViewKind::Tower)),
+            Command::View(ViewChange::Kind(ViewKind::Joints)),
+            Command::Session(SessionCommand::Open(Box::new(scenario.clone()))),
+            Command::Session(SessionCommand::Undo),
         ];
         for act in acts {
             app.carry_out(act);
@@ -525,7 +526,7 @@ fn no_store_of_answers_outlives_its_window() {
 #[cfg(feature = "ui")]
 #[test]
 fn views_of_any_sitting_are_those_made_afresh() {
-    use stillbase::app::{AppState, Command};
+    use stillbase::app::{AppState, Command, SessionCommand};
     use stillbase::picture::scene::options::ViewOptions;
     use stillbase::picture::scene::palette::Theme;
     use stillbase::picture::scene::views::{ViewKind, Views};
@@ -537,10 +538,10 @@ fn views_of_any_sitting_are_those_made_afresh() {
         let Ok(mut app) = AppState::new(start, Theme::Dark) else { continue };
         for i in 0..40 {
             let command = match i % 8 {
-                5 => Command::EndGesture,
-                6 => Command::Undo,
-                7 => Command::Seek(0.0),
-                _ => Command::Edit(any_edit().new_tree(&mut runner).expect("drawn").current()),
+                5 => Command::Session(SessionCommand::EndGesture),
+                6 => Command::Session(SessionCommand::Undo),
+                7 => Command::Session(SessionCommand::Seek(0.0)),
+                _ => Command::Session(SessionCommand::Edit(any_edit().new_tree(&mut runner).expect("drawn").current())),
             };
             let before = app.session().scenario().clone();
             app.carry_out(command.clone());

@@ -8,7 +8,7 @@ use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::name;
-use crate::app::{Command, ViewState, set_b};
+use crate::app::{Command, SessionCommand, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
@@ -77,6 +77,9 @@ pub fn bars(
     if response.response.clicked()
         && let Some(b) = response.inner
     {
-        commands.extend([Command::Edit(set_b(session, view_state, b)), Command::EndGesture]);
+        commands.extend([
+            Command::Session(SessionCommand::Edit(set_b(session, view_state, b))),
+            Command::Session(SessionCommand::EndGesture),
+        ]);
     }
 }

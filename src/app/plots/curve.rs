@@ -6,8 +6,8 @@ use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
 use super::prepared::extent;
 use super::shown::Shown;
 use super::{hover, menu, values};
-use crate::app::Command;
 use crate::app::theme::colour;
+use crate::app::{Command, SessionCommand, ViewChange};
 use crate::picture::charts::choice::{Change, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::figure::{Axes, Item, Look, body};
@@ -71,7 +71,7 @@ pub fn show(
         }
         zoom(ui, shown, &response, time_at, commands);
         if plot.values.is_some() && response.double_clicked_by(PointerButton::Primary) {
-            commands.push(Command::Charts(Change::Values(plot.name.clone(), None)));
+            commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), None)).into());
         }
     }
     menu::show(ui, shown, plot, &response, commands);
@@ -156,16 +156,16 @@ fn drag(
         && (response.dragged_by(PointerButton::Primary) || response.drag_stopped_by(PointerButton::Primary))
     {
         match hold {
-            Hold::Now => commands.push(Command::Seek(time_at(pos))),
-            Hold::Mark => commands.push(Command::Mark(Some(time_at(pos)))),
+            Hold::Now => commands.push(SessionCommand::Seek(time_at(pos)).into()),
+            Hold::Mark => commands.push(ViewChange::Mark(Some(time_at(pos))).into()),
             Hold::Plot if response.drag_delta().x != 0.0 => {
                 let [left, _, right, _] = axes.sides;
                 let by = -f64::from(response.drag_delta().x / (right - left)) * (axes.x[1] - axes.x[0]);
-                commands.push(Command::Charts(Change::Range(Some(extent.panned(axes.x, by)))));
+                commands.push(ViewChange::Charts(Change::Range(Some(extent.panned(axes.x, by)))).into());
             }
             Hold::Range(from) if response.drag_stopped() => {
                 let range = extent.between(from, time_at(pos));
-                commands.extend(range.map(|range| Command::Charts(Change::Range(Some(range)))));
+                commands.extend(range.map(|range| Command::View(ViewChange::Charts(Change::Range(Some(range))))));
             }
             Hold::Plot | Hold::Range(_) => {}
         }
@@ -174,11 +174,11 @@ fn drag(
         ui.data_mut(|data| data.remove::<(Id, Hold)>(hold_id()));
     }
     if response.double_clicked_by(PointerButton::Primary) && !shift {
-        commands.push(Command::Charts(Change::Range(extent.all(view_state.charts.range))));
+        commands.push(ViewChange::Charts(Change::Range(extent.all(view_state.charts.range))).into());
     } else if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary)) {
         commands.push(match shift {
-            true => Command::Mark(Some(time_at(pos))),
-            false => Command::Seek(time_at(pos)),
+            true => Command::View(ViewChange::Mark(Some(time_at(pos)))),
+            false => Command::Session(SessionCommand::Seek(time_at(pos))),
         });
     }
 }
@@ -205,6 +205,6 @@ fn zoom(
         next = Some(extent.panned(range, by));
     }
     if next != chosen {
-        commands.push(Command::Charts(Change::Range(next)));
+        commands.push(ViewChange::Charts(Change::Range(next)).into());
     }
 }

@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
 
-use crate::app::Command;
 use crate::app::theme::{bold, colour, plain};
+use crate::app::{Command, ViewChange};
 use crate::picture::charts::choice::{Change, Curve, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::figure::{Look, pen};
@@ -98,7 +98,7 @@ fn switch(
     let button = button.on_hover_cursor(CursorIcon::PointingHand);
     if button.on_hover_text(format!("{}{unit}{differs}\nClick: {verb}", signal.label)).clicked() {
         let change = Change::Show(plot.name.clone(), signal.path.clone(), !curve.on);
-        commands.push(Command::Charts(change));
+        commands.push(ViewChange::Charts(change).into());
     }
 }
 

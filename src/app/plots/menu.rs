@@ -8,7 +8,7 @@ use super::search;
 use super::shown::Shown;
 use super::written::columns;
 use crate::app::theme::{bold, colour};
-use crate::app::{Command, FileDialog, PlotFile, Purpose};
+use crate::app::{Command, FileDialog, PlotFile, Purpose, ViewChange};
 use crate::picture::charts::choice::{Change, Plot};
 use crate::query::grown;
 use crate::study::samples::Samples;
@@ -44,7 +44,7 @@ fn entries(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, commands: &mut Vec<C
     for file in PlotFile::ALL {
         if ui.button(format!("Save as {}…", file.words())).clicked() {
             let purpose = Purpose::Plot(plot.name.clone(), file);
-            commands.push(Command::Dialog(Some(FileDialog::suggest(shown.session, purpose))));
+            commands.push(ViewChange::Dialog(Some(FileDialog::suggest(shown.session, purpose))).into());
             ui.close();
         }
     }
@@ -55,7 +55,7 @@ fn entries(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, commands: &mut Vec<C
     }
     for curve in plot.curves.iter().filter(|curve| curve.added && plot.curves.len() > 1) {
         if ui.button(format!("Take {} out", curve.signal.symbol)).clicked() {
-            commands.push(Command::Charts(Change::Remove(plot.name.clone(), curve.signal.path.clone())));
+            commands.push(ViewChange::Charts(Change::Remove(plot.name.clone(), curve.signal.path.clone())).into());
             ui.close();
         }
     }
@@ -64,25 +64,25 @@ fn entries(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, commands: &mut Vec<C
         ui.close();
     }
     if plot.against.is_some() && ui.button("Against time").clicked() {
-        commands.push(Command::Charts(Change::Against(plot.name.clone(), None)));
+        commands.push(ViewChange::Charts(Change::Against(plot.name.clone(), None)).into());
         ui.close();
     }
     ui.separator();
     let mut statistics = chosen.statistics;
     if ui.checkbox(&mut statistics, "Statistics of the time shown").changed() {
-        commands.push(Command::Charts(Change::Statistics(statistics)));
+        commands.push(ViewChange::Charts(Change::Statistics(statistics)).into());
         ui.close();
     }
     if ui.add_enabled(chosen.range.is_some(), Button::new("Show all time   Alt 0")).clicked() {
-        commands.push(Command::Charts(Change::Range(extent.all(chosen.range))));
+        commands.push(ViewChange::Charts(Change::Range(extent.all(chosen.range))).into());
         ui.close();
     }
     if ui.add_enabled(plot.values.is_some(), Button::new("Show all values")).clicked() {
-        commands.push(Command::Charts(Change::Values(plot.name.clone(), None)));
+        commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), None)).into());
         ui.close();
     }
     if ui.button("Put this plot away").clicked() {
-        commands.push(Command::Charts(Change::Close(plot.name.clone())));
+        commands.push(ViewChange::Charts(Change::Close(plot.name.clone())).into());
         ui.close();
     }
 }

@@ -6,9 +6,9 @@ use egui::{
 
 use super::prepared::extent;
 use super::shown::Shown;
-use crate::app::Command;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::name;
+use crate::app::{Command, ViewChange};
 use crate::picture::charts::choice::{Change, Plot};
 use crate::picture::charts::search::search;
 use crate::picture::numbers::at_step;
@@ -88,21 +88,21 @@ fn state(ui: &mut Ui, shown: &Shown<'_>, commands: &mut Vec<Command>) {
         let text = format!("Δt {} s ×", at_step(session.frame().time - mark, step));
         let tip = format!("The second cursor stands at {} s; click: away (Esc)", at_step(mark, step));
         if button(ui, text, p.amber, "Put the second cursor away", &tip) {
-            commands.push(Command::Mark(None));
+            commands.push(ViewChange::Mark(None).into());
         }
     }
     if let Some([from, to]) = view_state.charts.range {
         let fine = 0.01 * (to - from);
         let text = format!("{}–{} s ×", at_step(from, fine), at_step(to, fine));
         if button(ui, text, p.dim, "Show all time", "The time that plots show; click: all of it (Alt 0)") {
-            commands.push(Command::Charts(Change::Range(extent(session).all(view_state.charts.range))));
+            commands.push(ViewChange::Charts(Change::Range(extent(session).all(view_state.charts.range))).into());
         }
     }
     let closed = view_state.charts.closed();
     if closed > 0
         && button(ui, format!("+{closed}"), p.dim, "Bring plots back", "Brings back the plots that were put away")
     {
-        commands.push(Command::Charts(Change::Reopen));
+        commands.push(ViewChange::Charts(Change::Reopen).into());
     }
 }
 
@@ -170,7 +170,7 @@ fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<
             Sought::Curve(plot) => Change::Add(plot, path),
             Sought::Across(plot) => Change::Against(plot, Some(path)),
         };
-        commands.push(Command::Charts(change));
+        commands.push(ViewChange::Charts(change).into());
         typed = Typed::default();
         ui.memory_mut(|memory| memory.surrender_focus(id()));
     } else {

@@ -2,7 +2,7 @@
 
 use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 
-use crate::app::Command;
+use crate::app::{Command, ViewChange};
 use crate::picture::charts::choice::{Change, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::figure::{Axes, LEFT};
@@ -25,7 +25,7 @@ pub fn hands(
     let numbers = Rect::from_min_max(rect.min, pos2(rect.left() + LEFT - 2.0, rect.bottom()));
     let id = response.id.with("values");
     let mut ask = |values: Option<[f64; 2]>| {
-        commands.push(Command::Charts(Change::Values(plot.name.clone(), values)));
+        commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), values)).into());
     };
     let [low, high] = drawn.y;
     let [_, top, _, bottom] = axes.sides;

@@ -9,7 +9,7 @@ use super::bands::bars;
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::name;
-use crate::app::{Command, ViewState, set_b};
+use crate::app::{Command, SessionCommand, ViewChange, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::charts::figure::BELOW;
 use crate::picture::numbers::signed;
@@ -147,13 +147,13 @@ fn lines(
     name(&response.response, "Which b: q1 against b of each point");
     let preview = response.inner.filter(|_| response.response.hovered());
     if preview != view_state.preview {
-        commands.push(Command::Preview(preview));
+        commands.push(ViewChange::Preview(preview).into());
     }
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(b)) = (held, response.inner) {
-        commands.push(Command::Edit(set_b(session, view_state, b)));
+        commands.push(SessionCommand::Edit(set_b(session, view_state, b)).into());
     }
     if response.response.drag_stopped() || response.response.clicked() {
-        commands.push(Command::EndGesture);
+        commands.push(SessionCommand::EndGesture.into());
     }
 }

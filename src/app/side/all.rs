@@ -3,11 +3,11 @@
 use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
 use super::fold::{fold, undo};
-use crate::app::Command;
 use crate::app::facts::{Facts, Setting};
 use crate::app::place::fold_id;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note, once};
+use crate::app::{Command, WindowCommand};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::{Value, part_of};
@@ -130,7 +130,9 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
                         Ok(value) => once(commands, Edit::set(path, value)),
                         Err(why) => {
                             let text = shortened(text.trim(), 24);
-                            commands.push(Command::Refuse(format!("{path}: \"{text}\" changes nothing: {why}")));
+                            commands.push(
+                                WindowCommand::Refuse(format!("{path}: \"{text}\" changes nothing: {why}")).into(),
+                            );
                         }
                     }
                 }

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::fold::{NumberField, Section, Slide, fold, segments, switch};
 use crate::app::widgets::Row;
-use crate::app::{Command, ViewState, place};
+use crate::app::{Command, Switch, ViewChange, ViewState, place};
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::{Edit, Session};
@@ -37,7 +37,7 @@ fn section(
             let mut seen = view_state.exaggerates_base;
             let tip = "Show the motion of the base enlarged, so that it can be seen (X)";
             if ui.checkbox(&mut seen, "exaggerate its motion").on_hover_text(tip).changed() {
-                commands.push(Command::Exaggerate(seen));
+                commands.push(ViewChange::Switch(Switch::Exaggeration, seen).into());
             }
         }
         wheel(ui, base, p, commands);

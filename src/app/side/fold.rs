@@ -2,10 +2,10 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::app::Command;
 use crate::app::place;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, name, once, send};
+use crate::app::{Command, SessionCommand};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::Value;
@@ -169,7 +169,9 @@ pub fn choose<T: Clone + PartialEq>(
                 for (value, words) in choices {
                     if ui.selectable_label(value == now, words).clicked() && value != now {
                         taken = Some(value.clone());
-                        commands.extend(to(value).into_iter().flat_map(|e| [Command::Edit(e), Command::EndGesture]));
+                        commands.extend(to(value).into_iter().flat_map(|e| {
+                            [Command::Session(SessionCommand::Edit(e)), Command::Session(SessionCommand::EndGesture)]
+                        }));
                     }
                 }
             });

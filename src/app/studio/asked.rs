@@ -2,10 +2,9 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use crate::app::Command;
-use crate::app::command::DesignCommand;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, heading, name, once, send, tip_of, unit};
+use crate::app::{Command, SessionCommand};
 use crate::mechanics::balance::Preset;
 use crate::mechanics::counterweights::MATERIALS;
 use crate::mechanics::machine::{Drive, ranges};
@@ -101,7 +100,8 @@ fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &Brief, commands: &
         let tip = "Take the counterweights, and the ratios that may be chosen, with which Σ |D| is least: a drive whose D \
                    is 0 moves without a moment on the base";
         if ui.button(RichText::new("least momentum").font(plain(12.0))).on_hover_text(tip).clicked() {
-            commands.extend([Command::Design(DesignCommand::TakeStillest), Command::EndGesture]);
+            commands
+                .extend([Command::Session(SessionCommand::TakeStillest), Command::Session(SessionCommand::EndGesture)]);
         }
     }
 }

@@ -4,11 +4,10 @@ use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
 use super::facts::{Facts, Point};
-use crate::app::command::DesignCommand;
 use crate::app::plots::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{heading, name, note};
-use crate::app::{Command, ViewState};
+use crate::app::{Command, SessionCommand, ViewChange, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded, mix};
@@ -98,12 +97,12 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         nearest.filter(|(_, at)| off(at) < NEAR).map(|(i, _)| i)
     });
     if near != view_state.ghost {
-        commands.push(Command::Design(DesignCommand::Ghost(near)));
+        commands.push(ViewChange::Ghost(near).into());
     }
     if let Some(i) = near {
         ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
         if response.response.clicked() {
-            commands.extend([Command::Design(DesignCommand::Take(i)), Command::EndGesture]);
+            commands.extend([Command::Session(SessionCommand::Take(i)), Command::Session(SessionCommand::EndGesture)]);
         }
     }
     name(&response.response, &words(&all));
@@ -198,7 +197,7 @@ fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     name(&list.response, "what the colours of the front tell");
     ui.label(RichText::new("colours tell").font(plain(11.0)).color(colour(view_state.palette().dim)));
     if by != view_state.front_by {
-        commands.push(Command::Design(DesignCommand::FrontBy(by)));
+        commands.push(ViewChange::FrontBy(by).into());
     }
 }
 
@@ -238,7 +237,8 @@ fn say(
         ] {
             let button = ui.button(RichText::new(words).font(plain(12.0))).on_hover_text(tip);
             if button.clicked() {
-                commands.extend([Command::Design(DesignCommand::Take(i)), Command::EndGesture]);
+                commands
+                    .extend([Command::Session(SessionCommand::Take(i)), Command::Session(SessionCommand::EndGesture)]);
             }
         }
     });

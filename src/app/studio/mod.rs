@@ -18,7 +18,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::side::BAR;
 use super::theme::{colour, plain};
-use super::{Command, FileDialog, Purpose, ViewState};
+use super::{Command, FileDialog, Purpose, ViewChange, ViewState};
 use crate::session::Session;
 
 pub use facts::{Facts, of_front};
@@ -76,7 +76,7 @@ fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
             let link = ui.link(RichText::new("take it along →").font(plain(12.5)).color(colour(p.amber)));
             if link.on_hover_text("Write the machine for another program or a workshop: the ending says what").clicked()
             {
-                commands.push(Command::Dialog(Some(FileDialog::suggest(session, Purpose::Machine))));
+                commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Machine))).into());
             }
         });
     });

@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui, vec2};
 
 use crate::app::theme::{bold, colour};
 use crate::app::widgets::name;
-use crate::app::{Command, ViewState};
+use crate::app::{Command, Switch, ViewChange, ViewState};
 
 const TABS: [(bool, &str, &str); 2] = [
     (false, "Balance", "What is out of balance, and counterweights to take"),
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
             let tab = ui.add(button).on_hover_text(tip);
             name(&tab, &format!("{words} tab"));
             if tab.clicked() && !chosen {
-                commands.push(Command::Learn(learns));
+                commands.push(ViewChange::Switch(Switch::Equations, learns).into());
             }
         }
     });

@@ -5,7 +5,7 @@ use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 use super::{STEPS, Shows, Step, Tour};
 use crate::app::theme::{bold, card, colour, plain};
 use crate::app::widgets::name;
-use crate::app::{Command, ViewState};
+use crate::app::{Command, ViewChange, ViewState, WindowCommand};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::ViewKind;
 use crate::session::Session;
@@ -61,7 +61,7 @@ impl Tour {
                 && ui.button(words).clicked()
             {
                 if !view_state.view.shows_machine() {
-                    commands.push(Command::View(ViewKind::Flat));
+                    commands.push(ViewChange::Kind(ViewKind::Flat).into());
                 }
                 commands.extend(what);
             }
@@ -78,17 +78,17 @@ impl Tour {
                 let on = ui.add(on);
                 name(&on, &format!("{words}: tour"));
                 if on.clicked() {
-                    commands.push(Command::TurnTour(true));
+                    commands.push(WindowCommand::TurnTour(true).into());
                 }
                 let back = ui.add_enabled(self.step > 0, Button::new("Back"));
                 name(&back, "Back: tour");
                 if back.clicked() {
-                    commands.push(Command::TurnTour(false));
+                    commands.push(WindowCommand::TurnTour(false).into());
                 }
                 let leave = ui.add(Button::new(RichText::new("Leave").color(colour(p.dim))).frame(false));
                 name(&leave, "Leave the tour");
                 if leave.on_hover_text("Esc").clicked() {
-                    commands.push(Command::Tour(false));
+                    commands.push(WindowCommand::Tour(false).into());
                 }
             });
         });

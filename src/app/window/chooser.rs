@@ -8,7 +8,7 @@ use rfd::{AsyncFileDialog, FileHandle};
 use winit::window::Window;
 
 use crate::app::jobs::Threads;
-use crate::app::{AppState, Command, FileDialog, PlotFile, Purpose};
+use crate::app::{AppState, FileDialog, PlotFile, Purpose, SessionCommand, ViewChange};
 use crate::exchange::form;
 use crate::query::{Job, Poll};
 
@@ -38,7 +38,7 @@ impl Chooser {
     pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
         let Some((dialog, job)) = self.asked.take() else {
             if let Some(dialog) = app_state.view_state().dialog.clone().filter(|_| !self.none) {
-                app_state.carry_out(Command::Dialog(None));
+                app_state.carry_out(ViewChange::Dialog(None));
                 let last = app_state.recent().first().and_then(|file| file.parent());
                 let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
                 let (answer, wake) = (asked(&dialog, folder, window), ctx.clone());
@@ -56,7 +56,7 @@ impl Chooser {
             Poll::Done(Answer::Chosen(file)) => {
                 self.folder = file.parent().map(Path::to_path_buf);
                 // It has asked, too, whether a file that is there is to be replaced.
-                app_state.carry_out(Command::Replace(file.clone()));
+                app_state.carry_out(SessionCommand::Replace(file.clone()));
                 // What is opened has the name that it has.
                 let file = match dialog.purpose {
                     Purpose::Open => file,
@@ -67,7 +67,7 @@ impl Chooser {
             }
             Poll::Done(Answer::NoDialog) => {
                 self.none = true;
-                app_state.carry_out(Command::Dialog(Some(dialog)));
+                app_state.carry_out(ViewChange::Dialog(Some(dialog)));
                 ctx.request_repaint();
             }
             Poll::Done(Answer::Closed) | Poll::Broken => {}

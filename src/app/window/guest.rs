@@ -11,7 +11,7 @@ use super::chooser::Chooser;
 use super::error::WindowError;
 use super::keeper::Keeper;
 use super::times::Times;
-use crate::app::{AppState, Command, Preferences};
+use crate::app::{AppState, Preferences, SessionCommand, WindowCommand};
 
 /// The application as a window shows it, and as tests drive it without one.
 pub struct App {
@@ -120,7 +120,7 @@ impl App {
         }
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         if let Some(path) = dropped {
-            self.app_state.carry_out(Command::OpenFile(path));
+            self.app_state.carry_out(SessionCommand::OpenFile(path));
         }
         self.app_state.ui(ui);
         let now = Instant::now();
@@ -138,7 +138,7 @@ impl App {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         } else if ui.input(|i| i.viewport().close_requested()) && !self.app_state.may_leave() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.app_state.carry_out(Command::AskToLeave(true));
+            self.app_state.carry_out(WindowCommand::AskToLeave(true));
         }
         let title = self.app_state.title();
         if self.title != title {

@@ -12,7 +12,6 @@ use crate::mechanics::machine::{Drive, Machine, ranges};
 use crate::settings::change;
 use crate::settings::key::{BOUNDS, Holds, Key};
 use crate::settings::range::{Check, Range, clipped};
-use crate::simulation::plant::is_default;
 
 /// The `[design]` of a scenario: no motion depends on it, but what is changed in the design view does.
 ///
@@ -206,6 +205,11 @@ fn body_of(key: &str) -> Option<(&str, &str)> {
         _ => false,
     };
     known.then_some((kind, name))
+}
+
+/// Whether a part is as it is where a file leaves it out.
+pub(super) fn is_default<T: Default + PartialEq>(part: &T) -> bool {
+    *part == T::default()
 }
 
 fn is_minimum_norm(preset: &Preset) -> bool {

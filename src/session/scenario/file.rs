@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
-use super::design::Brief;
+use super::design::{Brief, is_default};
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
 use super::task::Task;
@@ -53,10 +53,6 @@ struct File {
     bookmarks: Vec<Bookmark>,
     #[serde(default, rename = "branch", skip_serializing_if = "Vec::is_empty")]
     branches: Vec<StatedBranch>,
-}
-
-fn is_default<T: Default + PartialEq>(part: &T) -> bool {
-    *part == T::default()
 }
 
 const fn usual_step() -> f64 {

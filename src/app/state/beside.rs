@@ -1,0 +1,206 @@
+//! What works beside the window for what is on display: outlines, the run ahead, studies, runs side by side.
+
+use std::sync::Arc;
+
+use super::AppState;
+use crate::app::background::{Background, Opening, ended};
+use crate::app::change::Source;
+use crate::app::{Activity, ComparisonCommand};
+use crate::picture::scene::stage::Outlining;
+use crate::query::{Asked, Same, Shared, State, Ticket};
+use crate::session::Ahead;
+use crate::session::scenario::Scenario;
+use crate::study::comparison::{Compared, Comparison, Ways};
+use crate::study::tolerance::{Studied, Study, Studying};
+
+/// The most steps that are run ahead to see how far the base will move.
+const MOST_AHEAD: f64 = 20_000.0;
+
+impl AppState {
+    /// Takes what jobs have done; whether one has ended.
+    pub(super) fn collect(&mut self) -> bool {
+        let [changed, opened] = [self.collect_change(), self.collect_opening()];
+        let mut any = changed || opened;
+        if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
+            && let Some(ways) = ways.known()
+        {
+            comparison.follow(ways);
+        }
+        while let Some(first) = self.background.kept.pop_front() {
+            let mut first = Some(first);
+            let Some((news, run)) = ended(&mut first) else {
+                self.background.kept.extend(first);
+                self.background.kept.rotate_right(1);
+                break;
+            };
+            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
+            let said = match (run, &mut self.comparison) {
+                (Ok(run), Some(comparison)) => {
+                    comparison.keep_run(run);
+                    Ok(news.map(String::from))
+                }
+                (run, _) => run.map(|_| None),
+            };
+            self.tell(said);
+            any = true;
+        }
+        any |= self.collect_written();
+        self.adjust();
+        any
+    }
+
+    /// Has what the machine reaches outlined, where that is yet to be found and takes long; whether it has come.
+    pub(super) fn outline(&mut self) -> bool {
+        let Some(space) = self.views.unoutlined() else {
+            // What was being outlined is wanted no more.
+            if self.queries().progress::<Outlining>().is_some() {
+                self.queries().forget::<Outlining>();
+            }
+            return false;
+        };
+        if self.queries().ask_beside::<Outlining>(&Shared(space)).known().is_none() {
+            return false;
+        }
+        self.refresh_views();
+        true
+    }
+
+    /// Runs ahead to where the planned motion ends, to know how far the base will move.
+    pub(super) fn foresee(&mut self) {
+        let run = self.session.run();
+        if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MOST_AHEAD {
+            let _ = self.queries().ask_beside::<Ahead>(&Same(Arc::new(run.clone())));
+        } else {
+            self.queries().forget::<Ahead>();
+        }
+        self.adjust();
+    }
+
+    /// Studies the run on display; only the newest counts.
+    pub(super) fn refresh_study(&mut self) {
+        if !self.view_state.study {
+            self.queries().forget::<Studying>();
+        } else if self.view_state.grabbed.is_none() {
+            let _ = self.queries().ask_beside::<Studying>(&Studied(Arc::new(self.session.run().clone())));
+        }
+    }
+
+    /// What there is to show of that study, or why there is none.
+    pub(super) fn study(&self) -> Option<Arc<Result<Study, String>>> {
+        let Asked { last, state } = self.queries().newest::<Studying>()?;
+        match state {
+            State::Broken => Some(Arc::new(Err(fault("the study")))),
+            // It is not begun again until something changes.
+            State::Stopped if last.is_none() => {
+                Some(Arc::new(Err("cancelled: to change something draws machines again".into())))
+            }
+            _ => last,
+        }
+    }
+
+    /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
+    pub(super) fn refresh_comparison(&mut self) {
+        if !self.view_state.compare {
+            self.comparison = None;
+            self.queries().forget::<Ways>();
+            self.background.kept.clear();
+            return;
+        }
+        let scenario = self.session.scenario();
+        let first = self.comparison.is_none();
+        let comparison = self.comparison.get_or_insert_with(|| Comparison::empty(scenario));
+        let ours = comparison
+            .entries()
+            .iter()
+            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
+        let task = comparison.task();
+        let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
+        let wanted = stale || self.queries().progress::<Ways>().is_some();
+        if wanted && (first || self.view_state.grabbed.is_none()) {
+            let _ = self.queries().ask_beside::<Ways>(&self.session.run().shared_scenario());
+        }
+    }
+
+    pub(super) fn change_comparison(&mut self, on: ComparisonCommand) {
+        let Some(comparison) = &mut self.comparison else { return };
+        match on {
+            ComparisonCommand::Sort(column) => comparison.sort_by(column),
+            ComparisonCommand::Show(entry, shown) => comparison.show(entry, shown),
+            ComparisonCommand::Remove(entry) => comparison.remove(entry),
+            ComparisonCommand::Add(scenario) => self.keep(*scenario, None),
+        }
+    }
+
+    /// Keeps the session's own run in the table of runs, while that is on display.
+    pub(super) fn keep_run(&mut self) {
+        if self.comparison.is_some() {
+            let mut scenario = self.session.to_scenario();
+            scenario.duration = Some(self.session.length());
+            self.keep(scenario, Some("added this run to the comparison"));
+        }
+    }
+
+    /// Opens the scenario of a row of the table of runs.
+    pub(super) fn open_run(&mut self, entry: usize) {
+        let entry = self.comparison.as_ref().and_then(|comparison| comparison.entries().get(entry));
+        if let Some(Ok(run)) = entry.map(|entry| &entry.outcome) {
+            let source = Source::Scenario(Box::new(run.scenario.clone()));
+            self.open(source, Opening::default());
+        }
+    }
+
+    /// Runs a branch to be kept beside the ways of the task.
+    pub(super) fn compare_branch(&mut self, branch: usize) {
+        let Some(mut scenario) = self.session.branch(branch) else { return };
+        if let Some(fork) = self.session.forks().get(branch) {
+            scenario.name = format!("branch at {:.3} s", fork.from);
+        }
+        (self.view_state.compare, self.view_state.study) = (true, false);
+        self.refresh_comparison();
+        self.keep(scenario, Some("added the branch to the runs side by side"));
+    }
+
+    /// Runs a scenario to be kept beside the ways of the task.
+    pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
+        let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
+        let job = self.background.start(work);
+        self.background.kept.push_back((news, job));
+        self.collect();
+    }
+
+    /// Ends the program's work: a session that is being saved is saved whole, all else is stopped.
+    pub(in crate::app) fn close(&mut self) {
+        if let Some((_, job)) = self.background.saving.take() {
+            // Nobody is left to tell.
+            let _ = job.wait();
+        }
+        self.background = Background::default();
+    }
+
+    /// Stops what is under way; what was shown stays.
+    pub(super) fn cancel(&mut self, activity: Activity) -> String {
+        match activity {
+            Activity::Change => {
+                self.background.change = None;
+                self.background.later.clear();
+                self.session.end_gesture();
+            }
+            Activity::Opening => self.background.opening = None,
+            Activity::Recording => self.background.recording = None,
+            Activity::Study => self.queries().stop::<Studying>(),
+            Activity::Ways => self.queries().stop::<Ways>(),
+            Activity::Kept => self.background.kept.clear(),
+            Activity::Saving => {}
+        }
+        activity.cancelled().into()
+    }
+}
+/// What is said of work that broke off.
+pub(super) fn fault(what: &str) -> String {
+    format!("{what} broke off: this is a fault of the program")
+}
+
+/// Whether two scenarios differ in their tasks at most.
+fn same_but_task(a: &Scenario, b: &Scenario) -> bool {
+    a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
+}

@@ -1,0 +1,162 @@
+//! Commands, carried out.
+
+use super::AppState;
+use crate::app::background::Opening;
+use crate::app::change::{Change, Source};
+use crate::app::marks;
+use crate::app::tour::Tour;
+use crate::app::{Command, SessionCommand, Switch, ViewChange, WindowCommand};
+use crate::picture::scene::views::ViewKind;
+
+impl AppState {
+    /// Carries out one command, after those before it. A command that cannot be carried out changes nothing; a message
+    /// says why. What is of the session waits while that is being changed.
+    pub fn carry_out(&mut self, command: impl Into<Command>) {
+        self.collect();
+        self.catch_up();
+        match command.into() {
+            Command::Session(command) if self.background.is_changing() => {
+                let edits = matches!(command, SessionCommand::Edit(_));
+                self.view_state.dragged |= self.view_state.grabbed.is_some() && edits;
+                self.background.after(command);
+            }
+            command => self.do_now(command),
+        }
+    }
+
+    pub(super) fn do_now(&mut self, command: Command) {
+        let done = self.attempt(command);
+        self.tell(done);
+        self.refresh();
+    }
+
+    /// Does what had to wait for a change of the session, up to the next that takes long.
+    pub(super) fn catch_up(&mut self) {
+        while self.background.change.is_none() {
+            let Some(command) = self.background.later.pop_front() else { return };
+            self.do_now(command.into());
+        }
+    }
+
+    fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
+        match command {
+            Command::Session(command) => self.do_to_session(command),
+            Command::View(change) => {
+                let designs =
+                    matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
+                self.view_state.apply(change);
+                // What is designed stands still.
+                if designs {
+                    self.session.pause();
+                }
+                Ok(None)
+            }
+            Command::Window(command) => self.do_to_window(command),
+        }
+    }
+
+    fn do_to_session(&mut self, command: SessionCommand) -> Result<Option<String>, String> {
+        match command {
+            SessionCommand::Edit(edit) => {
+                let edit = self.designed(edit)?;
+                self.view_state.refused = None;
+                self.change(Change::Edit(edit));
+                self.view_state.dragged |= self.view_state.grabbed.is_some() && self.view_state.refused.is_none();
+            }
+            SessionCommand::EndGesture => {
+                self.session.end_gesture();
+                self.designed_from = None;
+                let said = self.parted.take();
+                self.view_state.left_branch |= said.is_some();
+                return Ok(said);
+            }
+            SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
+            SessionCommand::TogglePlay => self.session.play(),
+            SessionCommand::Seek(time) => self.change(Change::Seek(time)),
+            SessionCommand::Bookmark(time, name) => {
+                let done = self.session.bookmark(time, &name)?;
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
+            SessionCommand::NameBookmark(time) => self.name_bookmark(time)?,
+            SessionCommand::ToMark(on) => {
+                if let Some(time) = marks::beside(self.queries(), &self.session, on) {
+                    self.change(Change::Seek(time));
+                }
+            }
+            SessionCommand::Branch(branch) => self.change(Change::Branch(branch)),
+            SessionCommand::CompareBranch(branch) => self.compare_branch(branch),
+            SessionCommand::DropBranch(branch) => {
+                let done = self.session.drop_branch(branch);
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
+            SessionCommand::Step(steps) => self.session.step_by(steps),
+            SessionCommand::Open(scenario) => {
+                self.open(Source::Scenario(scenario), Opening { plays: true, ..Opening::default() });
+            }
+            SessionCommand::Case(name) => self.open_case(name),
+            SessionCommand::OpenFile(path) => self.open_file(path),
+            SessionCommand::Recover(what) => self.recover(what),
+            SessionCommand::SaveFile(path) => self.save(&path)?,
+            SessionCommand::Record(path) => self.record(&path)?,
+            SessionCommand::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
+            SessionCommand::TakeElsewhere(path) => self.take_elsewhere(&path)?,
+            SessionCommand::Replace(file) => self.saving.replaces = Some(file),
+            SessionCommand::Undo => self.change(Change::Undo),
+            SessionCommand::TakeBack(since) if self.session.undo_count() > since => self.change(Change::Undo),
+            SessionCommand::TakeBack(_) => {}
+            SessionCommand::GiveUp if self.session.is_in_gesture() => self.change(Change::Undo),
+            SessionCommand::GiveUp => {}
+            SessionCommand::Redo => self.change(Change::Redo),
+            SessionCommand::GoTo(changes) => self.change(Change::GoTo(changes)),
+            SessionCommand::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
+            SessionCommand::BackToPath => {}
+            SessionCommand::Take(i) => self.take_of_front(i),
+            SessionCommand::TakeStillest => self.take_stillest()?,
+            SessionCommand::KeepRun => self.keep_run(),
+            SessionCommand::OpenRun(entry) => self.open_run(entry),
+        }
+        Ok(None)
+    }
+
+    fn do_to_window(&mut self, command: WindowCommand) -> Result<Option<String>, String> {
+        match command {
+            WindowCommand::Comparison(on) => self.change_comparison(on),
+            WindowCommand::LookFor => {
+                self.view_state.plots.shown = true;
+                self.looks = true;
+            }
+            WindowCommand::Refuse(why) => return Err(why),
+            WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
+            WindowCommand::AskToLeave(asks) => self.saving.asks = asks,
+            WindowCommand::Quit if !self.may_leave() => self.saving.asks = true,
+            WindowCommand::Quit | WindowCommand::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
+            WindowCommand::SkipHints => {
+                self.hints &= self.intro.is_none();
+                self.intro = None;
+            }
+            WindowCommand::Tour(begins) => {
+                // One guide at a time; what was not done of the hints may come again.
+                self.intro = self.intro.take().filter(|_| !begins);
+                self.view_state.help &= !begins;
+                self.view_state.tour = begins.then(|| Tour::begin(&self.session));
+            }
+            WindowCommand::TurnTour(forward) => {
+                let tour = self.view_state.tour.take();
+                self.view_state.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Asks for the name of a bookmark; where there is none it is put there.
+    pub(super) fn name_bookmark(&mut self, time: f64) -> Result<(), String> {
+        if self.session.bookmark_at(time).is_none() {
+            let name = self.session.free_name();
+            self.saving.changes += u64::from(self.session.bookmark(time, &name)?.is_some());
+        }
+        self.view_state.naming = Some(time);
+        Ok(())
+    }
+}

@@ -1,0 +1,83 @@
+//! Changes of the session, made beside the window, and what follows from them.
+
+use super::AppState;
+use crate::app::RefusedEdit;
+use crate::app::background::ended;
+use crate::app::change::Change;
+use crate::session::scenario::MAX_BRANCHES;
+use crate::session::{Edit, Refusal};
+
+impl AppState {
+    /// Changes a copy of the session, which shares its frames, and shows that once it is made: most are by the next
+    /// repaint, and what was shown stays until then.
+    pub(super) fn change(&mut self, change: Change) {
+        let mut next = self.session.clone();
+        let job = self.background.start_short({
+            let change = change.clone();
+            move |ticket| {
+                let done = change.make(&mut next, &mut |done| ticket.goes_on(done));
+                (next, done)
+            }
+        });
+        self.background.change = Some(((change, 0), job));
+        self.collect_change();
+    }
+
+    pub(super) fn collect_change(&mut self) -> bool {
+        let Some(((change, _), made)) = ended(&mut self.background.change) else { return false };
+        match made {
+            Some((next, done)) => {
+                if done.is_ok() {
+                    let old = std::mem::replace(&mut self.session, next);
+                    self.parts(&change, (old.partings().0, old.frame().time, old.is_led()));
+                    self.background.let_go(old, &self.session);
+                }
+                self.changed(&change, done);
+            }
+            None => self.tell(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
+        }
+        true
+    }
+
+    /// Remembers that a change has left a branch, where so many had been left before, at the instant then shown, s, and
+    /// of a run that had been led by hand or not.
+    pub(super) fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
+        let (now, gone) = self.session.partings();
+        if !matches!(change, Change::Edit(_)) || now == partings {
+            return;
+        }
+        let kept = match led && !self.session.is_led() {
+            true => "what you led by hand is kept as a branch".into(),
+            false => format!("what came after {shown:.3} s is kept as a branch"),
+        };
+        self.parted = Some(match gone {
+            Some(gone) => format!("{kept} (H); the oldest of {MAX_BRANCHES} is gone: {gone}"),
+            None => format!("{kept} (H)"),
+        });
+    }
+
+    /// After a change of the session, or its refusal.
+    pub(super) fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
+        if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
+            self.view_state.refused = Some(RefusedEdit::of(edit, refusal));
+        }
+        if done.is_ok() {
+            self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
+            match change {
+                // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
+                Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
+                Change::Edit(edit) if edit.is_aside() => self.view_state.refused = None,
+                Change::Edit(_) => {
+                    self.view_state.refused = None;
+                    self.foresee();
+                }
+                Change::Undo | Change::Redo | Change::GoTo(_) | Change::Branch(_) | Change::BackToPath => {
+                    self.foresee()
+                }
+                Change::Seek(_) => {}
+            }
+        }
+        self.tell(done.map_err(|refusal| refusal.to_string()));
+        self.refresh();
+    }
+}

@@ -1,0 +1,121 @@
+//! Sessions and files, opened in place of the present session.
+
+use std::path::PathBuf;
+
+use super::AppState;
+use crate::app::background::{File, Opening, ended};
+use crate::app::change::{NotOpened, Opened, Source};
+use crate::app::{Framing, LeftOff, Recovery};
+use crate::mechanics::machine::Machine;
+use crate::session::Session;
+use crate::session::scenario::Scenario;
+
+impl AppState {
+    /// Opens a session in place of the present one; only the newest counts.
+    pub(super) fn open(&mut self, source: Source, opening: Opening) {
+        self.background.opening = None;
+        let job = self.background.start(move |ticket| source.open(&mut |done| ticket.goes_on(done)));
+        self.background.opening = Some((opening, job));
+        self.collect_opening();
+    }
+
+    pub(super) fn collect_opening(&mut self) -> bool {
+        // What is done to the present session comes first.
+        if self.background.is_changing() {
+            return false;
+        }
+        let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
+        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
+        match opened.unwrap_or_else(|| Err(broken())) {
+            Ok(Opened { session, said, left_off }) => {
+                let news = said.or_else(|| opening.news.clone());
+                self.take_over(session, Opening { news, ..opening });
+                if let Some(LeftOff { plots, .. }) = left_off {
+                    self.view_state.charts = plots;
+                }
+            }
+            Err(_) if opening.instead.is_some() => {
+                if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
+                    let opening = Opening { news: Some(said), instead: None, ..opening };
+                    self.open(Source::Scenario(Box::new(scenario)), opening);
+                }
+            }
+            Err(NotOpened { why, refused }) => {
+                if let Some(File::Own(file)) = &opening.file {
+                    self.saving.misses(file);
+                }
+                self.view_state.refused = refused;
+                self.tell(Err(why));
+            }
+        }
+        self.refresh();
+        true
+    }
+
+    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
+        self.saving.opened();
+        match file {
+            Some(File::Own(file)) => self.saving.uses(&file),
+            // It is in no file of the person's own yet.
+            Some(File::LeftBehind(file)) => {
+                self.saving.changes += 1;
+                self.saving.recovered = Some(file);
+            }
+            None => {}
+        }
+        let old = self.session.clone();
+        self.session.take_over(next);
+        self.view_state.framing.iter_mut().for_each(Framing::renew);
+        self.background.let_go(old, &self.session);
+        self.foresee();
+        if plays {
+            self.session.play();
+        }
+        if closes {
+            self.view_state.dialog = None;
+        }
+        self.tell(Ok(news));
+    }
+
+    /// Opens one of the paper's cases. A machine that was chosen in the window stays, and the message says so.
+    pub(super) fn open_case(&mut self, name: &str) {
+        let Some(case) = Scenario::builtin(name) else { return };
+        let present = &self.session.scenario().machine;
+        let other = (present.name() != case.machine.name()).then(|| present.clone());
+        let own = case.machine.name();
+        let news = |machine: &Machine| {
+            format!("{}, with {}; the paper's machine is {own}, top left", case.title, machine.name())
+        };
+        let instead = |machine: &Machine| {
+            let said = format!(
+                "{}, with the paper's machine, as {} cannot do it; Ctrl Z goes back",
+                case.title,
+                machine.name()
+            );
+            Box::new((case.clone(), said))
+        };
+        let (news, instead) = (other.as_ref().map(news), other.as_ref().map(instead));
+        let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
+        let opening = Opening { plays: true, news, instead, ..Opening::default() };
+        self.open(Source::Scenario(Box::new(scenario)), opening);
+    }
+
+    /// Opens a file.
+    pub(super) fn open_file(&mut self, path: PathBuf) {
+        let news = Some(format!("opened {}", path.display()));
+        let file = Some(File::Own(path.clone()));
+        self.open(Source::File(path), Opening { closes: true, news, file, ..Opening::default() });
+    }
+
+    pub(super) fn recover(&mut self, what: Recovery) {
+        let Some((file, _)) = self.saving.found.take() else { return };
+        match what {
+            Recovery::Open => {
+                let (from, news) = (Some(File::LeftBehind(file.clone())), Some("here is where you were".into()));
+                self.open(Source::Journal(file), Opening { news, file: from, ..Opening::default() });
+            }
+            Recovery::Forget => self.saving.recovered = Some(file),
+            Recovery::Later => {}
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! One pass of the user interface.
+
+use super::AppState;
+use crate::app::facts::Facts;
+use crate::app::marks::Marks;
+use crate::app::{
+    Command, Intro, Layout, SessionCommand, ViewChange, ViewState, WindowCommand, compare, finder, keys, order, place,
+    plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
+};
+use crate::picture::scene::views::ViewKind;
+
+/// How soon progress is shown again, s.
+const SHOWN_AGAIN: f32 = 0.1;
+
+impl AppState {
+    /// One pass of the user interface; commands are carried out at its end.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        self.dress(ui.ctx());
+        // Panels lie on the cleared window and fill nothing; what fades out at their edges needs to know its colour.
+        let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
+        let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);
+        ui.scope_builder(egui::UiBuilder::new().ui_stack_info(info), |ui| self.panels(ui));
+    }
+
+    fn panels(&mut self, ui: &mut egui::Ui) {
+        if self.collect() | self.outline() {
+            ui.ctx().request_repaint();
+        }
+        self.catch_up();
+        self.background.count();
+        if let Some(tour) = &mut self.view_state.tour {
+            tour.follow(&self.session);
+        }
+        let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        let beside = beside.and_then(Intro::beside_it).or(self.comparison.as_ref());
+        let queries = self.queries().clone();
+        let marks = Marks::of(&queries, &self.session, beside);
+        if !marks.is_whole {
+            ui.ctx().request_repaint();
+        }
+        let mut commands = Vec::new();
+        // A question has the keys for itself.
+        if !self.saving.has_question() {
+            keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        }
+        let presents = self.view_state.layout == Layout::Present;
+        let facts = Facts::of(&queries, &self.session);
+        if !presents {
+            let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.behind()));
+            top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
+            let under_way = self.background.under_way();
+            status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
+            rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
+        }
+        if let Some(comparison) = &self.comparison {
+            compare::show(ui, comparison, &self.view_state, &mut commands);
+        }
+        if self.view_state.study {
+            study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
+        }
+        let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        let designs = self.view_state.view == ViewKind::Design && !presents;
+        let mut chosen = Vec::new();
+        if designs {
+            let ViewState { learns, front_by, .. } = &self.view_state;
+            let found = match learns {
+                true => studio::Facts::learned(&queries, &self.session),
+                false => studio::Facts::weighed(&queries, &self.session, *front_by),
+            };
+            studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
+            chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
+        }
+        if contrast.is_none() && self.view_state.side.shown && !designs {
+            if let Some(thing) = self.view_state.revealed.take() {
+                place::open(ui.ctx(), thing, &self.session);
+            }
+            if let Some(path) = self.view_state.looked_up.take() {
+                side::look_up(ui.ctx(), &path);
+            }
+            self.view_state.side.width = side::show(ui, &self.session, &facts, &self.view_state, &mut commands);
+        }
+        self.view_state.lit = place::lit(ui.ctx());
+        self.view_state.lit_links = place::lit_links(ui.ctx());
+        if self.view_state.plots.shown && !designs {
+            let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
+            if std::mem::take(&mut self.looks) {
+                plots::focus(ui.ctx());
+            }
+            let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
+            let what = plots::Shown { session, queries: &queries, signals, comparison: beside, view_state };
+            self.view_state.plots.width = plots::show(ui, &what, &mut commands);
+        }
+        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
+        let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
+        status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
+        keys::help(ui.ctx(), &self.view_state, &mut commands);
+        saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
+        let known = (&facts, &self.saving.recent[..]);
+        finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
+        top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
+        commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
+        if widgets::gave_up(ui.ctx()) {
+            // Before its gesture ends.
+            commands.insert(0, Command::Session(SessionCommand::GiveUp));
+        }
+        if commands
+            .iter()
+            .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
+        {
+            self.view_state.message = None;
+            self.view_state.left_branch = false;
+            self.view_state.refused = None;
+        }
+        if !commands.is_empty() {
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            let seen = self.intro.is_some().then(|| command.clone());
+            self.carry_out(command);
+            let held = self.view_state.grabbed.is_some();
+            if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
+                intro.sees(&command, &self.session, held);
+            }
+        }
+        if self.intro.as_ref().is_some_and(Intro::is_over) {
+            (self.intro, self.hints) = (None, false);
+        }
+        if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
+            ui.ctx().request_repaint();
+        } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
+            ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
+        }
+    }
+
+    fn dress(&mut self, ctx: &egui::Context) {
+        self.background.wakes(ctx);
+        if !self.fonts {
+            theme::install_fonts(ctx);
+            ctx.add_plugin(order::Order::default());
+            self.fonts = true;
+        }
+        if self.dressed != Some(self.view_state.theme) {
+            theme::apply(ctx, self.view_state.theme);
+            self.dressed = Some(self.view_state.theme);
+        }
+    }
+}
