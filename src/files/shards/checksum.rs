@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use super::hash::Checksum;
 use crate::files::{NewFile, WriteError};
 
 /// The text before the checksum.
@@ -25,48 +26,7 @@ pub enum End {
 }
 
 /// The checksum is within so many bytes of that end.
-const NEAR: u64 = 1 << 16;
-
-/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single
-/// word changes without it.
-struct Checksum {
-    sum: u64,
-    /// What does not yet fill a word.
-    rest: Vec<u8>,
-}
-
-impl Checksum {
-    fn new() -> Self {
-        Self { sum: 0xcbf2_9ce4_8422_2325, rest: Vec::with_capacity(8) }
-    }
-
-    fn step(sum: u64, word: &[u8]) -> u64 {
-        let word = word.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
-        (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        let missing = if self.rest.is_empty() { 0 } else { (8 - self.rest.len()).min(bytes.len()) };
-        let (first, bytes) = bytes.split_at(missing);
-        self.rest.extend_from_slice(first);
-        if self.rest.len() == 8 {
-            self.sum = Self::step(self.sum, &self.rest);
-            self.rest.clear();
-        }
-        if !bytes.is_empty() {
-            let words = bytes.chunks_exact(8);
-            self.rest.extend_from_slice(words.remainder());
-            self.sum = words.fold(self.sum, Self::step);
-        }
-    }
-
-    /// The sum of it all; a one marks the end, so that zeros after it are not nothing.
-    fn total(&self) -> u64 {
-        let mut last = self.rest.clone();
-        last.push(1);
-        Self::step(self.sum, &last)
-    }
-}
+const SEARCHED_BYTES: u64 = 1 << 16;
 
 /// Where the digits of a checksum begin among the bytes at an end, and what they say. Names of columns may look like
 /// it, but do not stand as near to the end.
@@ -119,7 +79,7 @@ impl CheckedFile {
     fn write_checksum(&mut self, end: End) -> io::Result<()> {
         let (from, bytes) = match end {
             End::Head => (0, std::mem::take(&mut self.head)),
-            End::Tail => self.out.tail(NEAR)?,
+            End::Tail => self.out.tail(SEARCHED_BYTES)?,
         };
         let (place, _) = find(&bytes, end).ok_or_else(|| io::Error::other("no place for its checksum"))?;
         self.out.replace(from + place, format!("{:016x}", self.sum.total()).as_bytes())
@@ -130,7 +90,7 @@ impl Write for CheckedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = self.out.write(bytes)?;
         self.sum.add(&bytes[..count]);
-        let room = (NEAR as usize).saturating_sub(self.head.len()).min(count);
+        let room = (SEARCHED_BYTES as usize).saturating_sub(self.head.len()).min(count);
         self.head.extend_from_slice(&bytes[..room]);
         Ok(count)
     }
@@ -145,10 +105,10 @@ impl Write for CheckedFile {
 /// If it cannot be read.
 pub fn holds(file: &mut File, end: End) -> io::Result<Option<bool>> {
     let length = file.metadata()?.len();
-    let from = if end == End::Head { 0 } else { length.saturating_sub(NEAR) };
+    let from = if end == End::Head { 0 } else { length.saturating_sub(SEARCHED_BYTES) };
     file.seek(SeekFrom::Start(from))?;
     let mut near = Vec::new();
-    file.take(NEAR).read_to_end(&mut near)?;
+    file.take(SEARCHED_BYTES).read_to_end(&mut near)?;
     let Some((place, said)) = find(&near, end) else { return Ok(None) };
     let place = from + place;
     file.seek(SeekFrom::Start(0))?;

@@ -3,6 +3,7 @@
 
 mod checksum;
 mod error;
+mod hash;
 mod merge;
 mod rows;
 

@@ -20,6 +20,7 @@ use parquet::schema::types::Type;
 
 use super::checksum::{self, BEFORE, BLANK, CheckedFile, End};
 use super::error::{ShardError, wrong};
+use super::hash::fnv_1a;
 use crate::files::{NewFile, WriteError};
 use crate::session::scenario::{Scenario, Tolerance};
 use crate::study::tolerance::Outcome;
@@ -44,7 +45,7 @@ impl fmt::Display for StudyId {
 
 impl StudyId {
     /// Of the machines of a scenario with its tolerances, of which so many instants are looked at, or which are simulated:
-    /// everything that a machine's row depends on (FNV-1a).
+    /// everything that a machine's row depends on.
     pub fn of(
         scenario: &Scenario,
         tolerance: &Tolerance,
@@ -60,8 +61,7 @@ impl StudyId {
             spreads.join("\n"),
             format!("{instants} {simulated}"),
         ];
-        let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        let problem = parts.join("\n").as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, byte);
+        let problem = fnv_1a(parts.join("\n").as_bytes());
         Self { samples, seed, problem }
     }
 

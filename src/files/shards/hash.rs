@@ -1,0 +1,55 @@
+//! The two sums of 64 bits that stand in files of samples. Neither has to withstand anybody, only chance: they are short,
+//! quick, and keep their values for good, as files have them. What must never be equal by chance, the identifiers of
+//! recordings, is cut from SHA-256 instead.
+
+/// The offset basis of FNV-1a, 64 bits.
+const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// FNV-1a of bytes: which study a file is of.
+pub fn fnv_1a(bytes: &[u8]) -> u64 {
+    let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    bytes.iter().fold(OFFSET_BASIS, byte)
+}
+
+/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single
+/// word changes without it.
+pub struct Checksum {
+    sum: u64,
+    /// What does not yet fill a word.
+    rest: Vec<u8>,
+}
+
+impl Checksum {
+    /// Of nothing yet.
+    pub fn new() -> Self {
+        Self { sum: OFFSET_BASIS, rest: Vec::with_capacity(8) }
+    }
+
+    fn step(sum: u64, word: &[u8]) -> u64 {
+        let word = word.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    }
+
+    /// Takes bytes in, in their order.
+    pub fn add(&mut self, bytes: &[u8]) {
+        let missing = if self.rest.is_empty() { 0 } else { (8 - self.rest.len()).min(bytes.len()) };
+        let (first, bytes) = bytes.split_at(missing);
+        self.rest.extend_from_slice(first);
+        if self.rest.len() == 8 {
+            self.sum = Self::step(self.sum, &self.rest);
+            self.rest.clear();
+        }
+        if !bytes.is_empty() {
+            let words = bytes.chunks_exact(8);
+            self.rest.extend_from_slice(words.remainder());
+            self.sum = words.fold(self.sum, Self::step);
+        }
+    }
+
+    /// The sum of it all; a one marks the end, so that zeros after it are not nothing.
+    pub fn total(&self) -> u64 {
+        let mut last = self.rest.clone();
+        last.push(1);
+        Self::step(self.sum, &last)
+    }
+}
