@@ -1,4 +1,4 @@
-//! [`keyed!`]: a struct whose fields are settings, declared together with their [keys](super::key::Key): each stands once.
+//! `keyed!`: a struct whose fields are settings, declared together with their [keys](super::key::Key): each stands once.
 
 use super::key::Holds;
 use super::range::Range;

@@ -1,4 +1,4 @@
-//! [`words!`]: an enum whose variants are chosen by words, declared together with them: each stands once.
+//! `words!`: an enum whose variants are chosen by words, declared together with them: each stands once.
 
 /// What a choice is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -45,7 +45,7 @@ const BLENDED: &str = "corners = blend, and three points or more, or a closed pa
 const TURNED: &str = "four drives or more, the kind reactionless, and the posture orientation or the shape joint-line";
 
 keyed! {
-    /// What the machine is to do. One that is read from a file still wants [what the file leaves out](Task::completed).
+    /// What the machine is to do. One that is read from a file still wants what the file leaves out.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Task at "task" {
         /// What becomes of the redundancy of three drives over two coordinates of the end effector.
