@@ -39,8 +39,8 @@ impl AppState {
         true
     }
 
-    /// Remembers that a change has left a branch, where so many had been left before, at the instant then shown, s, and
-    /// of a run that had been led by hand or not.
+    /// Notes the message for a change that has left a branch. The tuple is the state before the change: the number of
+    /// branches left so far, the instant on display, s, and whether the run was led by hand.
     pub(super) fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
         let (now, gone) = self.session.partings();
         if !matches!(change, Change::Edit(_)) || now == partings {

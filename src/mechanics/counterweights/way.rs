@@ -16,9 +16,8 @@ pub(super) enum Balance {
     Within(f64),
 }
 
-/// One way to look for counterweights: in which room between pins each site has to stay, if it is known, how near balance
-/// comes, and the most that the objective may be, where the least added mass and Σ H_kk
-/// are wanted and no longer the objective.
+/// One way to look for counterweights: the room between pins that each site has to stay in, if known, and how near balance
+/// comes. A bound on the objective is set where the least added mass and Σ H_kk are sought among its optima.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub rooms: Vec<Option<Room>>,

@@ -154,8 +154,8 @@ impl Planes {
         a
     }
 
-    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign,
-    /// and, if so asked, to one side of every change point.
+    /// Whether a straight line of joint space between two poses of one plane stays on one sheet: det keeps its sign. If
+    /// change points are to be kept off, the line also stays on one side of each.
     pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         /// At least so many looks, and one for each tenth of a radian.
         const LOOKS: i32 = 32;
