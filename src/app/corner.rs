@@ -5,8 +5,8 @@ use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
 use super::{Command, ViewChange, ViewState};
-use crate::picture::scene::palette::Palette;
 use crate::picture::scene::joints::Joints;
+use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
 

@@ -350,8 +350,9 @@ fn pulling_in_joint_space_asks_for_what_is_seen() {
     let (frame, space) = (session.frame(), Joints::of(session.run()).expect("three drives"));
     let map = *session.run().planes().expect("three drives").map();
     let b = frame.b_reference;
-    let seen =
-        |a: [f64; 2], b_of: f64| space.point(&map.lift(stillbase::planning::reactionless::PlanePoint { a, b: b_of }), b);
+    let seen = |a: [f64; 2], b_of: f64| {
+        space.point(&map.lift(stillbase::planning::reactionless::PlanePoint { a, b: b_of }), b)
+    };
     for camera in cameras(space.camera()) {
         let pose = space.point(&[frame.q[0], frame.q[1], frame.q[2]], b);
         let grip = space.pick(frame, &pointer(camera, pose)).expect("the dot");
