@@ -52,7 +52,7 @@ pub(super) struct Place {
 }
 
 /// The program on given nodes.
-pub(in crate::planning::timing) struct JerkProgram {
+pub struct JerkProgram {
     pub(super) nodes: Vec<f64>,
     pub(super) places: Vec<Place>,
     pub(super) sides: Vec<Side>,

@@ -19,7 +19,7 @@ const SHORT: f64 = 0.99;
 impl JerkProgram {
     /// The fastest timing; `None` if there is none that moves. `bound` is a θ̇² that no motion surpasses at a θ,
     /// `before` a timing on other nodes to begin from.
-    pub(in crate::planning::timing) fn solve(
+    pub fn solve(
         mut self,
         bound: impl Fn(f64) -> f64,
         before: Option<&Timing>,

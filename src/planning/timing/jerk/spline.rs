@@ -13,7 +13,7 @@ const TIMES: [(f64, f64); 4] = [
 ];
 
 /// A timing.
-pub(in crate::planning::timing) struct Timing {
+pub struct Timing {
     /// θ.
     pub nodes: Vec<f64>,
     /// c_i.
