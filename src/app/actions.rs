@@ -6,7 +6,8 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::command::Look;
 use super::theme::other;
 use super::{
-    Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, set_b,
+    Below, Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState,
+    WindowCommand, set_b,
 };
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
@@ -183,7 +184,7 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::Session(SessionCommand::Bookmark(time, name)))
     };
     Run, "Name the bookmark here", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
-        (v.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
+        (v.arrangement.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
     };
     Run, "To the next mark: bookmark, event, branch", [on(PLAIN, Key::N)], "time line", |_, _| {
         Some(Command::Session(SessionCommand::ToMark(true)))
@@ -268,11 +269,11 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::View(ViewChange::Layout(Layout::Present)))
     };
     View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard" turns Times;
-    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.theme))));
+    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
-        v.compare.then_some(Command::Session(SessionCommand::KeepRun))
+        (v.below == Some(Below::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
@@ -302,7 +303,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, Purpose::Machine);
     File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
     File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
-    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.tour.is_none())));
+    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 

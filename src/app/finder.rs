@@ -28,6 +28,15 @@ struct Entry<'a> {
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
+/// What is typed into the list, and which line is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Finder {
+    /// A few letters.
+    pub sought: String,
+    /// Counted from the top.
+    pub chosen: usize,
+}
+
 /// The most lines that are kept.
 const MOST: usize = 60;
 
@@ -112,7 +121,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
-    let Some(mut finder) = view_state.finder.clone() else { return };
+    let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
     let list = found(entries(session, (&settings, recent), view_state), &finder.sought);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
@@ -167,7 +176,7 @@ pub fn show(
             Command::Session(SessionCommand::EndGesture),
         ]),
         None if elsewhere => commands.push(ViewChange::Switch(Switch::Finder, false).into()),
-        None => view_state.finder = Some(finder),
+        None => view_state.open.finder = Some(finder),
     }
 }
 

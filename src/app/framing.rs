@@ -4,11 +4,33 @@ use std::sync::Arc;
 
 use egui::Rect;
 
-use super::{Framing, ViewState};
+use super::ViewState;
 use crate::mechanics::planar::DriveAngles;
-use crate::picture::scene::framing::Room;
+use crate::picture::scene::framing::{Content, Room};
 use crate::picture::scene::views::Views;
 use crate::session::Session;
+
+/// Whether a view shows everything.
+#[derive(Clone, Debug, Default)]
+pub enum Framing {
+    /// It is to, from the next pass on.
+    #[default]
+    Wanted,
+    /// It does, of what there was when it was asked for, in a scene of this size: a scene of another size is framed
+    /// anew, while what moves in it moves nothing else.
+    Held(Arc<Content>, [f32; 2]),
+    /// A hand has moved it.
+    Free,
+}
+
+impl Framing {
+    /// After another session was opened, or another machine taken: what was not moved by hand shows everything.
+    pub fn renew(&mut self) {
+        if matches!(self, Self::Held(..)) {
+            *self = Self::Wanted;
+        }
+    }
+}
 
 /// Points the camera of the present view, if it is to show everything, in a part of the screen with these parts covered.
 pub fn keep(
@@ -25,7 +47,7 @@ pub fn keep(
         Framing::Held(_, last) if *last == size => return,
         Framing::Held(content, _) => content.clone(),
         // What a hand holds stays under it; all is seen again once that lets go.
-        Framing::Wanted if view_state.grabbed.is_some() => return,
+        Framing::Wanted if view_state.gesture.grabbed.is_some() => return,
         Framing::Wanted => Arc::new(views.content(view, session.frame(), &poses())),
     };
     let part = |part: &Rect| {

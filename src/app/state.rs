@@ -16,7 +16,7 @@ use super::background::Background;
 use super::change::Change;
 use super::pace::Pace;
 use super::saving::Saving;
-use super::{Activity, Framing, Intro, Layout, LeftOff, Panels, Preferences, SessionCommand, ViewState};
+use super::{Activity, Framing, Intro, Layout, LeftOff, Preferences, SessionCommand, ViewState};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
@@ -94,11 +94,7 @@ impl AppState {
     /// The same as a person likes it, with the first minute if that is still to come.
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
-        self.view_state.theme = liked.theme;
-        self.view_state.kept = liked.panels();
-        let Panels { side, plots, .. } = self.view_state.kept[Layout::Explore as usize];
-        (self.view_state.side, self.view_state.plots, self.view_state.swapped) = (side, plots, liked.swapped);
-        self.view_state.learns = liked.learns;
+        self.view_state.arrangement = liked.arrangement();
         if liked.layout != Layout::Explore {
             self.view_state.lay_out(liked.layout);
             self.refresh();
@@ -128,26 +124,7 @@ impl AppState {
 
     /// How it is liked, to be remembered; of a window so large, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
-        let ViewState { theme, layout, swapped, learns, .. } = self.view_state;
-        let Panels { side, plots, .. } = self.view_state.panels(Layout::Explore);
-        let compare = self.view_state.panels(Layout::Compare);
-        Preferences {
-            theme,
-            size,
-            hints: self.hints,
-            layout,
-            swapped,
-            learns,
-            compare_side: compare.side.shown,
-            compare_side_width: compare.side.width,
-            compare_plots: compare.plots.shown,
-            compare_plots_width: compare.plots.width,
-            side: side.shown,
-            side_width: side.width,
-            plots: plots.shown,
-            plots_width: plots.width,
-            recent: self.saving.recent.clone(),
-        }
+        Preferences::of(&self.view_state.arrangement, size, self.hints, &self.saving.recent)
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -258,26 +235,26 @@ impl AppState {
     pub(super) fn tell(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
-            Ok(Some(news)) => self.view_state.message = Some((news, false)),
-            Err(problem) => self.view_state.message = Some((problem, true)),
+            Ok(Some(news)) => self.view_state.said.message = Some((news, false)),
+            Err(problem) => self.view_state.said.message = Some((problem, true)),
         }
     }
 
     /// Says something that the person did not ask for.
     pub(super) fn announce(&mut self, news: &str) {
-        self.view_state.message = Some((news.into(), false));
+        self.view_state.said.message = Some((news.into(), false));
     }
 
-    /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.
-    fn adjust(&mut self) {
-        let reach = self.views.stage().linkage().reach();
+    /// How many times the motion of the base is shown: as often as it takes to be seen, from as much of the run as is
+    /// known.
+    pub fn base_exaggeration(&self) -> f64 {
+        if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() {
+            return 1.0;
+        }
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
         let ahead = self.queries().last::<Ahead>().map_or_else(Totals::default, |totals| *totals);
         let motion = [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)];
-        self.view_state.enough_exaggeration = match self.session.scenario().base.moves() {
-            true => exaggeration(motion, reach),
-            false => 1.0,
-        };
+        exaggeration(motion, self.views.stage().linkage().reach())
     }
 
     /// The signals of the machine on display.
@@ -306,7 +283,7 @@ impl AppState {
         }
         // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the hand.
         let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
-        if !views.looks_like(&self.views) || (is_outlined && self.view_state.grabbed.is_none()) {
+        if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
         }
         self.views = views;
@@ -315,7 +292,6 @@ impl AppState {
     /// Shows what follows from the session as it is now.
     fn refresh(&mut self) {
         self.refresh_views();
-        self.adjust();
         self.refresh_study();
         self.refresh_comparison();
         self.collect();

@@ -87,7 +87,7 @@ fn bars_say_which_link_brings_what() {
     for x in (rect.left() as i32..rect.right() as i32).step_by(4) {
         h.hover_at(egui::pos2(x as f32, rect.top() + 12.0));
         h.run_steps(2);
-        lit.extend(h.state().app_state().view_state().lit);
+        lit.extend(h.state().app_state().view_state().pointed.lit);
     }
     let links: Vec<usize> = [4, 3, 8].into_iter().filter(|i| lit.contains(&Handle::Link(*i))).collect();
     assert_eq!(links, [4, 3, 8], "links 5, 4 and 9 are in the bar: {lit:?}");
@@ -205,7 +205,7 @@ fn equations_light_up_their_links() {
     h.key_press(Key::E);
     h.run_steps(4);
     let view_state = |h: &Window| h.state().app_state().view_state().clone();
-    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).learns);
+    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).arrangement.learns);
     h.get_by_label("Equation 7").click();
     h.run_steps(6);
     let line = "(7) g₁: m₁ l_c1 + m₄ l_c4 + m₆ l_c6 + (m₅ + m₇ + m₈ + m₉) l₁ = 0";
@@ -215,7 +215,7 @@ fn equations_light_up_their_links() {
         for x in (rect.left() as i32..rect.right() as i32).step_by(8) {
             h.hover_at(egui::pos2(x as f32, y as f32));
             h.run_steps(1);
-            let links = view_state(&h).lit_links;
+            let links = view_state(&h).pointed.lit_links;
             if !links.is_empty() && !lit.contains(&links) {
                 lit.push(links);
             }
@@ -226,11 +226,11 @@ fn equations_light_up_their_links() {
     // Beside it nothing is lit any more.
     h.hover_at(egui::pos2(500.0, 300.0));
     h.run_steps(2);
-    assert!(view_state(&h).lit_links.is_empty());
+    assert!(view_state(&h).pointed.lit_links.is_empty());
     // The key leads back.
     h.key_press(Key::E);
     h.run_steps(3);
-    assert!(!view_state(&h).learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
+    assert!(!view_state(&h).arrangement.learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
 }
 
 fn equations_follow_the_machine_and_are_remembered() {
@@ -256,7 +256,7 @@ fn equations_follow_the_machine_and_are_remembered() {
     let liked = h.state().app_state().preferences([1280.0, 800.0]);
     assert!(liked.learns);
     let again = stillbase::app::AppState::new(Scenario::builtin("case-3").expect("built in"), Theme::Dark);
-    assert!(again.expect("it starts").with_preferences(&liked).view_state().learns);
+    assert!(again.expect("it starts").with_preferences(&liked).view_state().arrangement.learns);
     h.get_by_label("Balance tab").click();
     h.run_steps(3);
     assert!(!h.state().app_state().preferences([1280.0, 800.0]).learns);

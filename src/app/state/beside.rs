@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::AppState;
 use crate::app::background::{Background, Opening, ended};
 use crate::app::change::Source;
-use crate::app::{Activity, ComparisonCommand};
+use crate::app::{Activity, Below, ComparisonCommand};
 use crate::picture::scene::stage::Outlining;
 use crate::query::{Asked, Same, Shared, State, Ticket};
 use crate::session::Ahead;
@@ -45,7 +45,6 @@ impl AppState {
             any = true;
         }
         any |= self.collect_written();
-        self.adjust();
         any
     }
 
@@ -73,14 +72,13 @@ impl AppState {
         } else {
             self.queries().forget::<Ahead>();
         }
-        self.adjust();
     }
 
     /// Studies the run on display; only the newest counts.
     pub(super) fn refresh_study(&mut self) {
-        if !self.view_state.study {
+        if self.view_state.below != Some(Below::Tolerances) {
             self.queries().forget::<Studying>();
-        } else if self.view_state.grabbed.is_none() {
+        } else if self.view_state.gesture.grabbed.is_none() {
             let _ = self.queries().ask_beside::<Studying>(&Studied(Arc::new(self.session.run().clone())));
         }
     }
@@ -100,7 +98,7 @@ impl AppState {
 
     /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
     pub(super) fn refresh_comparison(&mut self) {
-        if !self.view_state.compare {
+        if self.view_state.below != Some(Below::Runs) {
             self.comparison = None;
             self.queries().forget::<Ways>();
             self.background.kept.clear();
@@ -116,7 +114,7 @@ impl AppState {
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
         let wanted = stale || self.queries().progress::<Ways>().is_some();
-        if wanted && (first || self.view_state.grabbed.is_none()) {
+        if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
             let _ = self.queries().ask_beside::<Ways>(&self.session.run().shared_scenario());
         }
     }
@@ -155,7 +153,7 @@ impl AppState {
         if let Some(fork) = self.session.forks().get(branch) {
             scenario.name = format!("branch at {:.3} s", fork.from);
         }
-        (self.view_state.compare, self.view_state.study) = (true, false);
+        self.view_state.below = Some(Below::Runs);
         self.refresh_comparison();
         self.keep(scenario, Some("added the branch to the runs side by side"));
     }

@@ -17,7 +17,7 @@ impl AppState {
         match command.into() {
             Command::Session(command) if self.background.is_changing() => {
                 let edits = matches!(command, SessionCommand::Edit(_));
-                self.view_state.dragged |= self.view_state.grabbed.is_some() && edits;
+                self.view_state.gesture.dragged |= self.view_state.gesture.grabbed.is_some() && edits;
                 self.background.after(command);
             }
             command => self.do_now(command),
@@ -59,15 +59,16 @@ impl AppState {
         match command {
             SessionCommand::Edit(edit) => {
                 let edit = self.designed(edit)?;
-                self.view_state.refused = None;
+                self.view_state.said.refused = None;
                 self.change(Change::Edit(edit));
-                self.view_state.dragged |= self.view_state.grabbed.is_some() && self.view_state.refused.is_none();
+                self.view_state.gesture.dragged |=
+                    self.view_state.gesture.grabbed.is_some() && self.view_state.said.refused.is_none();
             }
             SessionCommand::EndGesture => {
                 self.session.end_gesture();
                 self.designed_from = None;
                 let said = self.parted.take();
-                self.view_state.left_branch |= said.is_some();
+                self.view_state.said.left_branch |= said.is_some();
                 return Ok(said);
             }
             SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
@@ -124,7 +125,7 @@ impl AppState {
         match command {
             WindowCommand::Comparison(on) => self.change_comparison(on),
             WindowCommand::LookFor => {
-                self.view_state.plots.shown = true;
+                self.view_state.arrangement.now_mut().plots.shown = true;
                 self.looks = true;
             }
             WindowCommand::Refuse(why) => return Err(why),
@@ -139,12 +140,12 @@ impl AppState {
             WindowCommand::Tour(begins) => {
                 // One guide at a time; what was not done of the hints may come again.
                 self.intro = self.intro.take().filter(|_| !begins);
-                self.view_state.help &= !begins;
-                self.view_state.tour = begins.then(|| Tour::begin(&self.session));
+                self.view_state.open.help &= !begins;
+                self.view_state.open.tour = begins.then(|| Tour::begin(&self.session));
             }
             WindowCommand::TurnTour(forward) => {
-                let tour = self.view_state.tour.take();
-                self.view_state.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
+                let tour = self.view_state.open.tour.take();
+                self.view_state.open.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
             }
         }
         Ok(None)
@@ -156,7 +157,7 @@ impl AppState {
             let name = self.session.free_name();
             self.saving.changes += u64::from(self.session.bookmark(time, &name)?.is_some());
         }
-        self.view_state.naming = Some(time);
+        self.view_state.open.naming = Some(time);
         Ok(())
     }
 }

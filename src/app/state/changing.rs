@@ -59,16 +59,16 @@ impl AppState {
     /// After a change of the session, or its refusal.
     pub(super) fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
         if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
-            self.view_state.refused = Some(RefusedEdit::of(edit, refusal));
+            self.view_state.said.refused = Some(RefusedEdit::of(edit, refusal));
         }
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
             match change {
                 // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
-                Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
-                Change::Edit(edit) if edit.is_aside() => self.view_state.refused = None,
+                Change::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
+                Change::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
                 Change::Edit(_) => {
-                    self.view_state.refused = None;
+                    self.view_state.said.refused = None;
                     self.foresee();
                 }
                 Change::Undo | Change::Redo | Change::GoTo(_) | Change::Branch(_) | Change::BackToPath => {

@@ -44,7 +44,7 @@ impl AppState {
                 if let Some(File::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
-                self.view_state.refused = refused;
+                self.view_state.said.refused = refused;
                 self.tell(Err(why));
             }
         }
@@ -72,7 +72,7 @@ impl AppState {
             self.session.play();
         }
         if closes {
-            self.view_state.dialog = None;
+            self.view_state.open.dialog = None;
         }
         self.tell(Ok(news));
     }

@@ -46,9 +46,9 @@ impl AppState {
         let job = self.background.start(move |ticket| work(ticket, &path, replaces));
         *slot(&mut self.background) = Some((of, job));
         self.collect();
-        let failed = matches!(self.view_state.message, Some((_, true)));
+        let failed = matches!(self.view_state.said.message, Some((_, true)));
         if slot(&mut self.background).is_some() || !failed {
-            self.view_state.dialog = None;
+            self.view_state.open.dialog = None;
         }
         Ok(())
     }

@@ -37,7 +37,7 @@ impl Chooser {
     /// when a file is asked for once more while a dialog of the system hides somewhere.
     pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
         let Some((dialog, job)) = self.asked.take() else {
-            if let Some(dialog) = app_state.view_state().dialog.clone().filter(|_| !self.none) {
+            if let Some(dialog) = app_state.view_state().open.dialog.clone().filter(|_| !self.none) {
                 app_state.carry_out(ViewChange::Dialog(None));
                 let last = app_state.recent().first().and_then(|file| file.parent());
                 let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
