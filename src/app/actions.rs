@@ -277,6 +277,7 @@ pub const ACTIONS: &[Action] = actions![
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
+    Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Given;
     Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
     Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
@@ -291,7 +292,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, scenario", |s, _| new_session(s);
-    File, "Open a session, scenario, machine or model" = "load file import machine model urdf mjcf xml toml recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
+    File, "Open a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
     File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
     File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
     File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::change::{Change, NotOpened, Opened};
+use super::given::Assessing;
 use super::{Activity, SessionCommand};
 use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
@@ -176,8 +177,9 @@ impl Background {
         let saving = self.saving.as_ref().map(|(_, job)| (Activity::Saving, job.progress()));
         let study = self.queries.progress::<Studying>().map(|share| (Activity::Study, share));
         let ways = self.queries.progress::<Ways>().map(|share| (Activity::Ways, share));
+        let given = self.queries.progress::<Assessing>().map(|share| (Activity::Given, share));
         let kept = self.kept.front().map(|(_, job)| (Activity::Kept, job.progress()));
-        [change, opening, saving, recording, study, ways, kept].into_iter().flatten()
+        [change, opening, saving, recording, given, study, ways, kept].into_iter().flatten()
     }
 
     /// Whether anything at all is under way.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::given::{Options, Taking};
 use super::layout::Layout;
 use crate::exchange::form;
 use crate::picture::charts::choice::Change;
@@ -97,6 +98,8 @@ pub enum SessionCommand {
     GoTo(usize),
     /// Put the machine back at the start of its planned path.
     BackToPath,
+    /// Take something of what a table says that was opened.
+    TakeGiven(Taking),
     /// Take the counterweights of a machine of the front, by its place.
     Take(usize),
     /// Take the counterweights and ratios of rotors with which the drives give least to the base.
@@ -124,6 +127,8 @@ pub enum Switch {
     Compare,
     /// The study of tolerances.
     Study,
+    /// What a table says that was opened.
+    Given,
     /// What pins carry.
     Pins,
     /// Snapshots along the motion.
@@ -200,6 +205,8 @@ pub enum ViewChange {
 pub enum WindowCommand {
     /// Change the table of runs.
     Comparison(ComparisonCommand),
+    /// Read the table that was opened so, and ask this of it.
+    Ask(Options),
     /// Put the cursor where a signal to plot is sought.
     LookFor,
     /// Show why a number that was typed is refused.
@@ -235,6 +242,8 @@ pub enum Activity {
     Study,
     /// The ways of the task run side by side.
     Ways,
+    /// What a table says is found.
+    Given,
     /// A run that is kept beside them.
     Kept,
 }
@@ -249,6 +258,7 @@ impl Activity {
             Self::Recording => "recording",
             Self::Study => "drawing machines",
             Self::Ways => "running the ways of the task",
+            Self::Given => "finding what the table says",
             Self::Kept => "running one more beside them",
         }
     }
@@ -267,6 +277,7 @@ impl Activity {
             Self::Recording => "cancelled: no file is left",
             Self::Study => "cancelled: no machines were drawn for the run as it is",
             Self::Ways => "cancelled: the ways of the task were not run again",
+            Self::Given => "cancelled: another choice asks the table again",
             Self::Kept => "cancelled: no run was added",
         }
     }
@@ -358,7 +369,7 @@ impl Purpose {
     /// What a dialog asks, what its button says, and how such a file may be called.
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
-            Self::Open => ["Open a session, machine or model", "Open", ".toml .urdf .xml"],
+            Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Machine => ["Take along", "Save", "machine.urdf"],

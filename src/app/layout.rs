@@ -85,6 +85,8 @@ pub enum Below {
     Runs,
     /// The study of tolerances.
     Tolerances,
+    /// What a table says that was opened.
+    Given,
 }
 
 /// How the window is arranged: a person's liking, which outlives the session.

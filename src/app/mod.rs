@@ -17,6 +17,7 @@ mod finder;
 mod framing;
 mod gallery;
 mod gesture;
+mod given;
 mod hand;
 mod history;
 mod icon;
@@ -62,6 +63,7 @@ pub use command::{
 pub use finder::Finder;
 pub use framing::Framing;
 pub use gesture::{Gesture, Pointed, Tool};
+pub use given::{Content, Options, Taking};
 use intro::Intro;
 pub use layout::{Arrangement, Below, Layout, Panel, Panels};
 pub use left_off::LeftOff;

@@ -54,9 +54,15 @@ const LAYERS: [Toggle; 3] = [
 ];
 
 /// What is found out about it.
-const ANALYSES: [Toggle; 2] = [
+const ANALYSES: [Toggle; 3] = [
     tool(Switch::Study, Icon::Bell, "tolerances", "What the bases of many machines feel, and the spectrum"),
     tool(Switch::Compare, Icon::Beside, "side by side", "The same task done in other ways"),
+    tool(
+        Switch::Given,
+        Icon::Samples,
+        "table",
+        "A motion of your own without reactions, or what a measured machine lacks of balance: from a table, CSV",
+    ),
 ];
 
 /// Draws it.

@@ -4,6 +4,7 @@ mod beside;
 mod carry_out;
 mod changing;
 mod designing;
+mod given;
 mod opening;
 mod pass;
 mod time;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 
 use super::background::Background;
 use super::change::Change;
+use super::given::Given;
 use super::pace::Pace;
 use super::saving::Saving;
 use super::{Activity, Framing, Intro, Layout, LeftOff, Preferences, SessionCommand, ViewState};
@@ -44,6 +46,8 @@ pub struct AppState {
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
+    /// The table that was opened last.
+    given: Option<Given>,
     /// What is under way beside the window.
     background: Background,
     /// Wall time not yet turned into steps, s.
@@ -79,6 +83,7 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
+            given: None,
             background,
             owed: 0.0,
             pace: Pace::default(),
@@ -294,6 +299,7 @@ impl AppState {
         self.refresh_views();
         self.refresh_study();
         self.refresh_comparison();
+        self.refresh_given();
         self.collect();
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::AppState;
 use crate::app::background::{Background, Opening, ended};
 use crate::app::change::Source;
+use crate::app::given::Assessing;
 use crate::app::{Activity, Below, ComparisonCommand};
 use crate::picture::scene::stage::Outlining;
 use crate::query::{Asked, Same, Shared, State, Ticket};
@@ -187,6 +188,7 @@ impl AppState {
             Activity::Recording => self.background.recording = None,
             Activity::Study => self.queries().stop::<Studying>(),
             Activity::Ways => self.queries().stop::<Ways>(),
+            Activity::Given => self.queries().stop::<Assessing>(),
             Activity::Kept => self.background.kept.clear(),
             Activity::Saving => {}
         }

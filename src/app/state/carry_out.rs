@@ -5,7 +5,7 @@ use crate::app::background::Opening;
 use crate::app::change::{Change, Source};
 use crate::app::marks;
 use crate::app::tour::Tour;
-use crate::app::{Command, SessionCommand, Switch, ViewChange, WindowCommand};
+use crate::app::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChange, WindowCommand};
 use crate::picture::scene::views::ViewKind;
 
 impl AppState {
@@ -41,6 +41,11 @@ impl AppState {
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Session(command) => self.do_to_session(command),
+            // Where none was opened yet, one is asked for.
+            Command::View(ViewChange::Switch(Switch::Given, true)) if self.given.is_none() => {
+                self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, Purpose::Open));
+                Ok(None)
+            }
             Command::View(change) => {
                 let designs =
                     matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
@@ -113,6 +118,7 @@ impl AppState {
             SessionCommand::GoTo(changes) => self.change(Change::GoTo(changes)),
             SessionCommand::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
             SessionCommand::BackToPath => {}
+            SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),
             SessionCommand::TakeStillest => self.take_stillest()?,
             SessionCommand::KeepRun => self.keep_run(),
@@ -124,6 +130,11 @@ impl AppState {
     fn do_to_window(&mut self, command: WindowCommand) -> Result<Option<String>, String> {
         match command {
             WindowCommand::Comparison(on) => self.change_comparison(on),
+            WindowCommand::Ask(options) => {
+                if let Some(given) = &mut self.given {
+                    given.options = options;
+                }
+            }
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;
                 self.looks = true;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::AppState;
 use crate::app::background::{File, Opening, ended};
-use crate::app::change::{NotOpened, Opened, Source};
+use crate::app::change::{NotOpened, Opened, OpenedSession, Source};
 use crate::app::{Framing, LeftOff, Recovery};
 use crate::mechanics::machine::Machine;
 use crate::session::Session;
@@ -27,7 +27,9 @@ impl AppState {
         let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
         let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
         match opened.unwrap_or_else(|| Err(broken())) {
-            Ok(Opened { session, said, left_off }) => {
+            Ok(Opened::Table(file, table)) => self.take_up(file, table),
+            Ok(Opened::Session(opened)) => {
+                let OpenedSession { session, said, left_off } = *opened;
                 let news = said.or_else(|| opening.news.clone());
                 self.take_over(session, Opening { news, ..opening });
                 if let Some(LeftOff { plots, .. }) = left_off {

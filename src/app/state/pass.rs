@@ -4,8 +4,8 @@ use super::AppState;
 use crate::app::facts::Facts;
 use crate::app::marks::Marks;
 use crate::app::{
-    Below, Command, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, keys, order,
-    place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
+    Below, Command, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given, keys,
+    order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
 };
 use crate::picture::scene::views::ViewKind;
 
@@ -57,6 +57,12 @@ impl AppState {
         }
         if self.view_state.below == Some(Below::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
+        }
+        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Given)) {
+            let found = self.assessed();
+            let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
+            let shown = given::Shown { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
+            given::show(ui, shown, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;

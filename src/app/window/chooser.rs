@@ -78,7 +78,8 @@ impl Chooser {
 /// How names of such files end, the usual one first.
 fn endings(purpose: &Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open | Purpose::Save => vec!["toml"],
+        Purpose::Open => vec!["toml", "urdf", "xml", "csv"],
+        Purpose::Save => vec!["toml"],
         Purpose::Record => vec!["rrd"],
         Purpose::Plot(_, PlotFile::Csv) => vec!["csv"],
         Purpose::Plot(_, PlotFile::Svg) => vec!["svg"],
@@ -102,7 +103,8 @@ type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
     let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
-        Purpose::Open | Purpose::Save => "Sessions",
+        Purpose::Open => "Sessions, machines, models and tables",
+        Purpose::Save => "Sessions",
         Purpose::Record => "Recordings",
         Purpose::Plot(..) => "Plots",
         Purpose::Machine => "Models, drawings and lists",

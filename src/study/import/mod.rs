@@ -15,6 +15,7 @@ mod given;
 mod imported;
 mod importing;
 mod judge;
+mod lines;
 mod request;
 mod ways;
 
@@ -22,4 +23,5 @@ pub use given::GivenMotion;
 pub use imported::Imported;
 pub use importing::Importing;
 pub use judge::{Account, Proposal};
+pub use lines::Line;
 pub use request::{ImportError, Keep, Request};
