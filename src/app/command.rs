@@ -2,16 +2,17 @@
 
 use std::path::PathBuf;
 
+use super::activity::Activity;
+use super::file_dialog::{FileDialog, PlotFile};
 use super::given::{Options, Taking};
 use super::layout::Layout;
-use crate::exchange::form;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
+use crate::session::Edit;
 use crate::session::scenario::Scenario;
-use crate::session::{Edit, Session};
 use crate::study::front_point::FrontMeasure;
 
 /// What a person can ask for.
@@ -227,62 +228,6 @@ pub enum WindowCommand {
     TurnTour(bool),
 }
 
-/// What can be under way beside the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Activity {
-    /// A change of the session.
-    Change,
-    /// A session is opened.
-    Opening,
-    /// The session is saved.
-    Saving,
-    /// A recording is written.
-    Recording,
-    /// Machines of a study of tolerances are drawn.
-    Study,
-    /// The ways of the task run side by side.
-    Ways,
-    /// What a table says is found.
-    Given,
-    /// A run that is kept beside them.
-    Kept,
-}
-
-impl Activity {
-    /// What it does, for the line at the bottom.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Change => "making the run again",
-            Self::Opening => "opening",
-            Self::Saving => "saving",
-            Self::Recording => "recording",
-            Self::Study => "drawing machines",
-            Self::Ways => "running the ways of the task",
-            Self::Given => "finding what the table says",
-            Self::Kept => "running one more beside them",
-        }
-    }
-
-    /// Whether it stops when it is told to.
-    pub(super) fn can_stop(self) -> bool {
-        self != Self::Saving
-    }
-
-    /// What to say when it has been cancelled.
-    pub(super) fn cancelled(self) -> &'static str {
-        match self {
-            Self::Change => "cancelled: nothing has changed",
-            Self::Opening => "cancelled: nothing was opened",
-            Self::Saving => "",
-            Self::Recording => "cancelled: no file is left",
-            Self::Study => "cancelled: no machines were drawn for the run as it is",
-            Self::Ways => "cancelled: the ways of the task were not run again",
-            Self::Given => "cancelled: another choice asks the table again",
-            Self::Kept => "cancelled: no run was added",
-        }
-    }
-}
-
 /// What becomes of a session that was left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
@@ -314,106 +259,4 @@ pub enum ComparisonCommand {
     Add(Box<Scenario>),
     /// Take a kept row away.
     Remove(usize),
-}
-
-/// Asking for a file name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileDialog {
-    /// What the file is for.
-    pub purpose: Purpose,
-    /// What is typed so far.
-    pub path: String,
-}
-
-/// What a file name is for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// Read a session.
-    Open,
-    /// Write the session.
-    Save,
-    /// Write a recording.
-    Record,
-    /// Write the plot of a name.
-    Plot(String, PlotFile),
-    /// Write the machine for another program.
-    Machine,
-}
-
-/// How a plot is written to a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlotFile {
-    /// Every sample of the time shown.
-    Csv,
-    /// A drawing.
-    Svg,
-    /// A picture.
-    Png,
-}
-
-impl PlotFile {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
-
-    /// What it is called.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Csv => "CSV",
-            Self::Svg => "SVG",
-            Self::Png => "PNG",
-        }
-    }
-}
-
-impl Purpose {
-    /// What a dialog asks, what its button says, and how such a file may be called.
-    pub(super) fn words(&self) -> [&'static str; 3] {
-        match self {
-            Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv"],
-            Self::Save => ["Save the session", "Save", "session.toml"],
-            Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
-            Self::Machine => ["Take along", "Save", "machine.urdf"],
-            Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
-            Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
-            Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
-        }
-    }
-}
-
-impl Purpose {
-    /// What a dialog asks, with the endings to choose from.
-    pub(super) fn title(&self) -> String {
-        let [title, ..] = self.words();
-        match self {
-            Self::Machine => format!("{title}: .{}", form::endings().join(" .")),
-            _ => title.into(),
-        }
-    }
-}
-
-impl FileDialog {
-    /// What to do with a file that was named.
-    pub fn named(self, file: PathBuf) -> SessionCommand {
-        match self.purpose {
-            Purpose::Open => SessionCommand::OpenFile(file),
-            Purpose::Save => SessionCommand::SaveFile(file),
-            Purpose::Record => SessionCommand::Record(file),
-            Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
-            Purpose::Machine => SessionCommand::TakeElsewhere(file),
-        }
-    }
-
-    /// A file name that is free, for a dialog to start from.
-    pub fn suggest(session: &Session, purpose: Purpose) -> Self {
-        let own = &session.scenario().name;
-        let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();
-        let name = match &purpose {
-            Purpose::Open => String::new(),
-            Purpose::Save => free(own, "toml"),
-            Purpose::Record => free(own, "rrd"),
-            Purpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
-            Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
-        };
-        Self { purpose, path: name }
-    }
 }

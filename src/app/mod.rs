@@ -4,6 +4,7 @@
 //! carries out at the end of the pass. Nothing is computed here.
 
 pub mod actions;
+mod activity;
 mod arrangement;
 mod background;
 mod card;
@@ -13,6 +14,7 @@ mod compare;
 mod coordinates;
 mod corner;
 mod facts;
+mod file_dialog;
 mod finder;
 mod framing;
 mod gallery;
@@ -56,10 +58,9 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{
-    Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery, SessionCommand, Switch,
-    ViewChange, WindowCommand,
-};
+pub use activity::Activity;
+pub use command::{Command, ComparisonCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand};
+pub use file_dialog::{FileDialog, PlotFile, Purpose};
 pub use finder::Finder;
 pub use framing::Framing;
 pub use gesture::{Gesture, Pointed, Tool};

@@ -181,6 +181,11 @@ impl AppState {
         &self.background.queries
     }
 
+    /// What is under way beside the window.
+    pub(super) fn background_mut(&mut self) -> &mut Background {
+        &mut self.background
+    }
+
     /// Files that were opened and saved, newest first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.saving.recent
@@ -212,8 +217,8 @@ impl AppState {
 
     /// Whether a change is being made beside the window, and is in no count yet.
     fn is_making(&self) -> bool {
-        let change = self.background.change.as_ref().map(|((change, _), _)| change);
-        change.is_some_and(|change| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
+        let change = self.background.change.as_ref();
+        change.is_some_and(|(change, _)| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
     }
 
     /// Whether the window is to close.
@@ -233,7 +238,7 @@ impl AppState {
 
     /// What is under way beside the window, as far as it is spoken of.
     pub fn under_way(&self) -> Vec<Activity> {
-        self.background.all_under_way().map(|(activity, _)| activity).collect()
+        self.background.all_under_way().into_iter().map(|(activity, _)| activity).collect()
     }
 
     /// Says how something went.

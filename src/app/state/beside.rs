@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::AppState;
-use crate::app::background::{Background, Opening, ended};
+use crate::app::background::{Background, Opening};
 use crate::app::change::Source;
-use crate::app::given::Assessing;
 use crate::app::{Activity, Below, ComparisonCommand};
 use crate::picture::scene::stage::Outlining;
 use crate::query::{Asked, Same, Shared, State, Ticket};
@@ -18,34 +17,14 @@ use crate::study::tolerance::{Studied, Study, Studying};
 const MOST_AHEAD: f64 = 20_000.0;
 
 impl AppState {
-    /// Takes what jobs have done; whether one has ended.
+    /// Takes what has been done beside the window; whether anything has.
     pub(super) fn collect(&mut self) -> bool {
-        let [changed, opened] = [self.collect_change(), self.collect_opening()];
-        let mut any = changed || opened;
+        let any = self.finish();
         if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
             && let Some(ways) = ways.known()
         {
             comparison.follow(ways);
         }
-        while let Some(first) = self.background.kept.pop_front() {
-            let mut first = Some(first);
-            let Some((news, run)) = ended(&mut first) else {
-                self.background.kept.extend(first);
-                self.background.kept.rotate_right(1);
-                break;
-            };
-            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
-            let said = match (run, &mut self.comparison) {
-                (Ok(run), Some(comparison)) => {
-                    comparison.keep_run(run);
-                    Ok(news.map(String::from))
-                }
-                (run, _) => run.map(|_| None),
-            };
-            self.tell(said);
-            any = true;
-        }
-        any |= self.collect_written();
         any
     }
 
@@ -102,7 +81,7 @@ impl AppState {
         if self.view_state.below != Some(Below::Runs) {
             self.comparison = None;
             self.queries().forget::<Ways>();
-            self.background.kept.clear();
+            self.background.stop(Activity::Kept);
             return;
         }
         let scenario = self.session.scenario();
@@ -162,35 +141,33 @@ impl AppState {
     /// Runs a scenario to be kept beside the ways of the task.
     pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
         let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
-        let job = self.background.start(work);
-        self.background.kept.push_back((news, job));
+        self.background.run(Activity::Kept, work, move |app_state, run| {
+            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
+            let said = match (run, &mut app_state.comparison) {
+                (Ok(run), Some(comparison)) => {
+                    comparison.keep_run(run);
+                    Ok(news.map(String::from))
+                }
+                (run, _) => run.map(|_| None),
+            };
+            app_state.tell(said);
+        });
         self.collect();
     }
 
     /// Ends the program's work: a session that is being saved is saved whole, all else is stopped.
     pub(in crate::app) fn close(&mut self) {
-        if let Some((_, job)) = self.background.saving.take() {
-            // Nobody is left to tell.
-            let _ = job.wait();
-        }
+        self.background.wait_for(Activity::Saving);
         self.background = Background::default();
     }
 
     /// Stops what is under way; what was shown stays.
     pub(super) fn cancel(&mut self, activity: Activity) -> String {
-        match activity {
-            Activity::Change => {
-                self.background.change = None;
-                self.background.later.clear();
-                self.session.end_gesture();
-            }
-            Activity::Opening => self.background.opening = None,
-            Activity::Recording => self.background.recording = None,
-            Activity::Study => self.queries().stop::<Studying>(),
-            Activity::Ways => self.queries().stop::<Ways>(),
-            Activity::Given => self.queries().stop::<Assessing>(),
-            Activity::Kept => self.background.kept.clear(),
-            Activity::Saving => {}
+        if activity.can_stop() {
+            self.background.stop(activity);
+        }
+        if activity == Activity::Change {
+            self.session.end_gesture();
         }
         activity.cancelled().into()
     }
