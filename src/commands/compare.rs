@@ -10,7 +10,7 @@ use stillbase::study::comparison::{COLUMNS, Candidate, Compared, DESIGN, Design,
 
 use super::exit::say;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, scenario, told_apart};
 use super::output::{Format, Table, check_output};
 use stillbase::settings::number::{fixed, nine_digits};
 use stillbase::settings::text::sheet_cell;
@@ -163,11 +163,7 @@ impl Compare {
         let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
         for name in &self.scenarios {
             let mut next = scenario(name, &self.settings)?;
-            let (own, mut count) = (next.name.clone(), 1);
-            while all.iter().any(|(_, s)| s.name == next.name) {
-                count += 1;
-                next.name = format!("{own}-{count}");
-            }
+            next.name = told_apart(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
             all.push((None, next));
         }
         Ok(all)

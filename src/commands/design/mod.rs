@@ -1,5 +1,6 @@
 //! `stillbase design`
 
+mod fronts;
 mod kept;
 mod measures;
 mod weighed;
@@ -38,6 +39,9 @@ use weighed::WeighArguments;
 ///
 /// With --counterweights the links stay as they are, and discs on them do it: the lightest, or those of the least
 /// inertia, as a cone program proves. "gap" is the most by which the best may lie below what was found.
+///
+/// With --counterweights --front and several machines the front of each stands beside those of the others, under the same
+/// bounds; a machine that nothing balances within them says why in its place.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -49,6 +53,7 @@ Examples:
   stillbase design nine-link --counterweights --objective torque --task case-3
   stillbase design two-drive --counterweights --objective inertia --thickness 0.02
   stillbase design nine-link-bare --counterweights --objective mass=1,inertia=5 --max-mass 1=8 --front 9
+  stillbase design nine-link-bare two-drive my.toml --counterweights --front 9
   stillbase design nine-link-bare --counterweights --clearance 0.01 --max-radius 0.12
   stillbase design nine-link-bare --counterweights --payload 0,0.2
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
@@ -56,6 +61,9 @@ Examples:
 pub struct Design {
     #[command(flatten)]
     machine: MachineArgument,
+    /// More machines, for their fronts beside that of the first: the same bounds and settings are for all
+    #[arg(value_name = "MACHINE", requires = "front", conflicts_with_all = ["objective", "length", "output"])]
+    beside: Vec<String>,
     /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
     #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
@@ -115,8 +123,11 @@ struct Answer {
 impl Design {
     /// Prints the new centres of mass and what they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
+        if !self.beside.is_empty() {
+            return self.fronts();
+        }
         let machine = self.machine.load()?;
-        let task = self.task(&machine)?;
+        let task = self.task(&[&machine])?;
         let motion = task.as_ref().map(|run| &*run.plan().motion);
         if self.weighing.counterweights {
             return self.weigh(&machine, motion);
@@ -159,16 +170,19 @@ impl Design {
         self.format.print(&answer, |answer| answer.text(machine, by))
     }
 
-    /// The task whose motion counts.
-    fn task(&self, machine: &Machine) -> Result<Option<Run>, Failure> {
+    /// The task whose motion counts, if one of the machines has as many drives as it moves.
+    fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
         let Some(name) = &self.task else { return Ok(None) };
         let run = Run::new(&settled(&scenario(name, &Settings::default())?)?.0)?;
-        let (has, want) = (run.scenario().machine.drives(), machine.drives());
-        match has == want {
+        let has = run.scenario().machine.drives();
+        let mut want: Vec<String> = machines.iter().map(|machine| machine.drives().to_string()).collect();
+        want.dedup();
+        match machines.iter().any(|machine| machine.drives() == has) {
             true => Ok(Some(run)),
             false => Err(Failure::wrong_input(format!(
-                "--task {name}: its machine has {}: want one of {want}",
-                counted(has, "drive")
+                "--task {name}: its machine has {}: want one of {}",
+                counted(has, "drive"),
+                want.join(" or ")
             ))),
         }
     }

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
 use super::task::{POSE_CONSTANT, Task};
 use super::{design, tolerance};
-use crate::mechanics::machine::ranges;
+use crate::mechanics::machine;
 use crate::settings::change;
 use crate::settings::key::{Effect, Key};
 use crate::simulation::control::Control;
@@ -46,7 +46,7 @@ pub const KEYS: [(&str, &[&[Key]]); 9] = [
     ),
     ("Base", &[&BASE]),
     ("Reaction wheel", &[&WHEEL]),
-    ("Machine", &[&ranges::KEYS]),
+    ("Machine", &[&machine::KEYS]),
     ("Tolerances", &[&TOLERANCE]),
     ("Design: what is asked of a machine that is changed by hand", &[&DESIGN]),
 ];
