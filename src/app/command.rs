@@ -6,6 +6,7 @@ use super::activity::Activity;
 use super::file_dialog::{FileDialog, PlotFile};
 use super::given::{Options, Taking};
 use super::layout::Layout;
+use crate::mechanics::machine::Machine;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
@@ -208,6 +209,8 @@ pub enum WindowCommand {
     Comparison(ComparisonCommand),
     /// Read the table that was opened so, and ask this of it.
     Ask(Options),
+    /// Change which fronts are drawn beside that of the machine that is designed.
+    Fronts(FrontsCommand),
     /// Put the cursor where a signal to plot is sought.
     LookFor,
     /// Show why a number that was typed is refused.
@@ -226,6 +229,17 @@ pub enum WindowCommand {
     Tour(bool),
     /// On to its next step, or back.
     TurnTour(bool),
+}
+
+/// Which fronts are drawn beside that of the machine that is designed.
+#[derive(Clone, Debug)]
+pub enum FrontsCommand {
+    /// That of this machine stays as it is now.
+    Keep,
+    /// That of another machine, asked as this one is.
+    Add(Box<Machine>),
+    /// One is taken away, by its place.
+    Remove(usize),
 }
 
 /// What becomes of a session that was left behind.

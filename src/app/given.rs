@@ -18,6 +18,7 @@ use crate::picture::scene::palette::Palette;
 use crate::planning::curves::Coordinates;
 use crate::query::Shared;
 use crate::session::scenario::Scenario;
+use crate::study::advice::{Advice, Remedy};
 use crate::study::import::Keep;
 
 const HEIGHT: f32 = 268.0;
@@ -70,7 +71,7 @@ impl Given {
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub given: &'a Given,
-    pub answer: Option<&'a Result<Assessed, String>>,
+    pub answer: Option<&'a Result<Assessed, Advice>>,
     pub is_known: bool,
 }
 
@@ -83,7 +84,7 @@ impl Shown<'_> {
                 Coordinates::Drives => Content::Drives,
                 Coordinates::EndEffector => Content::Tip,
             },
-            _ => self.given.options.content.unwrap_or_else(|| Content::of(&self.given.table.0.text)),
+            _ => self.given.options.content.unwrap_or(Content::Drives),
         }
     }
 
@@ -132,7 +133,7 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
             let rest = ui.available_width();
             match shown.answer {
                 None => {}
-                Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why, &shown, commands)),
+                Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
                 Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
                     motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
                 }
@@ -171,9 +172,21 @@ fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
 }
 
 /// Why a table cannot be read.
-fn refused(ui: &mut Ui, p: &Palette, why: &str, shown: &Shown<'_>, commands: &mut Vec<Command>) {
-    ui.add(Label::new(RichText::new(why).font(plain(12.5)).color(colour(p.reaction))).wrap());
-    let _ = (shown, commands);
+fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
+    let words = RichText::new(worded(why)).font(plain(12.5)).color(colour(p.reaction));
+    ui.add(Label::new(words).wrap());
+}
+
+/// A sentence that names controls of the window for the ways out.
+fn worded(advice: &Advice) -> String {
+    let control = |remedy| match remedy {
+        Remedy::Gaps => "“bridge gaps”",
+        Remedy::Smoothing | Remedy::CutOff => "“smoothed at”",
+        Remedy::PoseConstant => "“on the plane b”",
+        Remedy::Workspace => "the workspace in the scene",
+        Remedy::Design | Remedy::Check => "the design view (D)",
+    };
+    advice.worded(control).to_string()
 }
 
 /// How the table is read, and what is asked of it.

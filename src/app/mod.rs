@@ -59,7 +59,9 @@ mod widgets;
 pub mod window;
 
 pub use activity::Activity;
-pub use command::{Command, ComparisonCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand};
+pub use command::{
+    Command, ComparisonCommand, FrontsCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
+};
 pub use file_dialog::{FileDialog, PlotFile, Purpose};
 pub use finder::Finder;
 pub use framing::Framing;

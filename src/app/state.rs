@@ -30,6 +30,7 @@ use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, SignalsOf};
 use crate::study::comparison::Comparison;
+use crate::study::fronts::FrontOf;
 
 /// A session on display.
 pub struct AppState {
@@ -46,6 +47,8 @@ pub struct AppState {
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
+    /// Machines whose fronts are drawn beside that of the machine that is designed.
+    fronts: Vec<FrontOf>,
     /// The table that was opened last.
     given: Option<Given>,
     /// What is under way beside the window.
@@ -84,6 +87,7 @@ impl AppState {
             saving: Saving::default(),
             comparison: None,
             given: None,
+            fronts: Vec::new(),
             background,
             owed: 0.0,
             pace: Pace::default(),

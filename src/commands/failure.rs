@@ -14,6 +14,8 @@ use stillbase::planning::timing::TimeError;
 use stillbase::session::Refusal;
 use stillbase::session::scenario::ScenarioError;
 
+use super::remedy::option;
+
 /// Why a command did not finish.
 #[derive(Debug)]
 pub enum Failure {
@@ -72,7 +74,7 @@ impl From<ScenarioError> for Failure {
 }
 impl From<TableError> for Failure {
     fn from(e: TableError) -> Self {
-        Self::wrong_input(e)
+        Self::wrong_input(e.worded(option))
     }
 }
 impl From<WriteError> for Failure {

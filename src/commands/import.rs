@@ -18,6 +18,7 @@ use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
+use super::remedy::option;
 use table::table;
 
 /// Read a motion of your own from CSV, report what it does to the base, and propose the nearest reactionless one
@@ -97,7 +98,8 @@ impl From<ImportError> for Failure {
     fn from(why: ImportError) -> Self {
         match why {
             ImportError::NoPoses(_) => Self::no_answer(why),
-            ImportError::NoJoints | ImportError::TooDense => Self::wrong_input(why),
+            ImportError::NoJoints => Self::wrong_input(why).of("--keep joints has no use here"),
+            ImportError::TooDense => Self::wrong_input(why),
         }
     }
 }
@@ -142,8 +144,9 @@ impl Import {
         });
         let scenario = Shared(Scenario { name: stem, title, machine, ..base }.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
-        let imported = answered::<Importing>(request)?;
-        imported.notes.iter().for_each(|note| say(format!("note: {note}")));
+        let found = answered::<Importing>(request)?;
+        found.notes.iter().for_each(|note| say(format!("note: {}", note.worded(option))));
+        let imported = Imported { reason: found.reason.map(|reason| reason.worded(option)), ..found };
         self.format.print(&Answer { file: &name, imported: &imported }, |answer| table(answer.imported))?;
         let Some([proposed, given]) = &imported.scenarios else {
             return Err(Failure::no_answer(imported.reason.unwrap_or_default()));

@@ -31,6 +31,7 @@ mod output;
 mod plan;
 mod pose;
 mod reach;
+mod remedy;
 mod simulate;
 mod sites;
 mod spectrum;

@@ -5,6 +5,7 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::Motion;
 use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
+use crate::query::Watch;
 
 /// Peaks and sums over a motion, from the model's own dynamics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,9 @@ const INSTANTS: usize = 2000;
 const A_PART: usize = 100;
 const MOST: usize = 100_000;
 
+/// After so many instants it is told how much is done.
+const A_WORD: usize = 1024;
+
 /// A limit counts as passed from this factor on.
 const PASSED: f64 = 1.0 + 1e-6;
 
@@ -54,6 +58,16 @@ impl Forecast {
 
     /// The same by that many instants, evenly in the middles of as many parts of T.
     pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, instants: usize) -> Self {
+        Self::at_while(motion, (model, around, limits), instants, &mut |_| true)
+    }
+
+    /// The same; once the rest is not wanted it is left out, and the answer is of no use.
+    pub fn at_while(
+        motion: &Motion,
+        (model, around, limits): (&Inertia, &Surroundings, &Limits),
+        instants: usize,
+        goes_on: Watch<'_>,
+    ) -> Self {
         let (time, lambda) = (motion.duration(), model.lambda());
         let n = model.drives();
         let mut sum = Self {
@@ -76,6 +90,9 @@ impl Forecast {
         let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
         for i in 0..instants {
+            if i % A_WORD == 0 && !goes_on(i as f64 / instants as f64) {
+                break;
+            }
             let r = motion.at((i as f64 + 0.5) * dt);
             let (torque, wrench) = inverse_with_wrench(model, &r.q.units(), &r.qd, &r.qdd, around);
             let motors = model.motors();

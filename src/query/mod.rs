@@ -27,5 +27,5 @@ pub use growing::{Growing, Grown, grown};
 pub use input::{Same, Shared};
 pub use job::{AtOnce, Job, Poll, Short, Ticket, Workers};
 pub use queries::{Asking, Queries};
-pub use question::{Portion, Query, Quick, Watch, Whole, answered};
+pub use question::{Portion, Query, Quick, Watch, Whole, answered, part};
 pub use sequence::{Mark, Revision, Sequence};

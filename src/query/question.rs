@@ -25,6 +25,11 @@ pub trait Query: Send + Sized + 'static {
 /// Told how much is done, from 0 to 1; says whether the rest is still wanted.
 pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
 
+/// The same of a part of the work, from one share of the whole to another.
+pub fn part(goes_on: Watch<'_>, [from, to]: [f64; 2]) -> impl FnMut(f64) -> bool {
+    move |done| goes_on(from + (to - from) * done)
+}
+
 /// What a portion of work has come to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Portion<A> {

@@ -3,6 +3,7 @@
 //! elsewhere, and the nearest one without reactions; the equations of the paper with today's numbers in them; and a
 //! machine that is built, from what its base felt.
 
+pub mod advice;
 pub mod balance_constants;
 pub mod comparison;
 pub mod counterweights;

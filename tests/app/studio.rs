@@ -26,6 +26,7 @@ pub const TESTS: &[Test] = tests![
     inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
+    fronts_are_kept_and_stand_beside_each_other,
     equations_light_up_their_links,
     equations_follow_the_machine_and_are_remembered,
 ];
@@ -339,6 +340,31 @@ fn discs_keep_clear_and_serve_a_range_of_payloads() {
         assert!(nearest.fold(f64::INFINITY, f64::min) > weight.radius + 0.005 - 1e-6, "link {}", weight.link);
     }
     assert!(h.query_by_label_contains("What is left over the payloads: at worst 0.05").is_some());
+}
+
+/// A front that was kept stays as it was whatever becomes of the machine; what has none says so.
+fn fronts_are_kept_and_stand_beside_each_other() {
+    let mut h = bare();
+    h.get_by_label("keep this front").click();
+    h.run_steps(4);
+    let kept = |h: &Window| {
+        let row = h.query_by_label_contains(" kg, ");
+        row.and_then(|row| row.accesskit_node().value().or_else(|| row.accesskit_node().label())).unwrap_or_default()
+    };
+    let before = kept(&h);
+    assert!(!before.is_empty());
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("design.density", 11_340.0)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("length.l1", 0.6)));
+    h.run_steps(4);
+    assert_eq!(kept(&h), before);
+    h.get_by_label("Add a front").click();
+    h.run_steps(3);
+    h.get_by_label("two-drive").click();
+    h.run_steps(4);
+    h.get_by_label("Remove the front of nine-link-bare").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("Remove the front of nine-link-bare").is_none());
+    assert!(h.query_by_label("Remove the front of two-drive").is_some());
 }
 
 fn colours_tell_the_machines_of_the_front_apart() {

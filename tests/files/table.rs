@@ -2,9 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stillbase::files::table::{SampleTable, TableError, motions, samples};
+use stillbase::files::table::{SampleTable, Table, TableError, motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::planning::curves::Coordinates;
+use stillbase::study::advice::Remedy;
 
 /// Twenty rows of a motion over a second, written by `row` of time, s.
 fn table(head: &str, row: impl Fn(f64) -> String) -> String {
@@ -63,7 +64,7 @@ fn what_is_wrong_is_said_by_line_and_column() {
     ] {
         let why = read(&text).expect_err(want);
         assert_eq!((&*why.file, why.line), ("in.csv", line), "{why}");
-        assert!(why.why.contains(want), "{why}");
+        assert!(why.why.to_string().contains(want), "{why}");
         let place = line.map_or("in.csv: ".to_owned(), |line| format!("in.csv:{line}: "));
         assert!(why.to_string().starts_with(&place), "{why}");
     }
@@ -83,5 +84,75 @@ fn motions_part_where_time_leaps_or_begins_anew() {
     assert!((found[2].force[0].re - 1e-4).abs() < 1e-15 && found[0].qd.is_empty());
     let moving = table("t,q1,q2,fx,fy,nz,base_x", |t| format!("{},{}", row(t), 1e-3 * t));
     let why = motions(&moving, "in.csv", machine).expect_err("the base moves");
-    assert!(why.line == Some(3) && why.why.starts_with("column base_x: the base moves"), "{why}");
+    assert!(why.line == Some(3) && why.why.to_string().starts_with("column base_x: the base moves"), "{why}");
+}
+
+/// A motion and a measurement are told apart by their columns, whatever stands between these.
+#[test]
+fn what_a_table_is_of_is_told_by_its_columns() {
+    let machine = builtin("nine-link").expect("built in");
+    let of = |head: &str, row: &str| Table::of(&table(head, |t| format!("{t}{row}")), "in.csv", machine, false);
+    for (head, row, coordinates) in [
+        ("t,q1,q2,q3", ",1.7,3.7,2.2", Coordinates::Drives),
+        ("\u{feff}t;q1 (rad);q2;q3", ";1.7;3.7;2.2", Coordinates::Drives),
+        ("t,x (mm),y", ",500,0.5", Coordinates::EndEffector),
+        // Of a motion the angles come first, and what else is there is left alone.
+        ("t,q1,q2,q3,x,y,tau1", ",1.7,3.7,2.2,0.5,0.5,0", Coordinates::Drives),
+    ] {
+        let found = of(head, row).expect(head);
+        assert!(matches!(found, Table::Motion(ref motion) if motion.coordinates == coordinates), "{head}: {found:?}");
+    }
+    for (head, row) in [
+        ("t,q1,q2,q3,fx,fy,nz", ",1.7,3.7,2.2,1,2,3"),
+        ("t;q1;q2;q3;fx (mN);f_y;moment/total N m", ";1.7;3.7;2.2;1;2;3"),
+        ("t,q1,q2,q3,x,y,fx,fy,nz", ",1.7,3.7,2.2,0.5,0.5,1,2,3"),
+    ] {
+        let found = of(head, row).expect(head);
+        assert!(matches!(found, Table::Measurement(ref motions) if motions[0].t.len() == 20), "{head}: {found:?}");
+    }
+}
+
+/// A table that is neither is refused, with the columns of both.
+#[test]
+fn a_table_that_is_neither_is_refused() {
+    let machine = builtin("nine-link").expect("built in");
+    let refused = |text: &str| Table::of(text, "in.csv", machine, false).expect_err("neither").to_string();
+    let both = "want a header t,q1,q2,q3 (rad) or t,x,y (m) of a motion, or t,q1,q2,q3,fx,fy,nz (s, rad, N, N m) of a \
+                measurement";
+    for (text, what) in [
+        ("", "in.csv:1: nothing here"),
+        ("\u{feff}", "in.csv:1: nothing here"),
+        ("1,2,3,4\n", "in.csv:1: no header"),
+        ("t,a,b\n0,1,2\n", "in.csv:1: no column q1 among \"t\", \"a\", \"b\""),
+        ("t,q1,q2\n0,1,2\n", "in.csv:1: no column q3 among"),
+        ("t,x\n0,1\n", "in.csv:1: no column y among"),
+        ("q1,q2,q3\n0,1,2\n", "in.csv:1: no column t among"),
+        ("t,q1,q2,q3,fx,fy\n0,1,2,3,4,5\n", "in.csv:1: no column nz among"),
+        ("t,q1,q2,fx,fy,nz\n0,1,2,3,4,5\n", "in.csv:1: no column q3 among"),
+    ] {
+        let why = refused(text);
+        assert!(why.starts_with(what) && why.ends_with(both), "{why}");
+    }
+    for (head, row, what) in [
+        ("t,q1,q2,q3", ",NaN,3.7,2.2", "in.csv:2: column q1: \"NaN\": want a finite number"),
+        ("t,q1,q2,q3,fx,fy,nz", ",1.7,3.7,2.2,1,inf,3", "in.csv:2: column fy: \"inf\": want a finite number"),
+        ("t,q1,q2,q3,fx,fy,nz", ",1.7,3.7,2.2,1,2", "in.csv:2: column nz: nothing there"),
+    ] {
+        let why = refused(&table(head, |t| format!("{t}{row}")));
+        assert!(why.starts_with(what), "{why}");
+    }
+    let why = Table::open("no/such/file.csv".as_ref(), machine, false).expect_err("not there").to_string();
+    assert!(why.starts_with("no/such/file.csv: ") && why.contains("want a plain file"), "{why}");
+}
+
+/// What would help is named by whoever shows the message.
+#[test]
+fn a_way_out_has_the_name_of_who_shows_it() {
+    let gap = table("t,q1,q2,q3", |t| format!("{},1.7,3.7,2.2", if t > 0.5 { t + 9.0 } else { t }));
+    let why = read(&gap).expect_err("a gap");
+    assert_eq!(why.why.remedies().collect::<Vec<_>>(), [Remedy::Gaps]);
+    let plain = why.to_string();
+    assert!(!plain.contains("--") && plain.ends_with("to have it bridged by the spline"), "{plain}");
+    let worded = why.worded(|_| "a tick at Gaps").to_string();
+    assert!(worded.ends_with("want it filled, or a tick at Gaps to have it bridged by the spline"), "{worded}");
 }

@@ -427,7 +427,7 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     let moved = |b: f64| same_tip(&space, &model, &given, b, Rule::default()).ok().flatten();
     let far =
         |b: f64| moved(b).map(|m| Deviation::between(machine.end_effector(), &model, &as_given, &motion(&m), 3000));
-    let (b, rms) = nearest_b(&space, &model, &given, Rule::default()).expect("some plane does");
+    let (b, rms) = nearest_b(&space, &model, &given, Rule::default(), &mut |_| true).expect("some plane does");
     let best = far(b).expect("it does");
     assert!((best.rms / rms - 1.0).abs() < 1e-3, "{} {rms}", best.rms);
     assert!(best.tip < 1e-6 && best.rms > 1e-3, "{best:?}");
@@ -445,7 +445,7 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     }
     // A motion that is on a plane already is its own nearest.
     let on = moved(b).expect("it does");
-    let (same, rms) = nearest_b(&space, &model, &on, Rule::default()).expect("its own");
+    let (same, rms) = nearest_b(&space, &model, &on, Rule::default(), &mut |_| true).expect("its own");
     assert!((same - b).abs() < 1e-6 && rms < 1e-6, "{same} {b} {rms}");
 }
 

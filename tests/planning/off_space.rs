@@ -402,7 +402,7 @@ fn the_closest_motion_of_a_b_is_found() {
                 }
             }
         }
-        let (b, least) = nearest_b(&space, &model, &samples, Rule::default()).expect("some b does");
+        let (b, least) = nearest_b(&space, &model, &samples, Rule::default(), &mut |_| true).expect("some b does");
         for other in [b - 0.01, b + 0.01, 1.0, 1.05] {
             let Ok(Some(other)) = same_tip(&space, &model, &samples, other, Rule::default()) else { continue };
             let whole: f64 = model.diagonals().iter().sum();

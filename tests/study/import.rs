@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::planning::curves::{Coordinates, Samples};
-use stillbase::query::{Queries, Shared, State, answered};
+use stillbase::query::{Portion, Queries, Query, Shared, State, answered};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
+use stillbase::study::advice::Remedy;
 use stillbase::study::import::{GivenMotion, ImportError, Importing, Keep, Request};
 
 /// From rest to rest over one second, 0 to 1.
@@ -86,6 +87,67 @@ fn portions_come_to_the_same() {
     let found = found.as_ref().as_ref().expect("a motion");
     assert_eq!(found.proposal, at_once.proposal);
     assert_eq!((&found.given, &found.scenarios), (&at_once.given, &at_once.scenarios));
+}
+
+/// The search for what to propose tells how far it is, never less than before, and ends where it is not wanted any more.
+#[test]
+fn the_search_is_told_and_stopped() {
+    for (name, coordinates, samples) in [
+        ("nine-link", Coordinates::Drives, moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9])),
+        ("nine-link", Coordinates::EndEffector, moving(&[0.50, 0.50], &[0.05, 0.40])),
+        ("four-drive", Coordinates::EndEffector, moving(&[0.50, 0.50], &[0.05, 0.40])),
+    ] {
+        let machine = builtin(name).expect("built in");
+        let asked = request(machine, coordinates, samples);
+        let mut heard = Vec::new();
+        let mut work = Importing::begin(asked.clone());
+        loop {
+            match work.go_on(&mut |done| {
+                heard.push(done);
+                true
+            }) {
+                Portion::More(done) => heard.push(done),
+                Portion::Done(found) => break assert!(found.expect("a motion").feasible),
+                Portion::Stopped => unreachable!("all of it is wanted"),
+            }
+        }
+        assert!(heard.is_sorted() && heard[0] > 0.0 && heard[heard.len() - 1] <= 1.0, "{heard:?}");
+        assert!(heard.iter().filter(|done| **done < 0.5).count() > 3, "{heard:?}");
+        // Wherever it hears that the rest is not wanted it says so, and asks no more.
+        for last in [1, 3, heard.len() / 2] {
+            let (mut words, mut work) = (0, Importing::begin(asked.clone()));
+            let end = (0..100).find_map(|_| {
+                let portion = work.go_on(&mut |_| {
+                    words += 1;
+                    words < last
+                });
+                if matches!(portion, Portion::More(_)) { None } else { Some(portion) }
+            });
+            assert!(matches!(end, Some(Portion::Stopped)) && words == last, "{words} {last}");
+        }
+    }
+}
+
+/// What would help is named apart, so that no option of a command stands in what others show.
+#[test]
+fn what_would_help_is_named_apart() {
+    let machine = builtin("scara").expect("built in");
+    let asked = request(machine, Coordinates::Drives, moving(&[0.3, 0.9], &[0.4, -0.2]));
+    let found = answered::<Importing>(asked).expect("a motion");
+    let why = found.reason.expect("nothing can be proposed");
+    assert!(!why.to_string().contains("--"), "{why}");
+    let rough = moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]);
+    let mut sign = 1e-4;
+    let jagged = rough.rows().map(|row| {
+        sign = -sign;
+        row[1..].iter().map(|x| x + sign).collect()
+    });
+    let jagged = rough.with_values(jagged).expect("as many");
+    let found = answered::<Importing>(request(builtin("nine-link").expect("built in"), Coordinates::Drives, jagged));
+    let note = found.expect("a motion").notes.swap_remove(0);
+    assert_eq!(note.remedies().collect::<Vec<_>>(), [Remedy::CutOff]);
+    assert!(note.to_string().ends_with("digits or samples; smoothing removes higher frequencies"), "{note}");
+    assert!(note.worded(|_| "--smooth HZ").to_string().ends_with("; --smooth HZ removes higher frequencies"), "{note}");
 }
 
 /// Angles that were wrapped begin within the joint limits again, and smoothing says what it moved.

@@ -5,7 +5,7 @@ use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, pla
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::query::{Shared, answered};
+use stillbase::query::{Portion, Query, Shared, answered};
 use stillbase::study::trim::{
     Fit, Made, Motion, NoTrim, Part, Recording, Rows, TrimError, TrimRequest, Trimming, Unknown, Way, fit, identified,
     mend, next, taken, worth,
@@ -476,16 +476,15 @@ fn the_query_puts_all_of_it_together() {
     let hidden = Machine::new(spec).expect("a machine");
     let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
     let mut recording = measured(&hidden, &mut noise, how, &[true; 3]);
-    let ask = |recording: &Recording, as_given: bool| {
-        answered::<Trimming>(TrimRequest {
-            machine: Shared(machine.clone().into()),
-            recording: Shared(recording.clone().into()),
-            angles_only: false,
-            as_given,
-            way: of_weights(&machine),
-            accelerations: None,
-        })
+    let request = |recording: &Recording, as_given: bool| TrimRequest {
+        machine: Shared(machine.clone().into()),
+        recording: Shared(recording.clone().into()),
+        angles_only: false,
+        as_given,
+        way: of_weights(&machine),
+        accelerations: None,
     };
+    let ask = |recording: &Recording, as_given: bool| answered::<Trimming>(request(recording, as_given));
     let found = ask(&recording, false);
     assert!(found.doubt.is_none() && found.angle_noise.is_none());
     let trim = found.outcome.expect("a fit");
@@ -501,6 +500,13 @@ fn the_query_puts_all_of_it_together() {
     assert!(matches!(ask(&recording, false).outcome, Err(NoTrim::Doubted(_))));
     let believed = ask(&recording, true);
     assert!(believed.doubt.is_some() && believed.outcome.is_ok());
+    // Faults are tried one by one, each in a portion.
+    let mut heard = Vec::new();
+    let mut work = Trimming::begin(request(&recording, false));
+    while let Portion::More(done) = work.go_on(&mut |_| true) {
+        heard.push(done);
+    }
+    assert!(heard.is_sorted() && heard.iter().filter(|done| (0.05..0.8).contains(*done)).count() > 20, "{heard:?}");
     recording.motions.clear();
     assert!(matches!(ask(&recording, true).outcome, Err(NoTrim::Unusable(_))));
 }

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::files::table::{SampleTable, motions, samples};
+use crate::files::table::{SampleTable, Table as Read, motions, samples};
 use crate::planning::curves::Coordinates;
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::session::scenario::Scenario;
+use crate::study::advice::Advice;
 use crate::study::import::{GivenMotion, ImportError, Imported, Importing, Keep, Request};
-use crate::study::trim::{Recording, TrimRequest, Trimmed, Trimming, Way};
+use crate::study::trim::{Motion, Recording, TrimRequest, Trimmed, Trimming, Way};
 
 /// The text of a table, and what it is called.
 #[derive(Debug, PartialEq)]
@@ -27,20 +28,6 @@ pub enum Content {
     Tip,
     /// A machine that moved, with what its base felt.
     Measurement,
-}
-
-impl Content {
-    /// As what the columns of a table say.
-    pub fn of(text: &str) -> Self {
-        let head = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().to_lowercase();
-        let has = |name: &str| head.split([',', ';', '\t']).any(|cell| cell.trim().trim_matches('"').starts_with(name));
-        match () {
-            () if has("fx") && has("nz") => Self::Measurement,
-            () if has("q1") => Self::Drives,
-            () if has("x") => Self::Tip,
-            () => Self::Drives,
-        }
-    }
 }
 
 /// How a table is read, and what is asked of what it holds.
@@ -107,7 +94,7 @@ const READ: f64 = 0.02;
 impl Query for Assessing {
     type Input = Asked;
     /// Or why the table cannot be read.
-    type Answer = Result<Assessed, String>;
+    type Answer = Result<Assessed, Advice>;
 
     fn begin(asked: Asked) -> Self {
         Self { asked, work: None }
@@ -140,36 +127,47 @@ impl Query for Assessing {
 }
 
 impl Asked {
-    fn read(&self) -> Result<Work, String> {
+    fn read(&self) -> Result<Work, Advice> {
         let Self { table, scenario, options } = self;
         let (Table { name, text }, machine) = (&*table.0, &scenario.0.machine);
-        let content = options.content.unwrap_or_else(|| Content::of(text));
-        let coordinates = match content {
-            Content::Measurement => {
-                let motions = motions(text, name, machine).map_err(|why| why.to_string())?;
-                let request = TrimRequest {
-                    machine: Shared(machine.clone().into()),
-                    recording: Shared(Recording { motions }.into()),
-                    angles_only: options.angles_only,
-                    as_given: options.as_given,
-                    way: Way::of(&scenario.0.design, machine),
-                    accelerations: None,
-                };
-                return Ok(Work::Measured(Trimming::begin(request).into()));
-            }
-            Content::Drives => Coordinates::Drives,
-            Content::Tip => Coordinates::EndEffector,
+        let of = |coordinates| samples(text, name, machine, Some(coordinates), options.gaps).map(Read::Motion);
+        let read = match options.content {
+            None => Read::of(text, name, machine, options.gaps),
+            Some(Content::Drives) => of(Coordinates::Drives),
+            Some(Content::Tip) => of(Coordinates::EndEffector),
+            Some(Content::Measurement) => motions(text, name, machine).map(Read::Measurement),
         };
-        let table = samples(text, name, machine, Some(coordinates), options.gaps);
-        let SampleTable { coordinates, samples, names, unwrapped } = table.map_err(|why| why.to_string())?;
-        let motion = GivenMotion::new(machine, coordinates, names, samples);
+        match read? {
+            Read::Motion(table) => self.import(table),
+            Read::Measurement(motions) => Ok(self.trim(motions)),
+        }
+    }
+
+    fn import(&self, table: SampleTable) -> Result<Work, Advice> {
+        let Self { scenario, options, .. } = self;
+        let SampleTable { coordinates, samples, names, unwrapped } = table;
+        let motion = GivenMotion::new(&scenario.0.machine, coordinates, names, samples);
         let motion = match options.smoothing {
             Some(cut_off) => motion.smoothed(cut_off).map_err(|why| why.to_string())?,
             None => motion,
         };
         let motion = Arc::new(motion);
-        let keep = options.keep.filter(|_| content == Content::Drives);
+        let keep = options.keep.filter(|_| coordinates == Coordinates::Drives);
         let request = Request { scenario: scenario.clone(), motion: Shared(motion.clone()), b: options.b, keep };
         Ok(Work::Motion { motion, unwrapped, importing: Importing::begin(request).into() })
+    }
+
+    fn trim(&self, motions: Vec<Motion>) -> Work {
+        let Self { scenario, options, .. } = self;
+        let machine = &scenario.0.machine;
+        let request = TrimRequest {
+            machine: Shared(machine.clone().into()),
+            recording: Shared(Recording { motions }.into()),
+            angles_only: options.angles_only,
+            as_given: options.as_given,
+            way: Way::of(&scenario.0.design, machine),
+            accelerations: None,
+        };
+        Work::Measured(Trimming::begin(request).into())
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
-use super::{Shown, Taking, column, rows, take, title};
+use super::{Shown, Taking, column, rows, take, title, worded};
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::note;
 use crate::app::{Command, ComparisonCommand, Switch, ViewChange, WindowCommand};
@@ -58,7 +58,7 @@ pub(super) fn show(
             note(ui, p, &format!("{name} was lifted by {turns:+.0} turns, {why}"));
         }
         for words in &imported.notes {
-            note(ui, p, words);
+            note(ui, p, &worded(words));
         }
     });
 }
@@ -109,7 +109,8 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, co
         }
         (None, reason) => {
             title(ui, p, "No proposal", "");
-            ink(ui, reason.as_deref().unwrap_or("there is no motion near it without reactions"), p.reaction);
+            let why = reason.as_ref().map_or_else(|| "there is no motion near it without reactions".into(), worded);
+            ink(ui, &why, p.reaction);
         }
     }
     ui.add_space(4.0);

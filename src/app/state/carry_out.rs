@@ -135,6 +135,7 @@ impl AppState {
                     given.options = options;
                 }
             }
+            WindowCommand::Fronts(change) => self.change_fronts(change),
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;
                 self.looks = true;

@@ -2,11 +2,13 @@
 
 use super::AppState;
 use crate::app::change::Change;
-use crate::app::studio;
+use crate::app::{FrontsCommand, studio};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::views::ViewKind;
 use crate::session::Edit;
 use crate::session::design::{briefed, weights_of};
+use crate::session::scenario::Scenario;
+use crate::study::fronts::FrontOf;
 
 impl AppState {
     /// An edit with what follows from it where a machine that is designed is kept balanced.
@@ -21,6 +23,19 @@ impl AppState {
             return scenario.design.edit(&scenario.machine, start, change);
         }
         if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
+    }
+
+    /// Changes which fronts are drawn beside that of the machine that is designed.
+    pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
+        let Scenario { machine, design, .. } = self.session.scenario();
+        match change {
+            FrontsCommand::Keep => self.fronts.push(FrontOf::of(machine.name(), machine, design)),
+            FrontsCommand::Add(machine) => {
+                self.fronts.push(FrontOf::of(machine.name(), &machine, design));
+            }
+            FrontsCommand::Remove(place) if place < self.fronts.len() => drop(self.fronts.remove(place)),
+            FrontsCommand::Remove(_) => {}
+        }
     }
 
     /// Takes the counterweights of a machine of the front, by its place.

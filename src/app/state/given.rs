@@ -10,6 +10,7 @@ use crate::app::change::Change;
 use crate::app::given::{Assessed, Assessing, Given, Options, Table, Taking};
 use crate::query::{Asked, Shared, State};
 use crate::session::Edit;
+use crate::study::advice::Advice;
 use crate::study::trim::{Trim, as_measured};
 
 impl AppState {
@@ -32,10 +33,10 @@ impl AppState {
     }
 
     /// What a table says, and whether that is of the session as it is.
-    pub(super) fn assessed(&self) -> Option<(Arc<Result<Assessed, String>>, bool)> {
+    pub(super) fn assessed(&self) -> Option<(Arc<Result<Assessed, Advice>>, bool)> {
         let Asked { last, state } = self.queries().newest::<Assessing>()?;
         match state {
-            State::Broken => Some((Arc::new(Err(fault("reading the table"))), true)),
+            State::Broken => Some((Arc::new(Err(fault("reading the table").into())), true)),
             State::Stopped if last.is_none() => {
                 Some((Arc::new(Err("cancelled: another choice asks the table again".into())), true))
             }

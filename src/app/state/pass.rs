@@ -70,7 +70,7 @@ impl AppState {
         if designs {
             let found = match self.view_state.arrangement.learns {
                 true => studio::Facts::learned(&queries, &self.session),
-                false => studio::Facts::weighed(&queries, &self.session, self.view_state.front_by),
+                false => studio::Facts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));

@@ -13,6 +13,7 @@ use crate::session::Session;
 use crate::session::design::Brief;
 use crate::settings::number::subscript;
 use crate::study::front_point::FrontMeasure;
+use crate::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
 use crate::study::measures::Measures;
 
 /// How many machines the front has.
@@ -31,6 +32,8 @@ pub struct Facts {
     pub(super) payloads: Option<Arc<Vec<Residual>>>,
     /// What less inertia costs in mass; none while the equations are on display.
     front: Option<Asked<Points>>,
+    /// Fronts of other machines; none while the equations are on display.
+    beside: Option<Asked<Vec<MachineFront>>>,
     /// What tells the machines of the front apart, of each of them.
     pub(super) told: Option<Arc<Told>>,
     /// Its equations; none while the front is on display.
@@ -185,9 +188,14 @@ impl Term {
 const NOTHING: f64 = 1e-9;
 
 impl Facts {
-    /// Of the machine on display, with its front.
-    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>) -> Self {
+    /// Of the machine on display, with its front, and with those of others beside it.
+    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontOf]) -> Self {
         let mut facts = Self::of(queries, session);
+        facts.beside = (!others.is_empty()).then(|| {
+            let machines = others.to_vec();
+            let request = FrontsRequest { machines, count: POINTS, motion: None, workspace: false };
+            queries.ask_beside::<Fronts>(&request)
+        });
         let Some(bare) = &facts.sums.bare else { return facts };
         let front = queries.ask_beside::<FrontSearch>(&asked(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
@@ -221,6 +229,7 @@ impl Facts {
             payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
+            beside: None,
             told: None,
             lesson: None,
         }
@@ -242,6 +251,19 @@ impl Facts {
             Some(Ok(points)) => Ok(points),
             Some(Err(why)) => Err(why),
             None => Ok(&[]),
+        }
+    }
+
+    /// The fronts of other machines, as far as they are known.
+    pub(super) fn beside(&self) -> &[MachineFront] {
+        self.beside.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
+    }
+
+    /// How much of them is found, while that is under way.
+    pub(super) fn beside_under_way(&self) -> Option<f64> {
+        match self.beside.as_ref()?.state {
+            State::UnderWay(share) => Some(share),
+            _ => None,
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod asked;
 mod bars;
+mod beside;
 mod equations;
 mod facts;
 mod front;

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display};
 
+use crate::study::advice::{Advice, Remedy};
+
 /// Why text is not the table that is wanted: where, and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableError {
@@ -10,7 +12,7 @@ pub struct TableError {
     /// Line, counted from 1; none if the whole text is wrong.
     pub line: Option<u64>,
     /// What is wrong, by column where it is one, and what was expected.
-    pub why: String,
+    pub why: Advice,
 }
 
 impl TableError {
@@ -21,7 +23,23 @@ impl TableError {
 
     /// Of the whole text.
     pub(super) fn whole(file: &str, why: impl Display) -> Self {
-        Self { file: file.to_owned(), line: None, why: why.to_string() }
+        Self { file: file.to_owned(), line: None, why: why.to_string().into() }
+    }
+
+    /// The same with other names for the ways out.
+    #[must_use]
+    pub fn worded(self, name: impl Fn(Remedy) -> &'static str) -> Self {
+        Self { why: self.why.worded(name), ..self }
+    }
+}
+
+/// Where, and why.
+impl From<TableError> for Advice {
+    fn from(TableError { file, line, why }: TableError) -> Self {
+        why.after(match line {
+            Some(line) => format!("{file}:{line}: "),
+            None => format!("{file}: "),
+        })
     }
 }
 

@@ -36,6 +36,10 @@ const MOMENT: Units = &[
     ("kn m", 1e3),
 ];
 const LENGTH: Units = &[("m", 1.0)];
+/// Names of what the base feels.
+const FORCE_X: &[&str] = &["fx", "f_x", "force/x", "force/dynamic_x"];
+const FORCE_Y: &[&str] = &["fy", "f_y", "force/y", "force/dynamic_y"];
+const MOMENT_Z: &[&str] = &["nz", "n_z", "mz", "m_z", "moment/total"];
 /// A base that moves by more than this, m or rad, is no fixed one.
 const MAX_BASE_MOTION: f64 = 1e-9;
 
@@ -60,8 +64,16 @@ struct Columns {
 /// # Errors
 /// Where what is wrong, and what was expected.
 pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, TableError> {
-    let mut reader = Reader::new(text, file, &head_wanted(machine))?;
-    let columns = Columns::of(reader.head(), machine).map_err(|why| reader.head_error(why))?;
+    motions_or(text, file, machine, &head_wanted(machine))
+}
+
+/// The same, where `want` is the header that is wanted.
+///
+/// # Errors
+/// As [`motions`].
+pub(super) fn motions_or(text: &str, file: &str, machine: &Machine, want: &str) -> Result<Vec<Motion>, TableError> {
+    let mut reader = Reader::new(text, file, want)?;
+    let columns = Columns::of(reader.head(), machine, want).map_err(|why| reader.head_error(why))?;
     let all = columns.all();
     let (mut read, mut last, mut count) = (Split::default(), None::<String>, 0);
     while let Some(row) = reader.row()? {
@@ -91,6 +103,12 @@ pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>,
         return Err(TableError::whole(file, "no rows of numbers: want motions that were measured"));
     }
     Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
+}
+
+/// Whether a table says anything of what the base feels.
+pub(super) fn feels(head: &csv::StringRecord) -> bool {
+    let is = |cell: &str, names: &[&str], units: Units| names.contains(&name_and_unit(cell, units).0.as_str());
+    head.iter().any(|cell| is(cell, FORCE_X, FORCE) || is(cell, FORCE_Y, FORCE) || is(cell, MOMENT_Z, MOMENT))
 }
 
 fn head_wanted(machine: &Machine) -> String {
@@ -153,12 +171,12 @@ impl Split {
 }
 
 impl Columns {
-    fn of(head: &csv::StringRecord, machine: &Machine) -> Result<Self, String> {
+    fn of(head: &csv::StringRecord, machine: &Machine, wanted: &str) -> Result<Self, String> {
         let find = |names: &[String], units: Units| {
             let cells: Vec<_> = head.iter().map(|cell| name_and_unit(cell, units)).collect();
             Column::find(&cells, names, units)
         };
-        let missing = |name: &str| no_column(name, head, &head_wanted(machine));
+        let missing = |name: &str| no_column(name, head, wanted);
         let drives = machine.drives();
         let each = |short: [&str; 2], long: &str, units: Units| -> Result<Vec<Option<Column>>, String> {
             let of = |k: usize| {
@@ -185,11 +203,8 @@ impl Columns {
             q: q.map(|(k, column)| want(column, &format!("q{}", k + 1))).collect::<Result<_, _>>()?,
             qd: all(each(["qd", "dq"], "rate", RATE)?),
             qdd: all(each(["qdd", "ddq"], "acceleration", ACCELERATION)?),
-            force: [
-                want(find(&named(&["fx", "f_x", "force/x", "force/dynamic_x"]), FORCE)?, "fx")?,
-                want(find(&named(&["fy", "f_y", "force/y", "force/dynamic_y"]), FORCE)?, "fy")?,
-            ],
-            moment: want(find(&named(&["nz", "n_z", "mz", "m_z", "moment/total"]), MOMENT)?, "nz")?,
+            force: [want(find(&named(FORCE_X), FORCE)?, "fx")?, want(find(&named(FORCE_Y), FORCE)?, "fy")?],
+            moment: want(find(&named(MOMENT_Z), MOMENT)?, "nz")?,
             base: [
                 find(&named(&["base_x", "base/x"]), LENGTH)?,
                 find(&named(&["base_y", "base/y"]), LENGTH)?,

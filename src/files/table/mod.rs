@@ -5,14 +5,17 @@
 //! |---|---|
 //! | a motion given by samples of the drive angles or of the end effector | [`samples()`] |
 //! | motions of a built machine, with what its base felt | [`motions`] |
+//! | either, told apart by the columns | [`Table`] |
 
 mod angle;
 mod column;
 mod error;
+mod kind;
 mod measured;
 mod reader;
 mod samples;
 
 pub use error::TableError;
+pub use kind::Table;
 pub use measured::{MAX_ROWS, motions};
 pub use samples::{SampleTable, samples};

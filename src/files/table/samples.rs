@@ -9,6 +9,7 @@ use crate::planning::curves::given::MAX_SAMPLES;
 use crate::planning::curves::spline::FEWEST;
 use crate::planning::curves::{Coordinates, Samples};
 use crate::settings::number::{Short, counted};
+use crate::study::advice::{Advice, Remedy};
 
 const LENGTH: Units = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 
@@ -38,9 +39,22 @@ pub fn samples(
     wanted: Option<Coordinates>,
     gaps: bool,
 ) -> Result<SampleTable, TableError> {
-    let want = head_wanted(machine);
-    let mut reader = Reader::new(text, file, &want)?;
-    let columns = Columns::of(reader.head(), machine, wanted, &want).map_err(|why| reader.head_error(why))?;
+    samples_or(text, file, machine, (wanted, gaps), &head_wanted(machine))
+}
+
+/// The same, where `want` is the header that is wanted.
+///
+/// # Errors
+/// As [`samples`].
+pub(super) fn samples_or(
+    text: &str,
+    file: &str,
+    machine: &Machine,
+    (wanted, gaps): (Option<Coordinates>, bool),
+    want: &str,
+) -> Result<SampleTable, TableError> {
+    let mut reader = Reader::new(text, file, want)?;
+    let columns = Columns::of(reader.head(), machine, wanted, want).map_err(|why| reader.head_error(why))?;
     let time = &columns.all[0].name;
     let (mut rows, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
     while let Some(read) = reader.row()? {
@@ -60,12 +74,12 @@ pub fn samples(
         return Err(TableError::whole(file, why));
     }
     if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
-        let why = format!(
-            "column {time}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or --gaps to have \
-             it bridged by the spline",
+        let what = format!(
+            "column {time}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or ",
             lines[i - 1]
         );
-        return Err(TableError::at(file, lines[i], why));
+        let why = Advice::from(what).name(Remedy::Gaps).then(" to have it bridged by the spline");
+        return Err(TableError { why, ..TableError::at(file, lines[i], "") });
     }
     let mut unwrapped = vec![0; columns.all.len() - 1];
     for (k, Column { name, has_unit, .. }) in columns.all.iter().enumerate().skip(1) {

@@ -14,6 +14,7 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::given::Samples;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::BSet;
+use crate::query::Watch;
 
 /// Samples that judge a b, and those of which it is asked which b reach them.
 const JUDGED: usize = 61;
@@ -82,14 +83,19 @@ pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b:
 }
 
 /// The constant b whose motion with the same end effector is closest to the given one, rad, and its ‖Δq‖, rad; `None` if
-/// none was found. Judged by some sixty of the samples.
-pub(super) fn nearest_b(space: &PoseSpace, model: &Inertia, samples: &Samples) -> Option<(f64, f64)> {
+/// none was found, or the rest is not wanted. Judged by some sixty of the samples.
+pub(super) fn nearest_b(
+    space: &PoseSpace,
+    model: &Inertia,
+    samples: &Samples,
+    goes_on: Watch<'_>,
+) -> Option<(f64, f64)> {
     let thin = samples.thinned(JUDGED);
     let far = |b: f64| same_tip(space, model, &thin, b).map_or(f64::INFINITY, |moved| apart(model, &thin, &moved));
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;
     let asked = samples.thinned(ASKED);
     let sets: Option<Vec<BSet>> = (0..asked.count()).map(|i| space.reach(space.place(asked.values(i))).ok()).collect();
-    least(&BSet::overlap(&sets?), mean, [TRIES, SECTIONS], far)
+    least(&BSet::overlap(&sets?), mean, [TRIES, SECTIONS], far, goes_on)
 }
 
 /// The pose at b with the end effector of a given one that is closest to it, from a first guess; `pull` holds what

@@ -7,6 +7,7 @@ use crate::planning::Motion;
 use crate::planning::curves::given::Samples;
 use crate::planning::golden::golden;
 use crate::planning::reactionless::BSet;
+use crate::query::Watch;
 
 /// How far two motions of one timing are apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,15 +56,26 @@ pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
 }
 
 /// The b of a set at which a distance is least, rad, and that: tried at equal steps inside each interval and at a mean, then
-/// searched about the best by golden section, each so many times; `None` if it is finite nowhere.
+/// searched about the best by golden section, each so many times; `None` if it is finite nowhere, or the rest is not
+/// wanted.
 pub(super) fn least(
     set: &BSet,
     mean: f64,
     [tries, sections]: [usize; 2],
     far: impl Fn(f64) -> f64,
+    goes_on: Watch<'_>,
 ) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64, [f64; 2])> = None;
-    for [low, high] in set.near(mean).intervals {
+    let intervals = set.near(mean).intervals;
+    let all = intervals.len() * (tries + 1) + sections + 1;
+    let (mut done, mut stopped) = (0, false);
+    // What is not wanted any more is nowhere near.
+    let mut far = |b: f64| {
+        stopped = stopped || !goes_on(f64::from(done) / all as f64);
+        done += 1;
+        if stopped { f64::INFINITY } else { far(b) }
+    };
+    for [low, high] in intervals {
         let step = (high - low) / tries as f64;
         let inside = (0..tries).map(|i| low + (i as f64 + 0.5) * step);
         for b in inside.chain((low..=high).contains(&mean).then_some(mean)) {
@@ -74,6 +86,7 @@ pub(super) fn least(
         }
     }
     let (b, distance, around) = best?;
-    let refined = golden(around, sections, far);
-    Some(if refined.1 < distance { refined } else { (b, distance) })
+    let refined = golden(around, sections, &mut far);
+    let found = if refined.1 < distance { refined } else { (b, distance) };
+    (!stopped).then_some(found)
 }

@@ -25,6 +25,7 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::given::Samples;
 use crate::planning::pose_space::PoseSpace;
+use crate::query::Watch;
 
 /// Why a motion has no twin at a b with the same end effector.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -77,10 +78,16 @@ pub fn same_tip(
 }
 
 /// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None` if
-/// none was found. Judged by some of the samples.
-pub fn nearest_b(space: &PoseSpace, model: &Inertia, samples: &Samples, rule: Rule) -> Option<(f64, f64)> {
+/// none was found, or the rest of the search is not wanted. Judged by some of the samples.
+pub fn nearest_b(
+    space: &PoseSpace,
+    model: &Inertia,
+    samples: &Samples,
+    rule: Rule,
+    goes_on: Watch<'_>,
+) -> Option<(f64, f64)> {
     match space.planes() {
-        Ok(planes) => on_plane::nearest_b(planes.map(), &model.end_effector, model, samples, rule),
-        Err(_) => closest::nearest_b(space, model, samples),
+        Ok(planes) => on_plane::nearest_b(planes.map(), model, samples, rule, goes_on),
+        Err(_) => closest::nearest_b(space, model, samples, goes_on),
     }
 }

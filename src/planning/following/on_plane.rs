@@ -9,6 +9,7 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::given::Samples;
 use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::PlaneMap;
+use crate::query::Watch;
 
 /// b that are tried in each interval, and golden sections after that.
 const TRIES: usize = 32;
@@ -32,15 +33,15 @@ fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
 }
 
 /// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None`
-/// if none can be followed. Judged by some two hundred of the samples.
+/// if none can be followed, or the rest is not wanted. Judged by some two hundred of the samples.
 pub(super) fn nearest_b(
     map: &PlaneMap,
-    tip: &Chain,
     model: &Inertia,
     samples: &Samples,
     rule: Rule,
+    goes_on: Watch<'_>,
 ) -> Option<(f64, f64)> {
-    let thin = samples.thinned(JUDGED);
+    let (thin, tip) = (samples.thinned(JUDGED), &model.end_effector);
     let curve = tip_curve(tip, &thin.path(0.0)?)?;
     let far = |b: f64| {
         let moved = same_tip(map, tip, &thin, b, rule).ok().flatten();
@@ -48,7 +49,7 @@ pub(super) fn nearest_b(
     };
     let mean = (0..thin.count()).map(|i| map.project(thin.values(i)).b).sum::<f64>() / thin.count() as f64;
     // A little inside: at the very ends a relative angle grazes its limit, or two poses meet.
-    least(&trace::common_b(map, std::slice::from_ref(&curve), JUDGED), mean, [TRIES, SECTIONS], far)
+    least(&trace::common_b(map, std::slice::from_ref(&curve), JUDGED), mean, [TRIES, SECTIONS], far, goes_on)
 }
 
 /// The samples moved onto the plane b, rad, with the end effector where it was at every one of them, on the sheet

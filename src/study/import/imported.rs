@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::given::GivenMotion;
 use super::judge::{Account, Judge, Proposal};
-use crate::planning::Motion;
 use crate::planning::curves::Coordinates;
 use crate::session::scenario::Scenario;
 use crate::settings::number::fixed;
+use crate::study::advice::{Advice, Remedy};
 
 /// What a given motion does to the base, and what is proposed in its place.
 #[derive(Clone, Debug, Serialize)]
@@ -41,13 +41,13 @@ pub struct Imported {
     pub feasible: bool,
     /// Why there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub reason: Option<Advice>,
     /// The nearest motion without reactions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proposal: Option<Proposal>,
     /// What a person should know of the motions, a sentence each.
     #[serde(skip)]
-    pub notes: Vec<String>,
+    pub notes: Vec<Advice>,
     /// The proposal, and the motion as it was given, both to be carried out.
     #[serde(skip)]
     pub scenarios: Option<[Scenario; 2]>,
@@ -61,8 +61,8 @@ const MIN_PEAK: f64 = 1e-9;
 const MAX_END_SPEED: f64 = 1e-3;
 
 impl Imported {
-    /// Of a given motion, without a proposal; `given` is the motion of the drives.
-    pub(super) fn of(motion: &GivenMotion, judge: &Judge, given: Option<&Motion>) -> Self {
+    /// Of a given motion, without a proposal; `given` is what the motion of the drives does.
+    pub(super) fn of(motion: &GivenMotion, judge: &Judge, given: Option<Account>) -> Self {
         let samples = &motion.samples;
         let lambda = judge.model.lambda();
         let b = (0..samples.count()).map(|i| lambda.dot(samples.values(i)));
@@ -78,7 +78,7 @@ impl Imported {
             uncertainty: (0..samples.columns()).map(|k| samples.uncertainty(k)).collect(),
             b_samples: is_of_drives
                 .then(|| b.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], b| [low.min(b), high.max(b)])),
-            given: given.map(|motion| judge.account(motion)),
+            given,
             feasible: false,
             reason: None,
             proposal: None,
@@ -89,32 +89,35 @@ impl Imported {
         imported
     }
 
-    fn notes_of(&self, motion: &GivenMotion) -> Vec<String> {
+    fn notes_of(&self, motion: &GivenMotion) -> Vec<Advice> {
         // Without these there is no spline, and the motion is none.
         let Some(peaks) = motion.second_derivatives() else { return Vec::new() };
         let is_of_drives = motion.coordinates == Coordinates::Drives;
         let unit = if is_of_drives { "rad/s²" } else { "m/s²" };
-        let mut notes = Vec::new();
+        let mut notes: Vec<Advice> = Vec::new();
         for ((name, uncertainty), peak) in motion.names.iter().zip(&self.uncertainty).zip(peaks) {
             if *uncertainty > MAX_UNCERTAINTY * peak && peak > MIN_PEAK {
-                notes.push(format!(
+                let note = Advice::from(format!(
                     "the second derivative of {name} is uncertain by some {} {unit}, of a peak of {}: noise, or too few \
-                     digits or samples{}",
+                     digits or samples",
                     fixed(*uncertainty, 4),
                     fixed(peak, 4),
-                    if motion.smoothing.is_some() { "" } else { "; --smooth HZ removes higher frequencies" },
                 ));
+                notes.push(match motion.smoothing {
+                    Some(_) => note,
+                    None => note.then("; ").name(Remedy::CutOff).then(" removes higher frequencies"),
+                });
             }
         }
         let Some(given) = &self.given else { return notes };
         if given.past_limits > 0.0 {
             let what = if is_of_drives { "the motion as given" } else { "minimum-norm rates" };
             let past = fixed(given.past_limits, 4);
-            notes.push(format!("{what}: relative angles pass their limits by up to {past} rad"));
+            notes.push(format!("{what}: relative angles pass their limits by up to {past} rad").into());
         }
         if given.speed_end > MAX_END_SPEED * given.peak_speed.iter().fold(0.0, |m: f64, x| m.max(*x)) {
             let speed = fixed(given.speed_end, 4);
-            notes.push(format!("the motion does not end at rest ({speed} rad/s): after it control brakes"));
+            notes.push(format!("the motion does not end at rest ({speed} rad/s): after it control brakes").into());
         }
         notes
     }
@@ -123,7 +126,9 @@ impl Imported {
     pub(super) fn propose(&mut self, proposal: Proposal, scenarios: [Scenario; 2]) {
         if let Some((limit, factor)) = &proposal.account.over {
             let times = fixed(*factor, 2);
-            self.notes.push(format!("the proposal asks for {times} times the {limit}; slower samples, or another --b"));
+            let note =
+                Advice::from(format!("the proposal asks for {times} times the {limit}; slower samples, or another "));
+            self.notes.push(note.name(Remedy::PoseConstant));
         }
         self.feasible = true;
         self.reason = None;

@@ -1,15 +1,15 @@
 //! [`Importing`]: the query for what a given motion does, and for the motion that is proposed in its place.
 
-use super::freedoms;
+use super::drives::of_drives;
 use super::given::GivenMotion;
 use super::imported::Imported;
-use super::judge::{Candidate, Judge};
+use super::judge::{Candidate, Given, Judge};
 use super::request::{ImportError, Keep, Request};
-use super::ways::{Ways, of_drives, of_tip};
-use crate::planning::Motion;
+use super::tip::of_tip;
+use super::ways::{Ways, as_given};
 use crate::planning::curves::Coordinates;
 use crate::planning::pose_space::NoPoseSpace;
-use crate::query::{Portion, Query, Watch};
+use crate::query::{Portion, Query, Watch, part};
 use crate::session::Refusal;
 
 /// The shortest step of a proposal, s.
@@ -18,19 +18,32 @@ const MIN_STEP: f64 = 1e-4;
 const INSTANTS_PER_SAMPLE: usize = 8;
 const MIN_INSTANTS: usize = 4000;
 const MAX_INSTANTS: usize = 200_000;
+/// Up to these shares of the work the machine is looked at, and ways are searched for; in the rest these are tried.
+const LOOKED: f64 = 0.05;
+const SEARCHED: f64 = 0.5;
 
-/// What a given motion does, and the first of the motions near it that has no reactions: a candidate in a portion.
+/// What a given motion does, and the first of the motions near it that has no reactions: in a portion the machine is
+/// looked at, then candidates are searched for, then each is tried in one of its own.
 pub struct Importing {
     request: Request,
-    work: Option<Work>,
+    stage: Stage,
 }
 
-/// A motion that is assessed.
-struct Work {
+/// How far it is.
+enum Stage {
+    Begun,
+    Looked(Box<Judge>),
+    Trying(Box<Trying>),
+}
+
+/// Motions that are tried one after the other.
+struct Trying {
     judge: Judge,
-    given: Option<Motion>,
-    /// Those that are left, the best first.
-    candidates: std::vec::IntoIter<Candidate>,
+    given: Option<Given>,
+    /// The best first.
+    candidates: Vec<Candidate>,
+    /// How many were tried.
+    tried: usize,
     imported: Imported,
 }
 
@@ -39,79 +52,106 @@ impl Query for Importing {
     type Answer = Result<Imported, ImportError>;
 
     fn begin(request: Request) -> Self {
-        Self { request, work: None }
+        Self { request, stage: Stage::Begun }
     }
 
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
-        let Some(work) = &mut self.work else {
-            return match Work::of(&self.request) {
-                Ok(work) => {
-                    self.work = Some(work);
-                    Portion::More(0.0)
+        // What is not wanted once stays so, and whatever was found by then is of no use.
+        let mut stopped = false;
+        let mut goes_on = |done: f64| {
+            stopped = stopped || !goes_on(done);
+            !stopped
+        };
+        let portion = self.portion(&mut goes_on);
+        if stopped { Portion::Stopped } else { portion }
+    }
+}
+
+impl Importing {
+    fn portion(&mut self, goes_on: Watch<'_>) -> Portion<Result<Imported, ImportError>> {
+        let motion = &*self.request.motion.0;
+        match std::mem::replace(&mut self.stage, Stage::Begun) {
+            Stage::Begun => {
+                if motion.coordinates != Coordinates::Drives && self.request.keep == Some(Keep::Joints) {
+                    return Portion::Done(Err(ImportError::NoJoints));
+                }
+                let instants = INSTANTS_PER_SAMPLE * motion.samples.count();
+                let judge = Judge::new(&self.request.scenario.0, instants.clamp(MIN_INSTANTS, MAX_INSTANTS));
+                self.stage = Stage::Looked(judge.into());
+                Portion::More(LOOKED)
+            }
+            Stage::Looked(judge) => match ways(&self.request, &judge, &mut part(goes_on, [LOOKED, SEARCHED])) {
+                Ok(ways) => {
+                    self.stage = Stage::Trying(Trying::of(motion, *judge, ways).into());
+                    Portion::More(SEARCHED)
                 }
                 Err(why) => Portion::Done(Err(why)),
-            };
-        };
-        let step = self.request.motion.0.samples.spacing().clamp(MIN_STEP, work.judge.scenario.step.max(MIN_STEP));
-        match work.try_next(&self.request.motion.0, step, goes_on) {
-            Err(Refusal::Stopped) => Portion::Stopped,
-            Ok(true) => Portion::More(0.0),
-            _ => Portion::Done(Ok(work.imported.clone())),
+            },
+            Stage::Trying(mut trying) => match trying.next(motion, goes_on) {
+                true => {
+                    let share = trying.share(0.0);
+                    self.stage = Stage::Trying(trying);
+                    Portion::More(share)
+                }
+                false => Portion::Done(Ok(trying.imported)),
+            },
         }
     }
 }
 
-impl Work {
-    fn of(request: &Request) -> Result<Self, ImportError> {
-        let motion = &*request.motion.0;
-        let (samples, drives) = (&motion.samples, motion.coordinates == Coordinates::Drives);
-        if !drives && request.keep == Some(Keep::Joints) {
-            return Err(ImportError::NoJoints);
+/// What a motion is, and what might be proposed.
+fn ways(request: &Request, judge: &Judge, goes_on: Watch<'_>) -> Result<Ways, ImportError> {
+    let motion = &*request.motion.0;
+    let (samples, drives) = (&motion.samples, motion.coordinates == Coordinates::Drives);
+    match &judge.space {
+        Ok(space) if drives => of_drives(request, judge, space, samples, goes_on),
+        Ok(space) => of_tip(request, judge, space, samples, goes_on),
+        Err(NoPoseSpace::Free) => as_given(judge, samples, drives, goes_on),
+        Err(why) => {
+            let given = as_given(judge, samples, drives, goes_on)?;
+            Ok(Ways { candidates: Err(why.to_string().into()), ..given })
         }
-        let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
-        let judge = Judge::new(&request.scenario.0, instants);
-        let Ways { given, candidates } = match &judge.space {
-            Ok(space) if drives => of_drives(request, &judge, space, samples)?,
-            Ok(space) => match space.planes() {
-                Ok(planes) => of_tip(request, &judge, (space, planes), samples)?,
-                Err(_) => freedoms::of_tip(request, &judge, space, samples)?,
-            },
-            Err(NoPoseSpace::Free) => freedoms::as_given(&judge, samples, drives)?,
-            Err(why) => {
-                let given = freedoms::as_given(&judge, samples, drives)?;
-                Ways { candidates: Err(why.to_string()), ..given }
-            }
-        };
-        let mut imported = Imported::of(motion, &judge, given.as_ref());
+    }
+}
+
+impl Trying {
+    fn of(motion: &GivenMotion, judge: Judge, Ways { given, candidates }: Ways) -> Self {
+        let account = given.as_ref().map(|given| given.account.clone());
+        let mut imported = Imported::of(motion, &judge, account);
         let candidates = candidates.unwrap_or_else(|why| {
             imported.reason = Some(why);
             Vec::new()
         });
-        Ok(Self { judge, given, candidates: candidates.into_iter(), imported })
+        Self { judge, given, candidates, tried: 0, imported }
+    }
+
+    /// How much of all is done once so much of the next candidate is.
+    fn share(&self, of_next: f64) -> f64 {
+        SEARCHED + (1.0 - SEARCHED) * (self.tried as f64 + of_next) / self.candidates.len().max(1) as f64
     }
 
     /// Simulates the next candidate; whether another one is to be tried.
-    ///
-    /// # Errors
-    /// If the rest is not wanted.
-    fn try_next(&mut self, motion: &GivenMotion, step: f64, goes_on: Watch<'_>) -> Result<bool, Refusal> {
-        let Some(candidate) = self.candidates.next() else { return Ok(false) };
+    fn next(&mut self, motion: &GivenMotion, goes_on: Watch<'_>) -> bool {
+        let Some(candidate) = self.candidates.get(self.tried) else { return false };
+        let step = motion.samples.spacing().clamp(MIN_STEP, self.judge.scenario.step.max(MIN_STEP));
         let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.way);
-        match self.judge.proposal(&candidate, &scenario, self.given.as_ref(), goes_on) {
+        let mut own = part(goes_on, [self.share(0.0), self.share(1.0)]);
+        match self.judge.proposal(candidate, &scenario, self.given.as_ref(), &mut own) {
             Ok(proposal) if proposal.reactionless => {
                 match self.judge.as_given(motion, candidate.task.b, step) {
                     Some(as_given) => self.imported.propose(proposal, [scenario, as_given]),
                     None => self.imported.reason = Some("the samples make no task".into()),
                 }
-                return Ok(false);
+                return false;
             }
             Ok(proposal) => {
                 let given = self.imported.given.as_ref();
                 self.imported.reason = Some(self.judge.why_not_reactionless(&proposal, given));
             }
-            Err(Refusal::Stopped) => return Err(Refusal::Stopped),
-            Err(why) => self.imported.reason = Some(why.to_string()),
+            Err(Refusal::Stopped) => return true,
+            Err(why) => self.imported.reason = Some(why.to_string().into()),
         }
-        Ok(true)
+        self.tried += 1;
+        true
     }
 }

@@ -12,9 +12,13 @@ use crate::planning::following::nearest::Deviation;
 use crate::planning::forecast::Forecast;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::timing::Limits;
-use crate::query::Watch;
+use crate::query::{Watch, part};
 use crate::session::scenario::{Scenario, Task, TaskKind};
 use crate::session::{Refusal, Run, replay_while};
+use crate::study::advice::{Advice, Remedy};
+
+/// Up to this share of the work a proposal is simulated; in the rest it is found what it does.
+const SIMULATED: f64 = 0.8;
 
 /// What a motion does, if it is followed exactly.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,6 +87,12 @@ pub(super) struct Candidate {
     pub task: Task,
 }
 
+/// A motion as it is given, and what it does.
+pub(super) struct Given {
+    pub motion: Motion,
+    pub account: Account,
+}
+
 /// The machine with what is needed to assess motions of it.
 pub(super) struct Judge {
     /// Everything but the task.
@@ -123,8 +133,10 @@ impl Judge {
         if most > 1e-6 { most } else { 0.0 }
     }
 
-    pub fn account(&self, motion: &Motion) -> Account {
-        let f = Forecast::at(motion, &self.model, &self.around, &Limits::of(&self.machine), self.instants);
+    /// What a motion does.
+    fn account(&self, motion: &Motion, goes_on: Watch<'_>) -> Account {
+        let limits = Limits::of(&self.machine);
+        let f = Forecast::at_while(motion, (&self.model, &self.around, &limits), self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
         let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
         Account {
@@ -147,6 +159,11 @@ impl Judge {
 }
 
 impl Judge {
+    /// A motion as it is given.
+    pub fn given(&self, motion: Motion, goes_on: Watch<'_>) -> Given {
+        Given { account: self.account(&motion, goes_on), motion }
+    }
+
     /// Whether a task can be planned.
     ///
     /// Errors say why it cannot.
@@ -184,15 +201,15 @@ impl Judge {
         &self,
         candidate: &Candidate,
         scenario: &Scenario,
-        given: Option<&Motion>,
+        given: Option<&Given>,
         goes_on: Watch<'_>,
     ) -> Result<Proposal, Refusal> {
-        let run = replay_while(scenario, |run, frame| goes_on(frame.time / run.planned_time()))?;
+        let run = replay_while(scenario, |run, frame| goes_on(SIMULATED * frame.time / run.planned_time()))?;
         let peaks = run.frame().peaks;
-        let motion = &run.plan().motion;
-        let deviation = given
-            .map(|given| Deviation::between(self.machine.end_effector(), &self.model, given, motion, self.instants));
-        let account = self.account(motion);
+        let (motion, tip) = (&run.plan().motion, self.machine.end_effector());
+        let deviation =
+            given.map(|Given { motion: given, .. }| Deviation::between(tip, &self.model, given, motion, self.instants));
+        let account = self.account(motion, &mut part(goes_on, [SIMULATED, 1.0]));
         Ok(Proposal {
             way: candidate.way,
             why: candidate.why.clone(),
@@ -208,7 +225,7 @@ impl Judge {
     }
 
     /// Why holding b is not enough.
-    pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&Account>) -> String {
+    pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&Account>) -> Advice {
         let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
             return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();
@@ -217,10 +234,16 @@ impl Judge {
             "with b held the machine still transmits up to {:.2e} N m and {:.2e} N",
             proposal.simulated_peak_base_moment, proposal.simulated_peak_base_force
         );
-        let balanced = self.model.is_balanced();
-        match balanced {
-            false => format!("{what}: it is not balanced; `stillbase design` mends that, `stillbase check` says where"),
-            true => format!("{what}: the samples are too rough or too dense for their digits; want --smooth, or fewer"),
+        let what = Advice::from(what);
+        match self.model.is_balanced() {
+            false => {
+                let mends = what.then(": it is not balanced; ").name(Remedy::Design).then(" mends that, ");
+                mends.name(Remedy::Check).then(" says where")
+            }
+            true => {
+                let rough = what.then(": the samples are too rough or too dense for their digits; want ");
+                rough.name(Remedy::Smoothing).then(", or fewer")
+            }
         }
     }
 }

@@ -8,15 +8,18 @@
 //! | samples with angles within the joint limits, smoothed or not | [`GivenMotion`] |
 //! | what is asked | [`Request`] |
 //! | the query | [`Importing`] |
-//! | what it comes to | [`Imported`], of [`Account`] and [`Proposal`] |
+//! | what it comes to | [`Imported`], of [`Account`] and [`Proposal`]; [`Advice`](super::advice::Advice) in words |
 
+mod drives;
 mod freedoms;
 mod given;
 mod imported;
 mod importing;
 mod judge;
 mod lines;
+mod plane;
 mod request;
+mod tip;
 mod ways;
 
 pub use given::GivenMotion;

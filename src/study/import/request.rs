@@ -36,7 +36,7 @@ pub struct Request {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ImportError {
     /// The joint angles of a motion of the end effector are to be kept.
-    #[error("--keep joints has no use here: x and y give no joint angles to be kept")]
+    #[error("x and y give no joint angles to be kept")]
     NoJoints,
     /// No spline goes through the samples.
     #[error("want times further apart")]

@@ -2,11 +2,11 @@
 
 use thiserror::Error;
 
-use super::doubt::{Doubt, doubt};
+use super::doubt::{Doubt, Doubting};
 use super::error::TrimError;
-use super::fit::fit;
+use super::fit::{Fit, fit};
 use super::mend::{Mended, NoMend, mend};
-use super::next::next;
+use super::next::{Next, next};
 use super::recording::Recording;
 use super::report::TrimReport;
 use super::rows::{Made, Rows};
@@ -72,11 +72,32 @@ pub enum NoTrim {
 /// Noise of the angles beyond this fraction of their accelerations is worth a word.
 const MAX_ANGLE_NOISE: f64 = 0.02;
 
-/// Reads a measurement: first its rows, then what speaks against it, then what it says.
+/// Up to these shares of the work rows are made, faults are tried, numbers are fitted, and a next motion is searched for.
+const MADE: f64 = 0.05;
+const TRIED: f64 = 0.8;
+const FITTED: f64 = 0.9;
+const SEARCHED: f64 = 0.95;
+
+/// Reads a measurement: first its rows, then what speaks against it, a fault in a portion, then what it says.
 pub struct Trimming {
     request: TrimRequest,
-    rows: Option<Rows>,
-    doubted: Option<Option<Doubt>>,
+    stage: Stage,
+    /// As in [`Trimmed`].
+    angle_noise: Option<f64>,
+    doubt: Option<Doubt>,
+}
+
+/// How far it is.
+enum Stage {
+    Begun,
+    /// Rows are made.
+    Made(Rows),
+    Doubting(Rows, Box<Doubting>),
+    /// It is believed.
+    Believed(Rows),
+    Fitted(Rows, Box<Fit>),
+    /// A next motion is found.
+    Searched(Rows, Box<Fit>, Next),
 }
 
 impl Query for Trimming {
@@ -84,53 +105,85 @@ impl Query for Trimming {
     type Answer = Trimmed;
 
     fn begin(request: TrimRequest) -> Self {
-        Self { request, rows: None, doubted: None }
+        Self { request, stage: Stage::Begun, angle_noise: None, doubt: None }
     }
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Trimmed> {
-        let TrimRequest { machine, recording, angles_only, as_given, .. } = &self.request;
-        let Some(rows) = &self.rows else {
-            return match Rows::of(&machine.0, &recording.0, *angles_only) {
-                Ok(rows) => {
-                    self.rows = Some(rows);
-                    Portion::More(0.05)
-                }
-                Err(why) => {
-                    Portion::Done(Trimmed { angle_noise: None, doubt: None, outcome: Err(NoTrim::Unusable(why)) })
-                }
-            };
-        };
-        let angle_noise = match rows.made {
-            Made::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
-            _ => None,
-        };
-        let Some(doubted) = &mut self.doubted else {
-            // What is wrong with the recording itself is said by the fit.
-            let found = doubt(&machine.0, &recording.0, *angles_only).ok().flatten();
-            if let Some(doubt) = found.clone().filter(|_| !as_given) {
-                let outcome = Err(NoTrim::Doubted(doubt.into()));
-                return Portion::Done(Trimmed { angle_noise, doubt: None, outcome });
+        match self.next() {
+            Ok(Step::On(stage, share)) => {
+                self.stage = stage;
+                Portion::More(share)
             }
-            self.doubted = Some(found);
-            return Portion::More(0.8);
-        };
-        let outcome = Trim::of(&self.request, rows).map_err(NoTrim::NoFit);
-        Portion::Done(Trimmed { angle_noise, doubt: doubted.take(), outcome })
+            Ok(Step::Done(trim)) => self.done(Ok(*trim)),
+            Err(why) => self.done(Err(why)),
+        }
+    }
+}
+
+/// What a portion comes to: the next stage, with how much is done by then, or what the measurement says.
+enum Step {
+    On(Stage, f64),
+    Done(Box<Trim>),
+}
+
+impl Trimming {
+    fn done(&mut self, outcome: Result<Trim, NoTrim>) -> Portion<Trimmed> {
+        Portion::Done(Trimmed { angle_noise: self.angle_noise, doubt: self.doubt.take(), outcome })
+    }
+
+    fn next(&mut self) -> Result<Step, NoTrim> {
+        let TrimRequest { machine: Shared(machine), recording: Shared(recording), angles_only, .. } = &self.request;
+        Ok(match std::mem::replace(&mut self.stage, Stage::Begun) {
+            Stage::Begun => {
+                let rows = Rows::of(machine, recording, *angles_only).map_err(NoTrim::Unusable)?;
+                self.angle_noise = match rows.made {
+                    Made::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
+                    _ => None,
+                };
+                Step::On(Stage::Made(rows), MADE)
+            }
+            Stage::Made(rows) => match Doubting::begin(machine, recording, *angles_only) {
+                Ok(doubting) => Step::On(Stage::Doubting(rows, doubting.into()), MADE),
+                // What is wrong with the recording itself is said by the fit.
+                Err(_) => Step::On(Stage::Believed(rows), TRIED),
+            },
+            Stage::Doubting(rows, mut doubting) => match doubting.next(machine) {
+                true => {
+                    let share = MADE + (TRIED - MADE) * doubting.share();
+                    Step::On(Stage::Doubting(rows, doubting), share)
+                }
+                false => {
+                    self.doubt = doubting.doubt(machine);
+                    if let Some(doubt) = self.doubt.take_if(|_| !self.request.as_given) {
+                        return Err(NoTrim::Doubted(doubt.into()));
+                    }
+                    Step::On(Stage::Believed(rows), TRIED)
+                }
+            },
+            Stage::Believed(rows) => {
+                let fit = fit(machine, &rows).map_err(NoTrim::NoFit)?;
+                Step::On(Stage::Fitted(rows, fit.into()), FITTED)
+            }
+            Stage::Fitted(rows, fit) => {
+                let next = next(machine, recording, &rows, &fit, self.request.accelerations.as_deref());
+                Step::On(Stage::Searched(rows, fit, next), SEARCHED)
+            }
+            Stage::Searched(rows, fit, next) => Step::Done(Trim::of(&self.request, &rows, &fit, &next).into()),
+        })
     }
 }
 
 impl Trim {
-    fn of(request: &TrimRequest, rows: &Rows) -> Result<Self, TrimError> {
+    /// What a fit says, with what would tell more.
+    fn of(request: &TrimRequest, rows: &Rows, fit: &Fit, next: &Next) -> Self {
         let machine = &*request.machine.0;
-        let fit = fit(machine, rows)?;
-        let taken = taken(&fit);
-        let next = next(machine, &request.recording.0, rows, &fit, request.accelerations.as_deref());
+        let taken = taken(fit);
         let mended = mend(machine, &taken, &request.way);
-        let worth = mended.as_ref().ok().map(|mended| worth(machine, rows, &fit, &taken, mended));
+        let worth = mended.as_ref().ok().map(|mended| worth(machine, rows, fit, &taken, mended));
         let helps = worth.is_some_and(|worth| worth.helps());
         // What is not shown to help is not proposed.
         let mended = mended.map(|mended| if helps { mended } else { Mended::not_at_all(machine, &taken) });
-        let report = TrimReport::of(machine, rows, (&fit, &taken), (mended.as_ref().ok(), worth), &next);
-        Ok(Self { report, taken, mended })
+        let report = TrimReport::of(machine, rows, (fit, &taken), (mended.as_ref().ok(), worth), next);
+        Self { report, taken, mended }
     }
 }

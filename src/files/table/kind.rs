@@ -1,0 +1,56 @@
+//! [`Table`]: a motion or a measurement, told apart by the columns.
+
+use std::path::Path;
+
+use super::error::TableError;
+use super::measured::{feels, motions_or};
+use super::reader::Reader;
+use super::samples::{SampleTable, samples_or};
+use crate::files::text::read;
+use crate::mechanics::machine::Machine;
+use crate::settings::text::MOST_BYTES;
+use crate::study::trim::Motion;
+
+/// What a table is of.
+#[derive(Debug)]
+pub enum Table {
+    /// A motion, given by samples.
+    Motion(SampleTable),
+    /// Motions of a built machine, with what its base felt.
+    Measurement(Vec<Motion>),
+}
+
+impl Table {
+    /// Reads a file that is either, of a machine: see [`Table::of`].
+    ///
+    /// # Errors
+    /// If it cannot be read, or is neither.
+    pub fn open(file: &Path, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
+        let name = file.display().to_string();
+        let text = read(file).map_err(|e| {
+            let want = format!("want a plain file that can be read, of at most {MOST_BYTES} bytes");
+            TableError::whole(&name, format!("{e}: {want}"))
+        })?;
+        Self::of(&text, &name, machine, gaps)
+    }
+
+    /// Reads text that is either: with a column of a force or a moment on the base it is a measurement, as
+    /// [`motions`](super::motions) reads it, else a motion, as [`samples`](super::samples()) does. `file` is what errors
+    /// call the text; `gaps` lets gaps in the time of a motion pass.
+    ///
+    /// # Errors
+    /// Where what is wrong, and what was expected: of columns, those of either.
+    pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
+        let want = head_wanted(machine);
+        match feels(Reader::new(text, file, &want)?.head()) {
+            true => motions_or(text, file, machine, &want).map(Self::Measurement),
+            false => samples_or(text, file, machine, (None, gaps), &want).map(Self::Motion),
+        }
+    }
+}
+
+fn head_wanted(machine: &Machine) -> String {
+    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
+    let q = drives.join(",");
+    format!("a header t,{q} (rad) or t,x,y (m) of a motion, or t,{q},fx,fy,nz (s, rad, N, N m) of a measurement")
+}

@@ -1,0 +1,73 @@
+//! A motion given by drive angles: moved onto a plane with the end effector where it was, or turned as a whole.
+
+use super::judge::{Candidate, Judge};
+use super::request::{ImportError, Keep, Request};
+use super::ways::{Ways, running};
+use crate::planning::curves::Samples;
+use crate::planning::following::Rule;
+use crate::planning::following::nearest::{nearest_b, same_tip, turned};
+use crate::planning::pose_space::{OwnWay, PoseSpace};
+use crate::query::{Watch, part};
+use crate::session::scenario::{Task, TaskKind};
+use crate::settings::number::counted;
+
+/// Up to this share of the work it is found what the given motion does; the rest is a search.
+const ACCOUNT: f64 = 0.3;
+
+/// The motion given by drive angles, and what might be proposed, the best first.
+pub(super) fn of_drives(
+    asked: &Request,
+    judge: &Judge,
+    space: &PoseSpace,
+    samples: &Samples,
+    goes_on: Watch<'_>,
+) -> Result<Ways, ImportError> {
+    let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
+    let given = judge.given(running(path, samples), &mut part(goes_on, [0.0, ACCOUNT]));
+    let mean = given.account.b_mean;
+    // Whole turns of all drives are nothing: the one nearest to where the motion is.
+    let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
+    let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
+    let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
+    let mut candidates = Vec::new();
+    let mut lost = None;
+    if asked.keep != Some(Keep::Joints) {
+        let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
+            Ok(moved) => {
+                let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
+                candidates.extend(made);
+                None
+            }
+            Err(stop) => Some(stop),
+        };
+        let near = || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT, 1.0]));
+        lost = if let Err(OwnWay { drives }) = space.follows_curves() {
+            Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
+        } else if let Some((b, _)) = asked.b.is_none().then(near).flatten() {
+            let why = "of all b that reach every point of its path, the one that moves the drives least";
+            // Between the samples that chose it the path may still leave the workspace by a little.
+            let stop = match add(b, why.into()) {
+                Some(stop) => stop.nearest_b().map_or(Some(stop), |other| add(other, why.into())),
+                None => None,
+            };
+            stop.map(|stop| stop.to_string())
+        } else {
+            add(wanted, format!("{which} reaches every point of its path")).map(|stop| stop.to_string())
+        };
+    }
+    if asked.keep == Some(Keep::Tip) {
+        let candidates = match lost {
+            Some(why) if candidates.is_empty() => Err(why.into()),
+            _ => Ok(candidates),
+        };
+        return Ok(Ways { given: Some(given), candidates });
+    }
+    let why = match (asked.keep, lost) {
+        (Some(_), _) => "the relative joint angles are to be kept".into(),
+        (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
+        (None, None) => "the end effector's path cannot be kept within the rules".into(),
+    };
+    let made = turned(space.lambda(), samples, wanted).and_then(task);
+    candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
+    Ok(Ways { given: Some(given), candidates: Ok(candidates) })
+}

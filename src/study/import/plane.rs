@@ -1,0 +1,50 @@
+//! A motion of the end effector held to a plane b = const, where a machine has planes: followed on one sheet.
+
+use super::judge::{Candidate, Judge};
+use crate::mechanics::planar::DriveAngles;
+use crate::planning::curves::{Curve, Samples};
+use crate::planning::following::{Rule, trace};
+use crate::planning::pose_space::{Planes, PoseSpace};
+use crate::planning::posed::serve;
+use crate::planning::reactionless::{BSet, between};
+use crate::session::scenario::{Task, TaskKind};
+use crate::study::advice::Advice;
+
+/// Points of a path of which it is asked which b reach them.
+const ASKED: usize = 257;
+
+/// The pose in which minimum-norm rates begin, and the motion on the plane that was asked for, rad, or on one that serves.
+pub(super) fn held(
+    asked: Option<f64>,
+    judge: &Judge,
+    (space, planes): (&PoseSpace, &Planes),
+    (samples, curve): (&Samples, &Curve),
+) -> (Option<DriveAngles>, Result<Vec<Candidate>, Advice>) {
+    let (map, curves) = (planes.map(), std::slice::from_ref(curve));
+    let (b, why) = match asked {
+        Some(b) => (b, "b is the one asked for".to_owned()),
+        None => {
+            let serves = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
+            let all = serves(trace::common_b(map, curves, ASKED));
+            // Where no b serves all points, the first one's gives the reason.
+            let first = map.reach(samples.point(0)).ok().and_then(serves);
+            let range = all.or(first).unwrap_or([0.0; 2]);
+            let b = 0.5 * (range[0] + range[1]);
+            (b, format!("b is the middle of what reaches all of the path, {} rad", between(range[0], range[1])))
+        }
+    };
+    let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.shown_b), asked) {
+        (Some((b, shown)), None) => {
+            follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
+        }
+        _ => Err(stop),
+    });
+    let b = followed.as_ref().map_or(b, |(b, _)| *b);
+    let start = serve(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().map(|pose| pose.q));
+    let candidates = followed.map_err(|stop| stop.to_string().into()).map(|(b, why)| {
+        let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine).ok();
+        task.map(|task| Candidate { way: "on-plane", why, task }).into_iter().collect()
+    });
+    (start, candidates)
+}
