@@ -24,6 +24,8 @@ use crate::study::import::Keep;
 const HEIGHT: f32 = 268.0;
 /// How wide the column is of what is asked, points.
 const ASKED: f32 = 250.0;
+/// Between the columns, points.
+const GAP: f32 = 14.0;
 
 /// A table that was opened, and what is asked of it.
 #[derive(Clone, Debug)]
@@ -154,7 +156,7 @@ fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui)) {
             add(ui);
         });
     });
-    ui.add_space(14.0);
+    ui.add_space(GAP);
 }
 
 /// Rows of a table as high as their text.

@@ -207,6 +207,16 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
     Ok(())
 }
 
+/// The lengths of a machine that can be sought, m: named ones, and those of links whose length has no name.
+pub fn lengths(machine: &Machine) -> Vec<(String, f64)> {
+    let spec = machine.spec();
+    let valued = |name: String| {
+        let x = length(spec, &name);
+        (name, x)
+    };
+    known(spec).into_iter().map(valued).collect()
+}
+
 /// Named lengths, and links whose length has no name.
 fn known(spec: &MachineSpec) -> Vec<String> {
     let alone = spec.links.iter().filter(|link| matches!(link.length, Length::Metres(_)));

@@ -3,10 +3,13 @@
 use std::f64::consts::TAU;
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
+use egui_plot::{Line, LineStyle, PlotPoints};
 
-use super::{Shown, Taking, column, rows, take, title, worded};
+use super::{GAP, Shown, Taking, column, rows, take, title, worded};
+use crate::app::plots::small_axes;
+use crate::app::study::bare;
 use crate::app::theme::{colour, plain};
-use crate::app::widgets::note;
+use crate::app::widgets::{name as named, note};
 use crate::app::{Command, ComparisonCommand, Switch, ViewChange, WindowCommand};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
@@ -16,7 +19,9 @@ use crate::settings::number::{counted, fixed};
 use crate::study::import::{GivenMotion, ImportError, Imported, Proposal};
 
 /// How wide the table of numbers is, points.
-const NUMBERS: f32 = 400.0;
+const NUMBERS: f32 = 360.0;
+/// How wide the plot of n_B over time is, points.
+const MOMENTS: f32 = 300.0;
 /// Smaller numbers are shown as nothing.
 const DECIMALS: usize = 6;
 
@@ -45,6 +50,9 @@ pub(super) fn show(
     };
     column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, imported));
     let rest = ui.available_width();
+    // What is told comes first where there is no room for both.
+    let plot = if rest > 2.0 * MOMENTS { MOMENTS } else { 0.0 };
+    let rest = if plot > 0.0 { rest - plot - GAP } else { rest };
     column(ui, "proposal", rest, |ui| {
         proposal(ui, p, shown, imported, commands);
         let names = motion.names.iter();
@@ -61,6 +69,29 @@ pub(super) fn show(
             note(ui, p, &worded(words));
         }
     });
+    if plot > 0.0 {
+        column(ui, "moments", plot, |ui| moments(ui, p, imported));
+    }
+}
+
+/// n_B over time of both motions.
+fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
+    title(ui, p, "Base moment n_B", "N m; dashed as given");
+    let given = imported.given.as_ref().map(|given| &given.moment);
+    let proposed = imported.proposal.as_ref().map(|proposal| &proposal.account.moment);
+    small_axes(ui);
+    let height = ui.available_height().max(60.0);
+    let response = bare("moments", p, height).show_axes([true, true]).include_y(0.0).show(ui, |plot| {
+        if let Some(points) = given {
+            let line = Line::new("as given", PlotPoints::from(points.clone())).color(colour(p.reaction)).width(1.4);
+            plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
+        }
+        if let Some(points) = proposed {
+            let line = Line::new("proposed", PlotPoints::from(points.clone())).color(colour(p.zero)).width(1.6);
+            plot.line(line.allow_hover(false));
+        }
+    });
+    named(&response.response, "Base moment over time as given and as proposed, N m");
 }
 
 fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
