@@ -4,6 +4,7 @@
 //! machine that is built, from what its base felt.
 
 pub mod balance_constants;
+pub mod base_spectrum;
 pub mod centres;
 pub mod comparison;
 pub mod counterweights;
