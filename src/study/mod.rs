@@ -5,6 +5,8 @@
 
 pub mod advice;
 pub mod balance_constants;
+pub mod base_spectrum;
+pub mod centres;
 pub mod comparison;
 pub mod counterweights;
 pub mod equations;

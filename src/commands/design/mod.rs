@@ -9,24 +9,21 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValue;
-use serde::Serialize;
 use stillbase::files::write_new;
-use stillbase::mechanics::balance::{self, Preset};
-use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
-
-use stillbase::study::balance_constants::BalanceConstants;
-use stillbase::study::measures::Measures;
+use stillbase::mechanics::balance::Preset;
+use stillbase::mechanics::machine::{Machine, to_toml};
+use stillbase::study::centres::designed;
 
 use super::check::balance_tables;
 use super::exit::say;
 use super::failure::Failure;
-use super::input::{MachineArgument, Settings, scenario};
+use super::input::{MachineArgument, Settings, choice, scenario};
 use super::output::{Format, Table, check_output};
 use kept::KeepArguments;
 use stillbase::planning::Motion;
 use stillbase::session::{Run, settled};
 use stillbase::settings::number::{counted, fixed};
+use stillbase::settings::word::Choice;
 use weighed::WeighArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -67,10 +64,9 @@ pub struct Design {
     /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
     #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
-    /// Penalties by name. table-1: those that give Table I (the default for nine links); as-printed: those printed
-    /// beside Eq. (10); minimum-norm: 1 for every link (the default otherwise)
-    #[arg(long, value_enum, conflicts_with = "penalty")]
-    preset: Option<PresetName>,
+    /// Penalties by name; without, table-1 for nine links, minimum-norm for others
+    #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
+    preset: Option<Preset>,
     #[command(flatten)]
     kept: KeepArguments,
     #[command(flatten)]
@@ -95,31 +91,6 @@ fn penalty(text: &str) -> Result<f64, String> {
     within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
 }
 
-#[derive(Clone, Copy)]
-struct PresetName(Preset);
-
-impl clap::ValueEnum for PresetName {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self(Preset::ALL[0].0), Self(Preset::ALL[1].0), Self(Preset::ALL[2].0)]
-    }
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(name_of(self.0)))
-    }
-}
-
-fn name_of(preset: Preset) -> &'static str {
-    Preset::ALL.iter().find(|(p, _)| *p == preset).map_or("", |(_, name)| name)
-}
-
-#[derive(Serialize)]
-struct Answer {
-    com: Vec<f64>,
-    #[serde(flatten)]
-    measures: Measures,
-    #[serde(flatten)]
-    balance: BalanceConstants,
-}
-
 impl Design {
     /// Prints the new centres of mass and what they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
@@ -139,12 +110,7 @@ impl Design {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let designed = balance::design(&machine, &penalty)?;
-        let answer = Answer {
-            com: designed.links().iter().map(|l| l.com).collect(),
-            measures: Measures::of(&machine, &designed, motion),
-            balance: BalanceConstants::of(&Inertia::of(&designed)),
-        };
+        let (designed, answer) = designed(&machine, &penalty, motion)?;
         if let Some(file) = &self.output {
             save(&designed, file, self.force, format!("{}, balanced with {by}", machine.name()))?;
         }
@@ -167,7 +133,7 @@ impl Design {
         if let Some(file) = &self.output {
             save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
         }
-        self.format.print(&answer, |answer| answer.text(machine, by))
+        self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
     /// The task whose motion counts, if one of the machines has as many drives as it moves.
@@ -204,8 +170,8 @@ impl Design {
             return Ok((self.penalty.clone(), "the given penalties".into()));
         }
         let usual = if links == 9 { Preset::Table1 } else { Preset::MinimumNorm };
-        let preset = self.preset.map_or(usual, |p| p.0);
-        Ok((preset.penalty(links)?, format!("preset {}", name_of(preset))))
+        let preset = self.preset.unwrap_or(usual);
+        Ok((preset.penalty(links)?, format!("preset {}", preset.name())))
     }
 }
 

@@ -3,12 +3,12 @@
 use toml::Value;
 
 use super::error::{MachineError, Place, PlaceStep};
+use super::lengths::{length_at, link_length, set_length, set_link_length};
 use super::model::Machine;
 use super::ranges::{
     ACCELERATION_LIMIT, ANGLE, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO, SPEED_LIMIT,
     TORQUE_LIMIT, within,
 };
-use super::set::{length_at, link_length, set_length, set_link_length};
 use super::spec::MachineSpec;
 use crate::settings::change::DEFAULT;
 use crate::settings::key::{Holds, Key};
@@ -281,41 +281,4 @@ impl Row {
 /// Checks all numbers of a body: that of so much in the list of its kind, by the first word of its keys.
 pub(super) fn check_body(part: &str, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
     ROWS.iter().filter(|row| row.key.part() == part).try_for_each(|row| row.check(spec, i))
-}
-
-/// All keys in words, those of one body together: `link.NAME.(com|mass), gravity`.
-pub(super) fn known() -> String {
-    // What stands before the last part, and all that stand behind that.
-    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
-    for Row { key, .. } in &ROWS {
-        let named = key.path.rsplit_once('.').filter(|(_, field)| *field != "*");
-        let (head, field) = named.unwrap_or((key.path, ""));
-        match groups.iter_mut().find(|(known, _)| *known == head) {
-            Some((_, fields)) => fields.push(field),
-            None => groups.push((head, vec![field])),
-        }
-    }
-    // The own keys of a body come before those of what it has.
-    let part = |head: &str| head.split('.').next().map(str::to_owned);
-    let parts: Vec<_> = groups.iter().map(|(head, _)| part(head)).collect();
-    groups.sort_by_key(|(head, _)| (parts.iter().position(|known| *known == part(head)), head.matches('.').count()));
-    let words = |(head, fields): &(&str, Vec<&str>)| {
-        let name = match head.split('.').next() {
-            Some("counterweight") => "NUMBER",
-            Some("limits") => "ANGLE",
-            _ => "NAME",
-        };
-        let head = head.replace('*', name);
-        let ending = fields[0].rfind('_').map_or("", |at| &fields[0][at..]);
-        let stems: Option<Vec<&str>> = fields.iter().map(|field| field.strip_suffix(ending)).collect();
-        match &fields[..] {
-            [""] => head,
-            [only] => format!("{head}.{only}"),
-            _ => match stems.filter(|_| !ending.is_empty()) {
-                Some(stems) => format!("{head}.({}){ending}", stems.join("|")),
-                None => format!("{head}.({})", fields.join("|")),
-            },
-        }
-    };
-    groups.iter().map(words).collect::<Vec<_>>().join(", ")
 }

@@ -3,11 +3,10 @@
 use toml::{Table, Value};
 
 use super::error::quoted;
-use super::keys::{At, ROWS, Row, known};
-use super::{Length, Machine, MachineError, MachineSpec, Place};
+use super::keys::{At, KEYS, ROWS, Row};
+use super::{Machine, MachineError, MachineSpec, Place};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Key};
-use crate::settings::range::{clipped, shortened};
 
 /// The tables and keys of a scenario that set its machine.
 pub const PARTS: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
@@ -94,7 +93,8 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
         spec.counterweights = if is_default(value) { Vec::new() } else { all()? };
         return Ok(());
     }
-    let unknown = || MachineError::UnknownKey { key: key.into(), known: known() };
+    let unknown =
+        || MachineError::UnknownKey { key: key.into(), known: key::in_words(KEYS.map(|key| key.path)).join(", ") };
     if !ROWS.iter().any(|row| is_beside(row.key.path, key)) {
         return Err(unknown());
     }
@@ -146,50 +146,6 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
         name: name.into(),
         known: quoted(names.into_iter()),
     })
-}
-
-/// A named length, m.
-pub(super) fn length_at(machine: &Machine, i: usize) -> f64 {
-    machine.spec().lengths.values().nth(i).copied().unwrap_or_default()
-}
-
-/// Sets it for all that share it.
-pub(super) fn set_length(spec: &mut MachineSpec, i: usize, metres: f64) -> Result<(), MachineError> {
-    spec.lengths.values_mut().skip(i).take(1).for_each(|length| *length = metres);
-    Ok(())
-}
-
-/// The length of a link, m, whatever it shares.
-pub(super) fn link_length(machine: &Machine, j: usize) -> f64 {
-    machine.resolved_links()[j].length
-}
-
-/// A length may be set through its only bar; one that others share, or that a point is named by, may not.
-pub(super) fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), MachineError> {
-    let name = match &mut spec.links[j].length {
-        Length::Metres(l) => {
-            *l = metres;
-            return Ok(());
-        }
-        Length::Named(name) => name.clone(),
-    };
-    let others: Vec<&str> = spec
-        .links
-        .iter()
-        .enumerate()
-        .filter(|(i, l)| *i != j && l.length == Length::Named(name.clone()))
-        .map(|(_, l)| l.name.as_str())
-        .collect();
-    if !others.is_empty() {
-        let plural = if others.len() > 1 { "links" } else { "link" };
-        return Err(MachineError::SharedLength {
-            link: clipped(&spec.links[j].name),
-            length: clipped(&name),
-            sharers: format!("{plural} {}", shortened(&others.join(", "), 200)),
-        });
-    }
-    spec.lengths.insert(name, metres);
-    Ok(())
 }
 
 fn is_default(value: &Value) -> bool {
