@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::change::Change;
-use super::given::Assessing;
-use super::{Activity, AppState, SessionCommand};
+use super::given::assess::Assessing;
+use super::{Activity, SessionCommand};
 use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
@@ -14,7 +14,7 @@ use crate::study::comparison::Ways;
 use crate::study::tolerance::Studying;
 
 /// Work that changes what is on display once it has ended.
-trait Pending {
+trait Pending<A> {
     /// How much of it is done, from 0 to 1.
     fn progress(&self) -> f64;
 
@@ -25,7 +25,7 @@ trait Pending {
     fn wait(&mut self);
 
     /// Does what is to be done then.
-    fn finish(self: Box<Self>, app_state: &mut AppState);
+    fn finish(self: Box<Self>, app_state: &mut A);
 }
 
 /// A job, what it has come to, and what is to be done then. Nothing comes of a job that broke off.
@@ -35,7 +35,7 @@ struct Running<T, F> {
     then: F,
 }
 
-impl<T: Send + 'static, F: FnOnce(&mut AppState, Option<T>)> Pending for Running<T, F> {
+impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<T, F> {
     fn progress(&self) -> f64 {
         self.job.as_ref().map_or(1.0, Job::progress)
     }
@@ -54,7 +54,7 @@ impl<T: Send + 'static, F: FnOnce(&mut AppState, Option<T>)> Pending for Running
         self.result = self.job.take().and_then(Job::wait);
     }
 
-    fn finish(self: Box<Self>, app_state: &mut AppState) {
+    fn finish(self: Box<Self>, app_state: &mut A) {
         (self.then)(app_state, self.result);
     }
 }
@@ -92,15 +92,15 @@ const LONG: usize = 20_000;
 /// Repaints for which a change is not spoken of: most are made by then.
 const UNSPOKEN: u32 = 6;
 
-/// What is under way, and who does it.
-pub(super) struct Background {
+/// What is under way, who does it, and what it changes in `A` once it has ended.
+pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
     /// What is derived of the session.
     pub queries: Queries,
     /// Woken when a job has ended.
     ctx: Option<egui::Context>,
     /// Work that changes what is on display, in the order in which it began.
-    running: Vec<(Activity, Box<dyn Pending>)>,
+    running: Vec<(Activity, Box<dyn Pending<A>>)>,
     /// The change of the session that is being made, and for how many repaints.
     pub change: Option<(Change, u32)>,
     /// What is to be done after that.
@@ -116,7 +116,7 @@ const TOLD: [Told; 3] = [
     (Activity::Ways, Queries::progress::<Ways>, Queries::stop::<Ways>),
 ];
 
-impl Default for Background {
+impl<A> Default for Background<A> {
     fn default() -> Self {
         Self {
             workers: Arc::new(AtOnce),
@@ -129,7 +129,7 @@ impl Default for Background {
     }
 }
 
-impl Background {
+impl<A> Background<A> {
     /// Has everything done by somebody from now on.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
         self.workers = Arc::new(workers);
@@ -169,7 +169,7 @@ impl Background {
         &mut self,
         activity: Activity,
         work: impl FnOnce(&Ticket) -> T + Send + 'static,
-        then: impl FnOnce(&mut AppState, Option<T>) + 'static,
+        then: impl FnOnce(&mut A, Option<T>) + 'static,
     ) {
         let job = match activity {
             // Most are made by the next repaint.
@@ -181,7 +181,7 @@ impl Background {
 
     /// The first work that has ended and whose turn it is, taken out: what is done to the session comes before another
     /// session is opened, and of one activity the first ends first.
-    fn ended(&mut self) -> Option<Box<dyn Pending>> {
+    pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
         let is_changing = self.is_changing();
         let (mut place, mut before) = (None, Vec::new());
         for (i, (activity, work)) in self.running.iter_mut().enumerate() {
@@ -192,7 +192,8 @@ impl Background {
             }
             before.push(*activity);
         }
-        place.map(|place| self.running.remove(place).1)
+        let (_, work) = self.running.remove(place?);
+        Some(|app_state: &mut A| work.finish(app_state))
     }
 
     /// Whether such work is under way.
@@ -272,17 +273,5 @@ impl Background {
     /// Whether anything at all is under way.
     pub fn is_busy(&self) -> bool {
         self.is_changing() || self.queries.is_busy() || !self.running.is_empty()
-    }
-}
-
-impl AppState {
-    /// Does what is to be done after work that has ended; whether any has.
-    pub(super) fn finish(&mut self) -> bool {
-        let mut any = false;
-        while let Some(work) = self.background_mut().ended() {
-            work.finish(self);
-            any = true;
-        }
-        any
     }
 }

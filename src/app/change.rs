@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::given::Table;
+use super::given::assess::Table;
 use super::{LeftOff, RefusedEdit};
 use crate::files::Found;
 use crate::session::scenario::Scenario;

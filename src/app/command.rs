@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::activity::Activity;
-use super::file_dialog::{FileDialog, PlotFile};
-use super::given::{Options, Taking};
+use super::file_dialog::{FileDialog, PlotFile, Purpose};
+use super::given::assess::{Options, Taking};
 use super::layout::Layout;
 use crate::mechanics::machine::Machine;
 use crate::picture::charts::choice::Change;
@@ -273,4 +273,17 @@ pub enum ComparisonCommand {
     Add(Box<Scenario>),
     /// Take a kept row away.
     Remove(usize),
+}
+
+impl FileDialog {
+    /// What to do with a file that was named.
+    pub fn named(self, file: PathBuf) -> SessionCommand {
+        match self.purpose {
+            Purpose::Open => SessionCommand::OpenFile(file),
+            Purpose::Save => SessionCommand::SaveFile(file),
+            Purpose::Record => SessionCommand::Record(file),
+            Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
+            Purpose::Machine => SessionCommand::TakeElsewhere(file),
+        }
+    }
 }

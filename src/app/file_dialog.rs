@@ -1,8 +1,5 @@
 //! [`FileDialog`]: asking for a file, and what is done with the one that was named.
 
-use std::path::PathBuf;
-
-use super::command::SessionCommand;
 use crate::exchange::form;
 use crate::session::Session;
 
@@ -80,17 +77,6 @@ impl Purpose {
 }
 
 impl FileDialog {
-    /// What to do with a file that was named.
-    pub fn named(self, file: PathBuf) -> SessionCommand {
-        match self.purpose {
-            Purpose::Open => SessionCommand::OpenFile(file),
-            Purpose::Save => SessionCommand::SaveFile(file),
-            Purpose::Record => SessionCommand::Record(file),
-            Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
-            Purpose::Machine => SessionCommand::TakeElsewhere(file),
-        }
-    }
-
     /// A file name that is free, for a dialog to start from.
     pub fn suggest(session: &Session, purpose: Purpose) -> Self {
         let own = &session.scenario().name;

@@ -28,15 +28,6 @@ struct Entry<'a> {
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
-/// What is typed into the list, and which line is chosen.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Finder {
-    /// A few letters.
-    pub sought: String,
-    /// Counted from the top.
-    pub chosen: usize,
-}
-
 /// The most lines that are kept.
 const MOST: usize = 60;
 

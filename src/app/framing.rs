@@ -4,33 +4,11 @@ use std::sync::Arc;
 
 use egui::Rect;
 
-use super::ViewState;
+use super::{Framing, ViewState};
 use crate::mechanics::planar::DriveAngles;
-use crate::picture::scene::framing::{Content, Room};
+use crate::picture::scene::framing::Room;
 use crate::picture::scene::views::Views;
 use crate::session::Session;
-
-/// Whether a view shows everything.
-#[derive(Clone, Debug, Default)]
-pub enum Framing {
-    /// It is to, from the next pass on.
-    #[default]
-    Wanted,
-    /// It does, of what there was when it was asked for, in a scene of this size: a scene of another size is framed
-    /// anew, while what moves in it moves nothing else.
-    Held(Arc<Content>, [f32; 2]),
-    /// A hand has moved it.
-    Free,
-}
-
-impl Framing {
-    /// After another session was opened, or another machine taken: what was not moved by hand shows everything.
-    pub fn renew(&mut self) {
-        if matches!(self, Self::Held(..)) {
-            *self = Self::Wanted;
-        }
-    }
-}
 
 /// Points the camera of the present view, if it is to show everything, in a part of the screen with these parts covered.
 pub fn keep(

@@ -1,113 +1,37 @@
 //! The panel at the bottom for a table of numbers that was opened: a motion of a person's own and the nearest one without
 //! reactions, or a measured machine and what mends it.
 
-mod assess;
+pub(super) mod assess;
 mod measured;
 mod motion;
+mod parts;
 
-use std::path::PathBuf;
-
-use egui::{Align, Button, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Ui, vec2};
-
-pub use assess::{Asked, Assessed, Assessing, Content, Options, Table};
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, unit};
-use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
+use super::{Command, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
-use crate::planning::curves::Coordinates;
-use crate::query::Shared;
-use crate::session::scenario::Scenario;
-use crate::study::advice::{Advice, Remedy};
+use crate::study::advice::Advice;
 use crate::study::import::Keep;
+use assess::{Assessed, Content};
+pub(super) use parts::Shown;
+use parts::{column, worded};
 
 const HEIGHT: f32 = 268.0;
 /// How wide the column is of what is asked, points.
 const ASKED: f32 = 250.0;
-/// Between the columns, points.
-const GAP: f32 = 14.0;
 
-/// A table that was opened, and what is asked of it.
-#[derive(Clone, Debug)]
-pub struct Given {
-    /// Where it was read.
-    pub file: PathBuf,
-    /// What it holds.
-    pub table: Shared<Table>,
-    /// How it is read, and what is asked of it.
-    pub options: Options,
-}
-
-/// What a session can take of what a table says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taking {
-    /// The task of the motion that is proposed.
-    Proposal,
-    /// The task of the motion as it was given.
-    AsGiven,
-    /// What mends the machine.
-    Change,
-    /// The machine as it was measured.
-    Measured,
-}
-
-impl Given {
-    /// What is asked of it for a session's machine, base and control; its task and its edits do not matter.
-    pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
-        let usual = Scenario::builtin("case-3")?;
-        let scenario = Scenario {
-            task: usual.task,
-            compare_b: None,
-            duration: None,
-            edits: Vec::new(),
-            bookmarks: Vec::new(),
-            branches: Vec::new(),
-            ..scenario.clone()
-        };
-        let (table, options) = (self.table.clone(), self.options.clone());
-        Some(Asked { table, scenario: Shared(scenario.into()), options })
-    }
-}
-
-/// What there is to show: the table, what it says, and whether that is of the session as it is.
-#[derive(Clone, Copy)]
-pub(super) struct Shown<'a> {
-    pub given: &'a Given,
-    pub answer: Option<&'a Result<Assessed, Advice>>,
-    pub is_known: bool,
-}
-
-impl Shown<'_> {
-    /// What the table is read as.
-    fn content(&self) -> Content {
-        match self.answer {
-            Some(Ok(Assessed::Measured(_))) => Content::Measurement,
-            Some(Ok(Assessed::Motion { motion, .. })) => match motion.coordinates {
-                Coordinates::Drives => Content::Drives,
-                Coordinates::EndEffector => Content::Tip,
-            },
-            _ => self.given.options.content.unwrap_or(Content::Drives),
-        }
-    }
-
-    /// What the table holds, in a line.
-    fn summary(&self) -> String {
-        let file = self.given.file.file_name().unwrap_or_default().to_string_lossy();
-        let held = match self.answer {
-            Some(Ok(Assessed::Motion { motion, .. })) => motion::summary(motion),
-            Some(Ok(Assessed::Measured(trimmed))) => measured::summary(trimmed),
-            Some(Err(_)) => String::new(),
-            None => "reading it …".into(),
-        };
-        [file.into_owned(), held].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("  ·  ")
-    }
-
-    /// Asks the same with another choice.
-    fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut Options)) {
-        let mut options = self.given.options.clone();
-        change(&mut options);
-        commands.push(WindowCommand::Ask(options).into());
-    }
+/// What the table holds, in a line.
+fn summary(shown: &Shown<'_>) -> String {
+    let file = shown.given.file.file_name().unwrap_or_default().to_string_lossy();
+    let held = match shown.answer {
+        Some(Ok(Assessed::Motion { motion, .. })) => motion::summary(motion),
+        Some(Ok(Assessed::Measured(trimmed))) => measured::summary(trimmed),
+        Some(Err(_)) => String::new(),
+        None => "reading it …".into(),
+    };
+    [file.into_owned(), held].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("  ·  ")
 }
 
 /// Draws this panel.
@@ -124,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
                     commands.push(ViewChange::Switch(Switch::Given, false).into());
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let words = RichText::new(shown.summary()).font(plain(11.5)).color(colour(p.dim));
+                    let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
                     ui.add(Label::new(words).truncate());
                 });
             });
@@ -145,50 +69,10 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
     });
 }
 
-/// One of the columns side by side; what does not fit is scrolled to.
-fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui)) {
-    let height = ui.available_height();
-    ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::LEFT), |ui| {
-        ui.set_width(width);
-        ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
-            // Clear of the bar.
-            ui.set_max_width(width - 10.0);
-            add(ui);
-        });
-    });
-    ui.add_space(GAP);
-}
-
-/// Rows of a table as high as their text.
-fn rows(ui: &mut Ui) {
-    ui.spacing_mut().interact_size.y = 16.0;
-}
-
-/// A title within a column.
-fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
-    ui.horizontal(|ui| {
-        ui.set_height(18.0);
-        ui.label(RichText::new(title).font(bold(12.5)));
-        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
-    });
-}
-
 /// Why a table cannot be read.
 fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
     let words = RichText::new(worded(why)).font(plain(12.5)).color(colour(p.reaction));
     ui.add(Label::new(words).wrap());
-}
-
-/// A sentence that names controls of the window for the ways out.
-fn worded(advice: &Advice) -> String {
-    let control = |remedy| match remedy {
-        Remedy::Gaps => "“bridge gaps”",
-        Remedy::Smoothing | Remedy::CutOff => "“smoothed at”",
-        Remedy::PoseConstant => "“on the plane b”",
-        Remedy::Workspace => "the workspace in the scene",
-        Remedy::Design | Remedy::Check => "the design view (D)",
-    };
-    advice.worded(control).to_string()
 }
 
 /// How the table is read, and what is asked of it.
@@ -284,13 +168,5 @@ fn optional(ui: &mut Ui, p: &Palette, row: &Row<'_>, (now, usual): (Option<f64>,
     });
     if changed {
         to(is_set.then_some(value));
-    }
-}
-
-/// A button that takes something of what a table says, where that is of the session as it is.
-fn take(ui: &mut Ui, (words, tip): (&str, &str), shown: &Shown<'_>, taking: Taking, commands: &mut Vec<Command>) {
-    let button = ui.add_enabled(shown.is_known, Button::new(words)).on_hover_text(tip);
-    if button.on_disabled_hover_text("It is being found for the machine as it is now").clicked() {
-        commands.push(SessionCommand::TakeGiven(taking).into());
     }
 }

@@ -63,16 +63,14 @@ pub use command::{
     Command, ComparisonCommand, FrontsCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
 };
 pub use file_dialog::{FileDialog, PlotFile, Purpose};
-pub use finder::Finder;
-pub use framing::Framing;
 pub use gesture::{Gesture, Pointed, Tool};
-pub use given::{Content, Options, Taking};
+pub use given::assess::{Content, Options, Taking};
 use intro::Intro;
 pub use layout::{Arrangement, Below, Layout, Panel, Panels};
 pub use left_off::LeftOff;
-pub use open::Open;
+pub use open::{Finder, Open};
 pub use preferences::Preferences;
 pub use said::{RefusedEdit, Said};
 pub use state::AppState;
-pub use view_state::ViewState;
 use view_state::set_b;
+pub use view_state::{Framing, ViewState};

@@ -1,8 +1,16 @@
 //! What lies open over the window until it is closed.
 
 use super::FileDialog;
-use super::finder::Finder;
 use super::tour::Tour;
+
+/// What is typed into the list, and which line is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Finder {
+    /// A few letters.
+    pub sought: String,
+    /// Counted from the top.
+    pub chosen: usize,
+}
 
 /// Cards, lists and dialogs.
 #[derive(Clone, Debug, Default)]

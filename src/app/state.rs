@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::background::Background;
 use super::change::Change;
-use super::given::Given;
+use super::given::assess::Given;
 use super::pace::Pace;
 use super::saving::Saving;
 use super::{Activity, Framing, Intro, Layout, LeftOff, Preferences, SessionCommand, ViewState};
@@ -52,7 +52,7 @@ pub struct AppState {
     /// The table that was opened last.
     given: Option<Given>,
     /// What is under way beside the window.
-    background: Background,
+    background: Background<Self>,
     /// Wall time not yet turned into steps, s.
     owed: f64,
     pace: Pace,
@@ -183,11 +183,6 @@ impl AppState {
     /// What is derived of the session.
     pub(super) fn queries(&self) -> &Queries {
         &self.background.queries
-    }
-
-    /// What is under way beside the window.
-    pub(super) fn background_mut(&mut self) -> &mut Background {
-        &mut self.background
     }
 
     /// Files that were opened and saved, newest first.

@@ -1,7 +1,8 @@
 //! How the session is shown, and what a person is about to do.
 
+use std::sync::Arc;
+
 use super::Look;
-use super::framing::Framing;
 use super::gesture::{Gesture, Pointed, Tool};
 use super::layout::{Arrangement, Below, Layout};
 use super::open::Open;
@@ -9,11 +10,34 @@ use super::said::Said;
 use crate::picture::charts::choice::Choice;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
+use crate::picture::scene::framing::Content;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, Theme, palette};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::{Edit, Session};
 use crate::study::front_point::FrontMeasure;
+
+/// Whether a view shows everything.
+#[derive(Clone, Debug, Default)]
+pub enum Framing {
+    /// It is to, from the next pass on.
+    #[default]
+    Wanted,
+    /// It does, of what there was when it was asked for, in a scene of this size: a scene of another size is framed
+    /// anew, while what moves in it moves nothing else.
+    Held(Arc<Content>, [f32; 2]),
+    /// A hand has moved it.
+    Free,
+}
+
+impl Framing {
+    /// After another session was opened, or another machine taken: what was not moved by hand shows everything.
+    pub fn renew(&mut self) {
+        if matches!(self, Self::Held(..)) {
+            *self = Self::Wanted;
+        }
+    }
+}
 
 /// How things are shown: no part of the session. Its parts live as long as a person's liking, a gesture, a dialog, a
 /// message; what stands here itself lives as long as the window.

@@ -1,5 +1,6 @@
 //! [`Assessing`]: the query for what a table of numbers says, of a motion or of a machine that was measured.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::files::table::{SampleTable, Table as Read, motions, samples};
@@ -47,6 +48,48 @@ pub struct Options {
     pub angles_only: bool,
     /// Columns are taken as they are, whatever explains them better.
     pub as_given: bool,
+}
+
+/// A table that was opened, and what is asked of it.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// Where it was read.
+    pub file: PathBuf,
+    /// What it holds.
+    pub table: Shared<Table>,
+    /// How it is read, and what is asked of it.
+    pub options: Options,
+}
+
+/// What a session can take of what a table says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taking {
+    /// The task of the motion that is proposed.
+    Proposal,
+    /// The task of the motion as it was given.
+    AsGiven,
+    /// What mends the machine.
+    Change,
+    /// The machine as it was measured.
+    Measured,
+}
+
+impl Given {
+    /// What is asked of it for a session's machine, base and control; its task and its edits do not matter.
+    pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
+        let usual = Scenario::builtin("case-3")?;
+        let scenario = Scenario {
+            task: usual.task,
+            compare_b: None,
+            duration: None,
+            edits: Vec::new(),
+            bookmarks: Vec::new(),
+            branches: Vec::new(),
+            ..scenario.clone()
+        };
+        let (table, options) = (self.table.clone(), self.options.clone());
+        Some(Asked { table, scenario: Shared(scenario.into()), options })
+    }
 }
 
 /// What is asked.

@@ -2,7 +2,8 @@
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
-use super::{Shown, Taking, column, rows, take, title};
+use super::assess::Taking;
+use super::parts::{Shown, column, rows, take, title};
 use crate::app::Command;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::note;

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoints};
 
-use super::{GAP, Shown, Taking, column, rows, take, title, worded};
+use super::assess::Taking;
+use super::parts::{GAP, Shown, column, rows, take, title, worded};
 use crate::app::plots::small_axes;
 use crate::app::study::bare;
 use crate::app::theme::{colour, plain};

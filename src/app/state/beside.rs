@@ -17,6 +17,16 @@ use crate::study::tolerance::{Studied, Study, Studying};
 const MOST_AHEAD: f64 = 20_000.0;
 
 impl AppState {
+    /// Does what is to be done after work that has ended; whether any has.
+    pub(super) fn finish(&mut self) -> bool {
+        let mut any = false;
+        while let Some(then) = self.background.ended() {
+            then(self);
+            any = true;
+        }
+        any
+    }
+
     /// Takes what has been done beside the window; whether anything has.
     pub(super) fn collect(&mut self) -> bool {
         let any = self.finish();

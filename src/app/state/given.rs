@@ -7,7 +7,7 @@ use super::AppState;
 use super::beside::fault;
 use crate::app::Below;
 use crate::app::change::Change;
-use crate::app::given::{Assessed, Assessing, Given, Options, Table, Taking};
+use crate::app::given::assess::{Assessed, Assessing, Given, Options, Table, Taking};
 use crate::query::{Asked, Shared, State};
 use crate::session::Edit;
 use crate::study::advice::Advice;

@@ -58,11 +58,8 @@ pub(super) fn list(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<C
             }
             let words = match outcome {
                 Ok(told) => {
-                    let end =
-                        |[mass, inertia]: [f64; 2]| format!("{} kg, {} kg m²", signed(mass, 2), signed(inertia, 3));
-                    let all = told.measures();
-                    let ends = all.first().zip(all.last()).map(|(one, other)| [end(*one), end(*other)]);
-                    ends.map_or_else(String::new, |[from, to]| format!("{from} to {to}"))
+                    let least = |i: usize| told.measures().iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);
+                    format!("least {} kg, {} kg m²", signed(least(0), 2), signed(least(1), 3))
                 }
                 Err(_) => "has no front".into(),
             };
