@@ -1,4 +1,4 @@
-//! Over joint space of more than three drives: which three have an axis, and where the others stand.
+//! Over joint space where drives have no axis: which three have one, and where the others stand.
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 
@@ -6,15 +6,18 @@ use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewChange, ViewState};
 use crate::picture::numbers::signed;
-use crate::picture::scene::joint_items::SYMBOLS;
+use crate::picture::scene::joints::{Joints, SYMBOLS};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::Session;
 
 /// Where it lies over a scene.
 pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {
-    let several = views.section().is_some_and(|section| section.shown().len() > 2);
-    let joints = view_state.view == ViewKind::Joints && several;
-    joints.then(|| Rect::from_min_size(rect.min, vec2(rect.width().min(260.0), 56.0)))
+    chosen(views, view_state).map(|_| Rect::from_min_size(rect.min, vec2(rect.width().min(260.0), 56.0)))
+}
+
+/// Joint space in which there is a choice of drives, where it is what is seen.
+fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a Joints> {
+    views.joints().filter(|joints| view_state.view == ViewKind::Joints && joints.has_choice())
 }
 
 /// Draws it in the upper left corner of a scene; a tower that is not known yet says so.
@@ -31,11 +34,8 @@ pub fn show(
         let at = rect.center_top() + vec2(0.0, 24.0);
         ui.painter().text(at, Align2::CENTER_TOP, words, plain(13.0), colour(p.ink));
     }
-    let Some(section) = views.section().filter(|_| view_state.view == ViewKind::Joints) else { return };
-    let (shown, frame) = (section.shown(), session.frame());
-    if frame.q.len() < 4 {
-        return;
-    }
+    let Some(joints) = chosen(views, view_state) else { return };
+    let (shown, frame) = (joints.drives(), session.frame());
     let area = Area::new(Id::unique("drives with an axis")).order(Order::Middle).fixed_pos(rect.min + vec2(14.0, 12.0));
     area.show(ui.ctx(), |ui| {
         card(&p).inner_margin(8).show(ui, |ui| {

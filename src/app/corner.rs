@@ -5,8 +5,8 @@ use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
 use super::{Command, ViewChange, ViewState};
+use crate::picture::scene::joints::Joints;
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::section::Section;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
 
@@ -34,8 +34,8 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     match view_state.dexterity.filter(|_| view_state.view.shows_machine()) {
         Some(measure) => key(&mut corner, &p, measure, views, commands),
         None => {
-            let section = views.section().filter(|_| view_state.view == ViewKind::Joints);
-            let words = section.map_or(view_state.view.invitation(), Section::invitation);
+            let joints = views.joints().filter(|_| view_state.view == ViewKind::Joints);
+            let words = joints.map_or(view_state.view.invitation(), Joints::invitation);
             let words = RichText::new(words).font(plain(11.5)).color(colour(p.dim));
             corner.add(egui::Label::new(words).truncate());
         }

@@ -85,9 +85,9 @@ fn joint_space_of_two_drives_is_a_plane_with_a_line() {
     h.run_steps(2);
     h.get_by_label("Joints").click();
     h.run_steps(4);
-    let section = h.state().app_state().views().section().expect("two drives with a b").clone();
+    let section = h.state().app_state().views().joints().expect("two drives with a b").clone();
     let frame = *session(&h).frame();
-    let line = section.part(frame.b_reference, &frame);
+    let line = section.surface(frame.b_reference, &frame);
     let [from, to] = line[..] else { panic!("{line:?}") };
     let dot = section.point(&frame.q, frame.b_reference);
     let middle = [0, 1, 2].map(|i| 0.5 * (from[i] + to[i]));
@@ -106,7 +106,7 @@ fn joint_space_of_two_drives_is_a_plane_with_a_line() {
     assert!((now.b_reference - frame.b_reference).abs() < 1e-9, "the dot keeps b");
     assert!((now.target.at - frame.target.at).norm() > 0.05, "{} {}", now.target.at, frame.target.at);
     // The line itself, beside the dot.
-    let line = section.part(now.b_reference, &now);
+    let line = section.surface(now.b_reference, &now);
     let hold = [0, 1, 2].map(|i| 0.9 * line[0][i] + 0.1 * line[1][i]);
     let by = egui::vec2(40.0, -40.0);
     let from = seen(&h, hold);
@@ -125,11 +125,11 @@ fn joint_space_of_four_drives_shows_three_of_them() {
     h.run_steps(2);
     h.get_by_label("Joints").click();
     h.run_steps(4);
-    let shown = |h: &Window| h.state().app_state().views().section().expect("four drives").shown().to_vec();
+    let shown = |h: &Window| h.state().app_state().views().joints().expect("four drives").drives().to_vec();
     assert_eq!(shown(&h), [0, 1, 2]);
     let frame = *session(&h).frame();
-    let section = h.state().app_state().views().section().expect("four drives").clone();
-    let corners = section.part(frame.b_reference, &frame);
+    let section = h.state().app_state().views().joints().expect("four drives").clone();
+    let corners = section.surface(frame.b_reference, &frame);
     // Each corner, with the fourth drive where it is, is a pose of this b.
     let space = stillbase::planning::pose_space::PoseSpace::of(&session(&h).scenario().machine).expect("a b");
     let here = section.point(&frame.q, frame.b_reference);

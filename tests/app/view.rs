@@ -144,8 +144,8 @@ fn views_are_linked() {
     assert_eq!(h.state().app_state().view_state().view, ViewKind::Joints);
     // The dot in its plane: the end effector goes where that pose has it, without a reaction.
     let (frame, map) = (*session(&h).frame(), *session(&h).run().planes().expect("three drives").map());
-    let space = h.state().app_state().views().joints().expect("three drives").clone();
-    let at = |q: [f64; 3]| space.point(q, frame.b_reference);
+    let space = h.state().app_state().views().joints().expect("a b").clone();
+    let at = |q: [f64; 3]| space.point(&q, frame.b_reference);
     let a = [frame.a[0] + 0.4, frame.a[1] + 0.3];
     let (from, to) = (at([frame.q[0], frame.q[1], frame.q[2]]), at(map.lift(PlanePoint { a, b: frame.b_reference })));
     let (from, to) = (seen(&h, from), seen(&h, to));

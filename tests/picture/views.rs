@@ -4,7 +4,7 @@
 use stillbase::mechanics::planar::Vector;
 use stillbase::picture::scene::axes::{Axis, sliding};
 use stillbase::picture::scene::camera::Camera;
-use stillbase::picture::scene::joint_space::JointSpace;
+use stillbase::picture::scene::joints::Joints;
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::pick::{Aim, Pick};
@@ -55,8 +55,8 @@ fn tower_of(session: &Session) -> (Tower, Scene) {
     (tower, scene)
 }
 
-fn joints_of(session: &Session) -> (JointSpace, Scene) {
-    let space = JointSpace::of(session.run()).expect("three drives");
+fn joints_of(session: &Session) -> (Joints, Scene) {
+    let space = Joints::of(session.run()).expect("three drives");
     let scene = space.scene(session.frame(), &ViewOptions::default(), &space.camera());
     (space, scene)
 }
@@ -231,7 +231,7 @@ fn the_planes_polygon_keeps_b_and_the_limits() {
         assert_eq!(outline[0], outline[4]);
         let mut corners = 0;
         for p in &outline[..4] {
-            let at = map.project(&space.angles(p.map(f64::from), frame.b_reference));
+            let at = map.project(&space.angles(p.map(f64::from), frame));
             assert!((at.b - frame.b_reference).abs() < 1e-6, "{} and {}", at.b, frame.b_reference);
             let limits = map.limits();
             assert!((0..2).all(|i| limits[i].contains(at.a[i], 2e-6)), "{at:?}");
@@ -264,11 +264,11 @@ fn the_pose_is_where_the_drives_are() {
         let (space, scene) = joints_of(&session);
         let frame = session.frame();
         let marker = scene.markers.iter().find(|m| m.name == "pose").expect("a dot");
-        let q = space.angles(marker.at.map(f64::from), frame.b_reference);
+        let q = space.angles(marker.at.map(f64::from), frame);
         for (k, q) in q.iter().enumerate() {
             assert!((q - frame.q[k]).abs() < 1e-6);
         }
-        let back = space.angles(space.point([0.1, -7.0, 3.0], frame.b_reference), frame.b_reference);
+        let back = space.angles(space.point(&[0.1, -7.0, 3.0], frame.b_reference), frame);
         assert!(back.iter().zip([0.1, -7.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-12));
     }
     // Case 3 stays on its plane, case 1 leaves it.
@@ -277,7 +277,7 @@ fn the_pose_is_where_the_drives_are() {
         let (space, scene) = joints_of(&session);
         let (b, map) = (session.frame().b_reference, *session.run().planes().expect("three drives").map());
         let path = lines(&scene, "path").next().expect("a path");
-        let off = |p: &[f32; 3]| (map.project(&space.angles(p.map(f64::from), b)).b - b).abs();
+        let off = |p: &[f32; 3]| (map.project(&space.angles(p.map(f64::from), session.frame())).b - b).abs();
         let farthest = path.points().iter().map(off).fold(0.0, f64::max);
         assert_eq!(farthest < 1e-6, flat, "{case}: {farthest}");
     }
@@ -347,13 +347,14 @@ fn a_bar_gives_the_b_at_the_pointer_within_reach() {
 #[test]
 fn pulling_in_joint_space_asks_for_what_is_seen() {
     let session = open("case-3");
-    let (frame, space) = (session.frame(), JointSpace::of(session.run()).expect("three drives"));
+    let (frame, space) = (session.frame(), Joints::of(session.run()).expect("three drives"));
     let map = *session.run().planes().expect("three drives").map();
     let b = frame.b_reference;
-    let seen =
-        |a: [f64; 2], b_of: f64| space.point(map.lift(stillbase::planning::reactionless::PlanePoint { a, b: b_of }), b);
+    let seen = |a: [f64; 2], b_of: f64| {
+        space.point(&map.lift(stillbase::planning::reactionless::PlanePoint { a, b: b_of }), b)
+    };
     for camera in cameras(space.camera()) {
-        let pose = space.point([frame.q[0], frame.q[1], frame.q[2]], b);
+        let pose = space.point(&[frame.q[0], frame.q[1], frame.q[2]], b);
         let grip = space.pick(frame, &pointer(camera, pose)).expect("the dot");
         assert_eq!(grip.handle, Handle::Target);
         for a in [[0.4, 0.6], [1.0, 2.9], [2.7, 1.4]] {

@@ -8,12 +8,10 @@ use super::camera::Camera;
 use super::draft::Draft;
 use super::exaggeration::Shown;
 use super::framing::Content;
-use super::joint_space::JointSpace;
 use super::joints::Joints;
 use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
-use super::section::Section;
 use super::stage::{Outlining, PULL, Stage, Workspace};
 use super::tower::Tower;
 use crate::mechanics::machine::Machine;
@@ -304,19 +302,14 @@ impl Views {
         }
     }
 
-    /// Joint space of a machine without planes, if it has a b.
-    pub fn section(&self) -> Option<&Section> {
-        self.joints.as_ref()?.section()
-    }
-
     /// The machine's view.
     pub fn stage(&self) -> &Stage {
         &self.stage
     }
 
-    /// Joint space, if the machine has planes.
-    pub fn joints(&self) -> Option<&JointSpace> {
-        self.joints.as_ref()?.planes()
+    /// Joint space, if the machine has a b and more than one drive.
+    pub fn joints(&self) -> Option<&Joints> {
+        self.joints.as_ref()
     }
 
     /// Whether there is such a view.

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Change, Session};
+use super::Session;
+use super::change::Change;
 use crate::query::Shared;
 use crate::session::document::Kept;
 use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use super::{Change, Session};
+use super::Session;
+use super::change::Change;
 use crate::query::{Same, Whole};
 use crate::session::Refusal;
 use crate::session::changes::in_order;

@@ -109,67 +109,60 @@ impl Query for Trimming {
     }
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Trimmed> {
-        match self.next() {
-            Ok(Step::On(stage, share)) => {
-                self.stage = stage;
-                Portion::More(share)
-            }
-            Ok(Step::Done(trim)) => self.done(Ok(*trim)),
-            Err(why) => self.done(Err(why)),
-        }
+        let outcome = match self.next() {
+            Ok(Portion::More(share)) => return Portion::More(share),
+            Ok(Portion::Stopped) => return Portion::Stopped,
+            Ok(Portion::Done(trim)) => Ok(trim),
+            Err(why) => Err(why),
+        };
+        Portion::Done(Trimmed { angle_noise: self.angle_noise, doubt: self.doubt.take(), outcome })
     }
-}
-
-/// What a portion comes to: the next stage, with how much is done by then, or what the measurement says.
-enum Step {
-    On(Stage, f64),
-    Done(Box<Trim>),
 }
 
 impl Trimming {
-    fn done(&mut self, outcome: Result<Trim, NoTrim>) -> Portion<Trimmed> {
-        Portion::Done(Trimmed { angle_noise: self.angle_noise, doubt: self.doubt.take(), outcome })
-    }
-
-    fn next(&mut self) -> Result<Step, NoTrim> {
+    fn next(&mut self) -> Result<Portion<Trim>, NoTrim> {
         let TrimRequest { machine: Shared(machine), recording: Shared(recording), angles_only, .. } = &self.request;
-        Ok(match std::mem::replace(&mut self.stage, Stage::Begun) {
+        let (stage, share) = match std::mem::replace(&mut self.stage, Stage::Begun) {
             Stage::Begun => {
                 let rows = Rows::of(machine, recording, *angles_only).map_err(NoTrim::Unusable)?;
                 self.angle_noise = match rows.made {
                     Made::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
                     _ => None,
                 };
-                Step::On(Stage::Made(rows), MADE)
+                (Stage::Made(rows), MADE)
             }
             Stage::Made(rows) => match Doubting::begin(machine, recording, *angles_only) {
-                Ok(doubting) => Step::On(Stage::Doubting(rows, doubting.into()), MADE),
+                Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE),
                 // What is wrong with the recording itself is said by the fit.
-                Err(_) => Step::On(Stage::Believed(rows), TRIED),
+                Err(_) => (Stage::Believed(rows), TRIED),
             },
             Stage::Doubting(rows, mut doubting) => match doubting.next(machine) {
                 true => {
                     let share = MADE + (TRIED - MADE) * doubting.share();
-                    Step::On(Stage::Doubting(rows, doubting), share)
+                    (Stage::Doubting(rows, doubting), share)
                 }
                 false => {
                     self.doubt = doubting.doubt(machine);
                     if let Some(doubt) = self.doubt.take_if(|_| !self.request.as_given) {
                         return Err(NoTrim::Doubted(doubt.into()));
                     }
-                    Step::On(Stage::Believed(rows), TRIED)
+                    (Stage::Believed(rows), TRIED)
                 }
             },
             Stage::Believed(rows) => {
                 let fit = fit(machine, &rows).map_err(NoTrim::NoFit)?;
-                Step::On(Stage::Fitted(rows, fit.into()), FITTED)
+                (Stage::Fitted(rows, fit.into()), FITTED)
             }
             Stage::Fitted(rows, fit) => {
                 let next = next(machine, recording, &rows, &fit, self.request.accelerations.as_deref());
-                Step::On(Stage::Searched(rows, fit, next), SEARCHED)
+                (Stage::Searched(rows, fit, next), SEARCHED)
             }
-            Stage::Searched(rows, fit, next) => Step::Done(Trim::of(&self.request, &rows, &fit, &next).into()),
-        })
+            Stage::Searched(rows, fit, next) => {
+                return Ok(Portion::Done(Trim::of(&self.request, &rows, &fit, &next)));
+            }
+        };
+        self.stage = stage;
+        Ok(Portion::More(share))
     }
 }
 

@@ -1,42 +1,39 @@
-//! Joint space: its axes are the drive angles q_1, q_2, q_3, so the planes b = Σ λ_k q_k, (13), are seen as planes. The
-//! limits of a_1 and a_2 cut a parallelogram out of each; all of them together are a prism along (1, 1, 1), because
-//! turning all drives alike changes no relative angle.
+//! [`Prism`]: joint space of a machine with planes. Its axes are the drive angles q_1, q_2, q_3, so the planes
+//! b = Σ λ_k q_k, (13), are seen as planes. The limits of a_1 and a_2 cut a parallelogram out of each; all of them together
+//! are a prism along (1, 1, 1), because turning all drives alike changes no relative angle.
 //!
 //! The drive with the greatest λ points up, the others follow it in order (q_2, q_3, q_1 for the paper's machine), so
-//! the planes lie nearly level. In the scene a unit is a radian, and the origin is [`JointSpace::origin`].
+//! the planes lie nearly level. In the scene a unit is a radian, and the origin is [`Prism::origin`].
 
 use std::sync::Arc;
 
-use super::axes;
-use super::camera::{Camera, Orbit};
-use super::course::stations;
-use super::joint_items;
-use super::options::{Handle, ViewOptions};
-use super::palette::{Palette, faded, palette};
-use super::pick::{Aim, NEAR, Pick};
-use super::pointer::{Pointer, dot};
-use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips};
+use super::items;
+use super::range::Range;
 use crate::picture::numbers::degrees;
+use crate::picture::scene::camera::{Camera, Orbit};
+use crate::picture::scene::course::stations;
+use crate::picture::scene::options::{Handle, ViewOptions};
+use crate::picture::scene::palette::{Palette, faded, palette};
+use crate::picture::scene::pick::{Aim, NEAR, Pick};
+use crate::picture::scene::pointer::{Pointer, dot};
+use crate::picture::scene::{
+    Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips, axes, place,
+};
 use crate::planning::pose_space::Planes;
 use crate::planning::reactionless::PlanePoint;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// How much of b is shown, rad, and how near to its ends the present one comes.
-const SPAN: f64 = 3.0;
-const MARGIN: f64 = 0.4;
-/// Where the span lies while the present b is well inside, rad.
+/// Where the b that are shown lie while the present one is well inside, rad.
 const HOME: f64 = 2.5;
 /// Changes of b from which on they are what there is to see, rad.
 const BESIDE: f64 = 0.3;
-/// Neighbouring planes lie at multiples of this, rad.
-const NEIGHBOURS: f64 = 0.5;
 /// Room around the prism, rad.
 const ROOM: f64 = 0.25;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
-pub struct JointSpace {
+pub(super) struct Prism {
     planes: Arc<Planes>,
     /// The parallelogram of one plane about its middle; the sides of the prism.
     model: Arc<Model>,
@@ -48,27 +45,16 @@ pub struct JointSpace {
     corners: [[f64; 2]; 4],
     /// q of the planned motion along the axes of the scene, as it is where the origin is q = 0; none without a plan.
     course: Strips,
-    /// The b that are shown, rad, where they do not slide along with the present one.
-    fixed: Option<[f64; 2]>,
+    /// The b that are shown.
+    range: Range,
     /// b changes so much that this is what there is to see.
     travels: bool,
 }
 
-impl JointSpace {
-    /// Prepares a run for drawing; to be made again when its machine or plan changes.
-    pub fn of(run: &Run) -> Option<Self> {
-        Self::showing(run, None)
-    }
-
-    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
-    /// coordinates.
-    pub fn over(run: &Run, [low, high]: [f64; 2]) -> Option<Self> {
-        let width = SPAN.max(high - low + 2.0 * MARGIN);
-        let space = Self::showing(run, Some(axes::covering([low, high], HOME, width, MARGIN)))?;
-        Some(Self { travels: high - low > BESIDE, ..space })
-    }
-
-    fn showing(run: &Run, fixed: Option<[f64; 2]>) -> Option<Self> {
+impl Prism {
+    /// Of a run with planes; with a range of b, rad, it shows all of them and stands still, with q itself as coordinates.
+    pub fn of(run: &Run, all: Option<[f64; 2]>) -> Option<Self> {
+        let range = all.map_or_else(|| Range::sliding(HOME), |all| Range::over(all, HOME));
         let planes = run.planes()?.clone();
         let map = planes.map();
         let lambda = map.lambda();
@@ -84,15 +70,15 @@ impl JointSpace {
         let mut space = Self {
             model: Arc::default(),
             outline: Strips::default(),
-            travels: false,
+            travels: all.is_some_and(|[low, high]| high - low > BESIDE),
             drives,
             corners,
             course,
             planes,
-            fixed,
+            range,
         };
-        let [low, high] = space.window(HOME);
-        let ring = |b: f64| corners.map(|a| space.point(space.planes.map().lift(PlanePoint { a, b }), HOME));
+        let [low, high] = range.about(HOME);
+        let ring = |b: f64| space.surface(b, HOME);
         let (own, bottom, top) = (ring(HOME), ring(low), ring(high));
         let sides = (0..4).flat_map(|i| {
             let j = (i + 1) % 4;
@@ -105,14 +91,9 @@ impl JointSpace {
         Some(space)
     }
 
-    /// The least and the greatest b that are shown, rad.
-    pub fn window(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, HOME, SPAN, MARGIN))
-    }
-
     /// The drive shown along each axis of the scene, counted from 0; the last one points up.
-    pub fn drives(&self) -> [usize; 3] {
-        self.drives
+    pub fn drives(&self) -> &[usize; 3] {
+        &self.drives
     }
 
     /// q at the corners of a plane, in order, rad.
@@ -121,18 +102,23 @@ impl JointSpace {
     }
 
     /// q at the scene's origin while the present pose constant is b, in the order of the drives, rad.
-    pub fn origin(&self, b: f64) -> [f64; 3] {
-        if self.fixed.is_some() {
+    fn origin(&self, b: f64) -> [f64; 3] {
+        if self.range.is_fixed() {
             return [0.0; 3];
         }
-        let [low, high] = self.window(b);
+        let [low, high] = self.range.about(b);
         self.middle(0.5 * (low + high))
     }
 
     /// Where q lies in the scene while the present pose constant is b.
-    pub fn point(&self, q: [f64; 3], b: f64) -> [f64; 3] {
+    pub fn point(&self, q: &[f64], b: f64) -> [f64; 3] {
         let origin = self.origin(b);
         self.drives.map(|k| q[k] - origin[k])
+    }
+
+    /// Corners of the plane of a pose constant, in order, in the scene of the present one, b.
+    pub fn surface(&self, of: f64, b: f64) -> [[f64; 3]; 4] {
+        self.corners(of).map(|q| self.point(&q, b))
     }
 
     /// q of a point of the scene while the present pose constant is b, rad.
@@ -146,7 +132,7 @@ impl JointSpace {
 
     /// A view of the whole prism, or of all that a run shows.
     pub fn camera(&self) -> Camera {
-        if self.fixed.is_some() {
+        if self.range.is_fixed() {
             return self.camera_over();
         }
         let size = self.bounds(HOME).iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
@@ -162,23 +148,16 @@ impl JointSpace {
         Camera::Orbit(Orbit { centre: [x, y, z - 0.05 * size], distance, yaw, pitch: 0.66 })
     }
 
-    /// Corners of the box that holds the prism.
-    pub fn box_corners(&self) -> Vec<[f64; 3]> {
-        let ends = self.bounds(HOME);
-        (0..8).map(|i| [0, 1, 2].map(|k| ends[k][(i >> k) & 1])).collect()
+    /// Ends of the box that holds the prism where it usually lies, along the scene's axes.
+    pub fn bounds_at_home(&self) -> [[f64; 2]; 3] {
+        self.bounds(HOME)
     }
 
     /// Ends of the box along the scene's axes.
     fn bounds(&self, b: f64) -> [[f64; 2]; 3] {
-        self.bounds_of(self.window(b), self.origin(b))
-    }
-
-    /// The same for a window of b, seen from an origin.
-    fn bounds_of(&self, window: [f64; 2], origin: [f64; 3]) -> [[f64; 2]; 3] {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-        for edge in window {
-            for q in self.corners(edge) {
-                let p = self.drives.map(|k| q[k] - origin[k]);
+        for edge in self.range.about(b) {
+            for p in self.surface(edge, b) {
                 for (bound, x) in bounds.iter_mut().zip(p) {
                     *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
                 }
@@ -203,7 +182,7 @@ impl JointSpace {
     }
 
     fn pose(&self, frame: &Frame) -> [f64; 3] {
-        self.point([0, 1, 2].map(|k| frame.relative(k)), frame.b_reference)
+        self.point(&[0, 1, 2].map(|k| frame.relative(k)), frame.b_reference)
     }
 
     /// What the pointer can take hold of: the pose's dot, the plane.
@@ -232,7 +211,7 @@ impl JointSpace {
                 let normal = self.normal();
                 let s = pointer.ray()?.along_line(pick.at, normal)?;
                 let at = [0, 1, 2].map(|i| pick.at[i] + s * normal[i]);
-                let [low, high] = self.window(b);
+                let [low, high] = self.range.about(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
             _ => None,
@@ -253,48 +232,40 @@ impl JointSpace {
         };
         let mut scene = Scene::new(palette.background, self.model.clone());
         // The meshes were made on the plane HOME and about it, where they are seen while b is HOME.
-        let plane = self.shifted(self.point(self.middle(b), b), self.point(self.middle(HOME), HOME));
+        let plane = shifted(self.point(&self.middle(b), b), self.point(&self.middle(HOME), HOME));
         scene.solids = vec![
             solid("prism", 1, IN_PLACE, faded(palette.dim, 0.07), Changes::Nothing),
             solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        let axes = joint_items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b));
-        axes::draw(&mut scene, &palette, &axes, eye, self.stands());
+        let axes = items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b));
+        axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         self.prism(&mut scene, &palette, b);
         self.neighbours(&mut scene, &palette, b);
         self.plane(&mut scene, &palette, frame, plane, hot);
         self.drops(&mut scene, &palette, frame, eye);
         self.course(&mut scene, &palette, b);
-        joint_items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
+        items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
         scene
     }
 
-    /// What may change of what stands about the present plane.
-    fn stands(&self) -> Changes {
-        if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape }
-    }
-
-    /// Corners of the plane of a pose constant, in the scene of the present one.
+    /// The outline of the plane of a pose constant, closed, in the scene of the present one.
     fn polygon(&self, of: f64, b: f64) -> Vec<[f32; 3]> {
-        let corner = |a| self.point(self.planes.map().lift(PlanePoint { a, b: of }), b).map(|x| x as f32);
-        (0..5).map(|i| corner(self.corners[i % 4])).collect()
+        let corners = self.surface(of, b).map(|p| p.map(|x| x as f32));
+        (0..5).map(|i| corners[i % 4]).collect()
     }
 
     fn prism(&self, scene: &mut Scene, palette: &Palette, b: f64) {
-        let [bottom, top] = self.window(b).map(|edge| self.polygon(edge, b));
+        let [bottom, top] = self.range.about(b).map(|edge| self.polygon(edge, b));
         let edges: Vec<_> = bottom.iter().zip(&top).take(4).map(|(from, to)| vec![*from, *to]).collect();
         let line = Line::new("limits", edges, 1.0, faded(palette.dim, 0.6));
-        scene.lines.push(Line { changes: self.stands(), ..line });
+        scene.lines.push(Line { changes: self.range.changes(), ..line });
     }
 
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, b: f64) {
-        let [low, high] = self.window(b);
-        let first = (low / NEIGHBOURS).ceil();
-        let others = (0..80).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|of| *of <= high);
-        let outlines: Vec<_> = others.map(|of| self.polygon(of, b)).collect();
+        let outlines: Vec<_> = self.range.neighbours(b).map(|of| self.polygon(of, b)).collect();
         let line = Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top();
-        scene.lines.push(Line { changes: self.stands(), ..line });
+        scene.lines.push(Line { changes: self.range.changes(), ..line });
     }
 
     fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Pose, hot: bool) {
@@ -304,7 +275,7 @@ impl JointSpace {
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
         let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
         let at = [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k]));
-        let text = joint_items::named(b, self.planes.is_reactionless());
+        let text = items::named(b, self.planes.is_reactionless());
         scene.labels.push(Label::new("plane/label", at, [0.0; 2], text, palette.amber, 12.5, Anchor::Centre));
         self.limits(scene, palette, &polygon);
         let outline = Line::new("plane/boundary", self.outline.clone(), if hot { 3.2 } else { 2.0 }, palette.amber);
@@ -341,12 +312,12 @@ impl JointSpace {
 
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let Some(points) = self.course.first().filter(|points| points.len() > 1) else { return };
-        let pose = self.shifted(self.point([0.0; 3], b), [0.0; 3]);
+        let pose = shifted(self.point(&[0.0; 3], b), [0.0; 3]);
         let path = Line::new("path", self.course.clone(), 2.0, palette.ink).dashed(2.0, 3.5).on_top();
-        let changes = if self.fixed.is_some() { Changes::Nothing } else { Changes::Pose };
+        let changes = if self.range.is_fixed() { Changes::Nothing } else { Changes::Pose };
         scene.lines.push(Line { world_from_item: pose, changes, ..path });
-        let [first, last] = [points[0], points[points.len() - 1]].map(|p| super::place(&pose, p));
-        joint_items::draw_ends(scene, palette, [first, last]);
+        let [first, last] = [points[0], points[points.len() - 1]].map(|p| place(&pose, p));
+        items::draw_ends(scene, palette, [first, last]);
     }
 
     /// q at the middle of a plane, rad.
@@ -354,15 +325,15 @@ impl JointSpace {
         let [a1, a2] = self.planes.map().limits();
         self.planes.map().lift(PlanePoint { a: [a1, a2].map(|l| 0.5 * (l.min + l.max)), b })
     }
+}
 
-    /// The pose of what was made at one point of the scene and stands at another.
-    fn shifted(&self, to: [f64; 3], from: [f64; 3]) -> Pose {
-        let mut pose = IN_PLACE;
-        for i in 0..3 {
-            pose[3][i] = (to[i] - from[i]) as f32;
-        }
-        pose
+/// The pose of what was made at one point of the scene and stands at another.
+fn shifted(to: [f64; 3], from: [f64; 3]) -> Pose {
+    let mut pose = IN_PLACE;
+    for i in 0..3 {
+        pose[3][i] = (to[i] - from[i]) as f32;
     }
+    pose
 }
 
 /// Triangles as an open shell, each with its own normal.

@@ -1,37 +1,33 @@
-//! Joint space of machines without planes. Of two drives it is a plane, in which a b is a line. Of four and more it is cut
+//! [`Section`]: joint space of a machine without planes. Of two drives it is a plane, in which a b is a line. Of four and more it is cut
 //! where the drives that have no axis stand now, and three are left: in these a b is a plane again.
 //!
 //! In the scene a unit is a radian, along x, y and z lie the drives that were chosen, and the origin moves with b.
 
 use std::sync::Arc;
 
-use super::axes;
-use super::camera::{Camera, Flat, Orbit};
-use super::course::stations;
-use super::joint_items::{self, TITLES};
-use super::options::{Handle, ViewOptions};
-use super::palette::{Palette, faded, palette};
-use super::pick::{Aim, NEAR, Pick};
-use super::pointer::{Pointer, dot};
-use super::{Anchor, Changes, IN_PLACE, Label, Line, Mesh, Model, Scene, Solid};
+use super::items::{self, TITLES};
+use super::range::Range;
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::picture::numbers::{degrees, round_up, signed};
-use crate::planning::pose_space::PoseSpace;
+use crate::picture::scene::camera::{Camera, Flat, Orbit};
+use crate::picture::scene::course::stations;
+use crate::picture::scene::options::{Handle, ViewOptions};
+use crate::picture::scene::palette::{Palette, faded, palette};
+use crate::picture::scene::pick::{Aim, NEAR, Pick};
+use crate::picture::scene::pointer::{Pointer, dot};
+use crate::picture::scene::{Anchor, Changes, IN_PLACE, Label, Line, Mesh, Model, Scene, Solid, axes};
+use crate::planning::pose_space::{Joint, PoseSpace};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// How much of b is shown, rad, where that lies, and how near to its ends the present one comes.
-const SPAN: f64 = 3.0;
+/// Where the b that are shown lie while the present one is well inside, rad.
 const HOME: f64 = 1.5;
-const MARGIN: f64 = 0.4;
-/// Neighbouring lines or planes lie at multiples of this, rad.
-const NEIGHBOURS: f64 = 0.5;
 /// Room around what is shown, rad.
 const ROOM: f64 = 0.2;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub(super) struct Section {
     space: Arc<PoseSpace>,
     /// The drives along the axes, counted from 0: two or three.
     shown: Vec<usize>,
@@ -39,29 +35,20 @@ pub struct Section {
     course: Vec<DriveAngles>,
     /// Ends of the box along the scene's axes.
     bounds: [[f64; 2]; 3],
-    /// The b that are shown, rad, where they do not slide along with the present one.
-    fixed: Option<[f64; 2]>,
+    /// The b that are shown.
+    range: Range,
 }
 
 impl Section {
-    /// Of a run without planes that has a b.
-    pub fn of(run: &Run, space: &Arc<PoseSpace>) -> Option<Self> {
-        Self::showing(run, space, None)
-    }
-
-    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
-    /// coordinates.
-    pub fn over(run: &Run, space: &Arc<PoseSpace>, [low, high]: [f64; 2]) -> Option<Self> {
-        let width = SPAN.max(high - low + 2.0 * MARGIN);
-        Self::showing(run, space, Some(axes::covering([low, high], HOME, width, MARGIN)))
-    }
-
-    fn showing(run: &Run, space: &Arc<PoseSpace>, fixed: Option<[f64; 2]>) -> Option<Self> {
+    /// Of a run without planes that has a b; with a range of b, rad, it shows all of them and stands still, with q itself
+    /// as coordinates.
+    pub fn of(run: &Run, space: &Arc<PoseSpace>, all: Option<[f64; 2]>) -> Option<Self> {
+        let range = all.map_or_else(|| Range::sliding(HOME), |all| Range::over(all, HOME));
         let n = space.drives();
         let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
         let shown = (0..n.min(3)).collect();
         let (space, course, bounds) = (space.clone(), course.unwrap_or_default(), [[0.0; 2]; 3]);
-        (n > 1).then(|| Self { space, shown, course, bounds, fixed }.bounded())
+        (n > 1).then(|| Self { space, shown, course, bounds, range }.bounded())
     }
 
     /// Puts other drives along the axes, counted from 0; those that the machine lacks change nothing.
@@ -74,32 +61,25 @@ impl Section {
     }
 
     /// The drives along the axes, counted from 0.
-    pub fn shown(&self) -> &[usize] {
+    pub fn drives(&self) -> &[usize] {
         &self.shown
     }
 
-    /// What can be done in it with the pointer.
-    pub fn invitation(&self) -> &'static str {
-        match self.is_flat() {
-            true => "drag the dot along its line  ·  drag the line to change b",
-            false => "drag the dot in its plane  ·  drag the plane to change b",
-        }
+    /// Whether there are drives without an axis.
+    pub fn has_choice(&self) -> bool {
+        self.shown.len() < self.space.drives()
     }
 
     fn is_flat(&self) -> bool {
         self.shown.len() < 3
     }
 
-    fn window(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, HOME, SPAN, MARGIN))
-    }
-
     /// q at the scene's origin while the present pose constant is b, rad.
     fn origin(&self, b: f64) -> DriveAngles {
-        if self.fixed.is_some() {
+        if self.range.is_fixed() {
             return DriveAngles(PerDrive::zeros(self.space.drives()));
         }
-        let [low, high] = self.window(b);
+        let [low, high] = self.range.about(b);
         self.space.lift(&self.space.middle(), 0.5 * (low + high))
     }
 
@@ -114,7 +94,7 @@ impl Section {
     }
 
     /// q of a point of the scene, the drives without an axis as in a frame.
-    fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
+    pub fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
         let origin = self.origin(frame.b_reference);
         let mut q = now(frame);
         for (x, k) in point.iter().zip(&self.shown) {
@@ -129,7 +109,7 @@ impl Section {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for i in 0..1_usize << joints.len() {
             let a: Vec<f64> = joints.iter().enumerate().map(|(j, joint)| joint.limits()[(i >> j) & 1]).collect();
-            for b in self.window(HOME) {
+            for b in self.range.about(HOME) {
                 let at = self.point(&self.space.lift(&a, b), HOME);
                 for (bound, x) in bounds.iter_mut().zip(at) {
                     *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
@@ -142,22 +122,21 @@ impl Section {
         Self { bounds, ..self }
     }
 
-    /// Corners of what is shown.
-    pub fn corners(&self) -> Vec<[f64; 3]> {
-        let ends = self.bounds;
-        (0..8).map(|i| [0, 1, 2].map(|k| ends[k][(i >> k) & 1])).collect()
+    /// Ends of the box along the scene's axes.
+    pub fn bounds(&self) -> [[f64; 2]; 3] {
+        self.bounds
     }
 
     /// A view of it: a plane from straight above, three axes in perspective.
     pub fn camera(&self) -> Camera {
         let ends = self.bounds;
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
-        let [x, y, z] = ends.map(|[from, to]| if self.fixed.is_some() { 0.5 * (from + to) } else { 0.0 });
+        let [x, y, z] = ends.map(|[from, to]| if self.range.is_fixed() { 0.5 * (from + to) } else { 0.0 });
         if self.is_flat() {
             return Camera::Flat(Flat { centre: [x, y], half_height: 0.5 * size });
         }
         // What stands still is seen from nearer.
-        let near = if self.fixed.is_some() { 1.05 } else { 1.85 };
+        let near = if self.range.is_fixed() { 1.05 } else { 1.85 };
         Camera::Orbit(Orbit { centre: [x, y, z - 0.06 * size], distance: near * size, yaw: 1.85, pitch: 0.5 })
     }
 
@@ -169,7 +148,7 @@ impl Section {
     }
 
     /// The part of b's line or plane within the limits, the other drives as in a frame: its ends or corners, in order.
-    pub fn part(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
+    pub fn surface(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
         let normal = self.normal();
         let size = dot(normal, normal);
         if size < 1e-12 {
@@ -230,12 +209,12 @@ impl Section {
             return Some(Pick::of(Handle::Target, dot));
         }
         let at = self.under(frame, pointer)?;
-        let part = self.part(frame.b_reference, frame);
+        let part = self.surface(frame.b_reference, frame);
         let on = match (self.is_flat(), part.as_slice()) {
             (true, [from, to, ..]) => pointer.distance_to_segment([*from, *to]).is_some_and(|d| d < 0.5 * NEAR),
             (true, _) => false,
             _ => {
-                let within = |joint: &crate::planning::pose_space::Joint| {
+                let within = |joint: &Joint| {
                     let ([low, high], a) = (joint.bounds(), joint.of(&self.angles(at, frame)));
                     (low..=high).contains(&a)
                 };
@@ -263,7 +242,7 @@ impl Section {
                     let s = pointer.ray()?.along_line(pick.at, normal)?;
                     [0, 1, 2].map(|i| pick.at[i] + s * normal[i])
                 };
-                let [low, high] = self.window(b);
+                let [low, high] = self.range.about(b);
                 Some(Aim::B(space.b(&self.angles(at, frame)).clamp(low, high)))
             }
             _ => None,
@@ -275,7 +254,7 @@ impl Section {
         let palette = palette(options.theme);
         let b = frame.b_reference;
         let hot = options.hot == Some(Handle::Plane);
-        let part = self.part(b, frame);
+        let part = self.surface(b, frame);
         let mut scene = Scene::new(palette.background, Arc::new(Model { meshes: vec![fan(&part)] }));
         if self.is_flat() {
             self.grid(&mut scene, &palette, frame);
@@ -286,20 +265,19 @@ impl Section {
             scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
             let eye = camera.eye_direction().map(f64::from);
             let drives = [0, 1, 2].map(|i| self.shown[i]);
-            let axes = joint_items::axes(&palette, frame, drives, self.bounds, &self.origin(b));
-            let stands = if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape };
-            axes::draw(&mut scene, &palette, &axes, eye, stands);
+            let axes = items::axes(&palette, frame, drives, self.bounds, &self.origin(b));
+            axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         }
         self.neighbours(&mut scene, &palette, frame);
         let width = if hot { 3.4 } else { 2.2 };
         scene.lines.push(Line::new("plane/boundary", [closed(&part)], width, palette.amber).on_top());
         if let Some(at) = self.label(&part, self.pose(frame)) {
-            let text = joint_items::named(b, self.space.is_reactionless());
+            let text = items::named(b, self.space.is_reactionless());
             let label = Label::new("plane/label", at, [0.0, -14.0], text, palette.amber, 12.5, Anchor::Centre);
             scene.labels.push(label);
         }
         self.course(&mut scene, &palette, b);
-        joint_items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
+        items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
         scene
     }
 
@@ -374,10 +352,8 @@ impl Section {
     }
 
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
-        let [low, high] = self.window(frame.b_reference);
-        let first = (low / NEIGHBOURS).ceil();
-        let others = (0..80).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|of| *of <= high);
-        let outlines: Vec<_> = others.map(|of| closed(&self.part(of, frame))).filter(|o| o.len() > 1).collect();
+        let others = self.range.neighbours(frame.b_reference);
+        let outlines: Vec<_> = others.map(|of| closed(&self.surface(of, frame))).filter(|o| o.len() > 1).collect();
         scene.lines.push(Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top());
     }
 
@@ -386,8 +362,8 @@ impl Section {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
         let path = Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top();
-        scene.lines.push(if self.fixed.is_some() { path.still() } else { path });
-        joint_items::draw_ends(scene, palette, [first, last]);
+        scene.lines.push(if self.range.is_fixed() { path.still() } else { path });
+        items::draw_ends(scene, palette, [first, last]);
     }
 }
 

@@ -1,9 +1,9 @@
 //! What joint space shows alike for any number of drives: its axes, the pose, the ends of the planned path.
 
-use super::axes::Axis;
-use super::palette::{Palette, faded};
-use super::{Anchor, Label, Marker, Scene};
 use crate::picture::numbers::round_up;
+use crate::picture::scene::axes::Axis;
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::{Anchor, Label, Marker, Scene};
 use crate::simulation::frame::Frame;
 
 /// Drives by their angles.

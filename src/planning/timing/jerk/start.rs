@@ -1,0 +1,68 @@
+//! Where the method begins: a slow timing within all limits.
+
+use super::program::{JerkProgram, dot};
+
+impl JerkProgram {
+    /// A timing within all limits, to begin with: below what each place bears by itself, with no more than a curvature
+    /// that jerk allows, of which a share is taken.
+    pub(super) fn start(&self, bound: &impl Fn(f64) -> f64, share: f64) -> Option<Vec<f64>> {
+        let mut bend = f64::INFINITY;
+        let mut alone = Vec::with_capacity(self.places.len());
+        for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
+            let theta = place.theta;
+            let mut least = bound(theta).powf(1.5);
+            for (i, side) in sides.iter().enumerate() {
+                let v = side.v.iter().sum::<f64>().abs();
+                if i < self.linear {
+                    least = least.min(((1.0 - side.g.abs()) / v).powf(1.5));
+                } else {
+                    least = least.min(1.0 / v);
+                    // θ⃛ of y = m + bend θ² is at most 2/3 of the bend.
+                    bend = bend.min(if side.g == 0.0 { f64::INFINITY } else { 1.0 / (6.0 * side.g.abs()) });
+                }
+            }
+            alone.push((theta, least));
+        }
+        if bend.is_nan() || bend <= 0.0 {
+            return None;
+        }
+        // From below by parabolas that open upwards, then from inside by ones that open downwards: what is left has no
+        // more curvature than they have (Lasry and Lions).
+        let bend = share * bend;
+        let low = |theta: f64| {
+            alone.iter().map(|(at, most)| most + 0.5 * bend * (theta - at) * (theta - at)).fold(f64::INFINITY, f64::min)
+        };
+        let lows: Vec<(f64, f64)> = alone.iter().map(|(at, _)| (*at, low(*at))).collect();
+        let high = |theta: f64| {
+            lows.iter().map(|(at, low)| low - bend * (theta - at) * (theta - at)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let last = self.nodes.len() - 1;
+        let place = |j: usize| 0.5 * (self.nodes[j.saturating_sub(1)] + self.nodes[j.min(last)]);
+        let c: Vec<f64> = (0..self.worth.len()).map(|j| high(place(j))).collect();
+        c.iter().all(|c| *c > 0.0 && c.is_finite()).then_some(c)
+    }
+
+    /// A timing as slow as it must be to keep well within all limits.
+    pub(super) fn within(&self, mut c: Vec<f64>) -> Option<Vec<f64>> {
+        let mut factor: f64 = f64::INFINITY;
+        for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
+            let c = &c[place.first..];
+            let (y, slope) = (dot(&place.y, c), dot(&place.slope, c));
+            for (i, side) in sides.iter().enumerate() {
+                let value = dot(&side.v, c);
+                factor = factor.min(if i < self.linear {
+                    ((1.0 - side.g.abs()) * y.cbrt() / value.abs()).powf(1.5)
+                } else {
+                    1.0 / (value - side.g * slope * slope / y).abs()
+                });
+            }
+        }
+        c.iter_mut().for_each(|c| *c *= 0.7 * factor);
+        (factor > 0.0 && factor.is_finite()).then_some(c)
+    }
+
+    /// T of a timing, s.
+    pub(super) fn time(&self, c: &[f64]) -> f64 {
+        self.places.iter().map(|p| p.weight / dot(&p.y, &c[p.first..]).cbrt()).sum()
+    }
+}

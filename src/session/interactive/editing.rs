@@ -1,0 +1,171 @@
+//! What an edit does to a session: at the present step, or to the run as a whole.
+
+use super::Session;
+use crate::query::Watch;
+use crate::session::changes::Failed;
+use crate::session::document::{Document, Performed};
+use crate::session::edit::{Edit, TimedEdit};
+use crate::session::refusal::Refusal;
+
+impl Session {
+    /// Applies an edit: to the machine in motion at the present step; at rest, parameters and poses change the start,
+    /// and the run so far is made again.
+    ///
+    /// # Errors
+    /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
+    /// the run waits.
+    pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
+        self.apply_while(edit, &mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and if it is not wanted any more.
+    pub fn apply_while(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+        let mut now = self.concerns_now(&edit);
+        if let (true, Some(waiting)) = (now, self.run.waiting()) {
+            return Err(waiting.why.clone());
+        }
+        let done = match now {
+            true => self.apply_now(edit.clone(), watch),
+            false => self.amend(edit.clone(), watch),
+        };
+        match done {
+            Err(why) if now && edit.sets_limits() && why != Refusal::Stopped => {
+                // The motion in progress does not keep them: they hold from its start.
+                now = false;
+                self.amend(edit, watch)?;
+            }
+            done => done?,
+        }
+        self.gesture_now = Some(now);
+        Ok(())
+    }
+
+    /// Whether an edit applies at the present step rather than to the run as a whole.
+    pub(super) fn concerns_now(&self, edit: &Edit) -> bool {
+        match edit {
+            edit if edit.leads() => true,
+            Edit::Push { .. } => true,
+            Edit::PoseB { .. } => self.is_led(),
+            // A machine that is led by hand has the new limits from the present step on.
+            edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
+            // A motion in progress cannot change its time or its base.
+            edit if edit.is_of_the_whole() => false,
+            // A slider that set the machine in motion goes on as it began.
+            _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
+        }
+    }
+
+    /// Whether the newest frame is on display and time passes.
+    pub(super) fn is_running(&self) -> bool {
+        self.is_moving() && self.is_at_end()
+    }
+
+    /// At the present step; later frames, if the display was scrubbed back, are replaced.
+    fn apply_now(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+        if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
+            return Err(Refusal::Full { time: self.run.simulation().time() });
+        }
+        let before = self.document.clone();
+        let mut document = before.clone();
+        let (mut remade, mut partings) = (None, self.partings.clone());
+        if !self.is_at_end() {
+            (document.branches, partings) = self.with_left();
+            document.end = self.cursor as u64;
+            document.script.cut(document.end);
+            remade = Some(document.perform(Some(&self.run), false, watch).map_err(Failed::refusal)?);
+        }
+        let timed = TimedEdit { step: document.end, edit };
+        let joins = self.gesture
+            && remade.is_none()
+            && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
+        // An edit that replaces the one before starts from the run before that one, so that it leaves no trace.
+        let unedited = match (&remade, &self.unedited) {
+            (Some(remade), _) => remade.run.clone(),
+            (None, Some(run)) if joins => {
+                document.script.pop();
+                run.clone()
+            }
+            _ => self.run.clone(),
+        };
+        let inverse = unedited.inverse_of(&timed.edit);
+        let mut run = unedited.clone();
+        run.apply(&timed.edit)?;
+        self.edits.truncate(document.script.len());
+        self.edits.push(timed.clone());
+        document.script.push(timed.clone());
+        if let Some(remade) = remade {
+            (self.frames, self.machines) = (remade.frames, remade.machines);
+        }
+        (self.document, self.run, self.unedited, self.partings) = (document, run, Some(unedited), partings);
+        self.show_present();
+        self.cursor = self.frames.len() - 1;
+        if timed.edit.leads() {
+            self.playing = true;
+        }
+        self.remember(before, timed, inverse);
+        Ok(())
+    }
+
+    /// Before the first step, whatever has happened since: for a parameter, during the whole run.
+    fn amend(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+        let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
+        let timed = TimedEdit { step: 0, edit };
+        let mut document = self.document.amended(&timed);
+        let mut partings = self.partings.clone();
+        // What was led by hand would be gone.
+        if self.is_led() && !document.script.is_led() {
+            (document.branches, partings) = self.with_left();
+        }
+        match &timed.edit {
+            edit if edit.is_aside() => {
+                self.run.apply(&timed.edit)?;
+                self.unedited = None;
+                self.edits = document.script.to_vec().into_iter().collect();
+                self.document = document;
+            }
+            edit => {
+                let patient = edit.sets_machine() || self.run.waiting().is_some();
+                self.restore(document, patient, watch)?;
+            }
+        }
+        self.partings = partings;
+        self.remember(before, timed, inverse);
+        Ok(())
+    }
+
+    /// The newest frame once more, after an edit.
+    fn show_present(&mut self) {
+        let frame = self.run.frame();
+        self.machines.hold(frame.step, &self.scenario().machine.clone());
+        self.frames.replace_last(frame);
+    }
+
+    /// Applies while time passes, without touching history.
+    pub(super) fn append(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+        if !self.concerns_now(&edit) {
+            return self.restore(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
+        }
+        self.run.apply(&edit)?;
+        let timed = TimedEdit { step: self.document.end, edit };
+        self.edits.push(timed.clone());
+        self.document.script.push(timed);
+        self.show_present();
+        Ok(())
+    }
+
+    /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
+    /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
+    pub(super) fn restore(&mut self, document: Document, patient: bool, watch: Watch<'_>) -> Result<(), Refusal> {
+        let Performed { run, frames, machines } =
+            document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
+        self.playing &= run.waiting().is_none();
+        self.edits = document.script.to_vec().into_iter().collect();
+        (self.document, self.run, self.unedited) = (document, run, None);
+        (self.frames, self.machines) = (frames, machines);
+        self.cursor = self.cursor.min(self.frames.len() - 1);
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! What can be taken back in a session, and brought back.
+
+use std::sync::Arc;
+
+use super::Session;
+use super::change::Change;
+use crate::query::Watch;
+use crate::session::document::Document;
+use crate::session::edit::{Edit, TimedEdit};
+use crate::session::refusal::Refusal;
+use crate::session::scenario::Scenario;
+
+impl Session {
+    /// Takes an edit into history; those of one gesture are one change.
+    pub(super) fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
+        self.redo.clear();
+        let joins = self.gesture
+            && self.undo.last().is_some_and(|c| c.edit.as_ref().is_some_and(|e| e.edit.is_replaced_by(&timed.edit)));
+        match self.undo.last_mut() {
+            Some(last) if joins => {
+                let last = Arc::make_mut(last);
+                last.title = timed.edit.title();
+                last.edit = Some(timed);
+            }
+            _ => {
+                let title = timed.edit.title();
+                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title, beside: None }));
+            }
+        }
+        self.gesture = true;
+    }
+
+    /// Ends a drag: the next edit is an undo of its own.
+    pub fn end_gesture(&mut self) {
+        self.gesture = false;
+        self.gesture_now = None;
+        self.unedited = None;
+    }
+
+    /// Whether the last change is of a drag that goes on.
+    pub fn is_in_gesture(&self) -> bool {
+        self.gesture
+    }
+
+    /// How many changes can be undone.
+    pub fn undo_count(&self) -> usize {
+        self.undo.len()
+    }
+
+    /// What undo would take back.
+    pub fn undo_title(&self) -> Option<&str> {
+        self.undo.last().map(|c| c.title.as_str())
+    }
+
+    /// What redo would bring back.
+    pub fn redo_title(&self) -> Option<&str> {
+        self.redo.last().map(|c| c.title.as_str())
+    }
+
+    /// Titles of all changes: those that can be undone from the first on, then those that can be brought back.
+    pub fn history(&self) -> impl Iterator<Item = &str> {
+        self.undo.iter().chain(self.redo.iter().rev()).map(|change| change.title.as_str())
+    }
+
+    /// Takes the last edit back: in motion by its inverse at the present step, paused or at rest by restoring what was.
+    ///
+    /// # Errors
+    /// If what was cannot be restored; then nothing has changed.
+    pub fn undo(&mut self) -> Result<(), Refusal> {
+        self.undo_while(&mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`undo`](Self::undo), and if it is not wanted any more.
+    pub fn undo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
+        self.end_gesture();
+        let Some(change) = self.undo.last().cloned() else { return Ok(()) };
+        let after = self.document.clone();
+        let done = match (&change.inverse, change.beside) {
+            (_, Some(kept)) => {
+                self.document.keep_as(&change.before, kept);
+                Ok(())
+            }
+            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
+            (Some(inverse), None) if self.is_running() && !change.plans() => {
+                self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
+            }
+            _ => self.return_to(&change.before, watch),
+        };
+        done?;
+        self.undo.pop();
+        self.redo.push(Arc::new(Change { before: after, ..Change::clone(&change) }));
+        Ok(())
+    }
+
+    /// Brings back what undo took.
+    ///
+    /// # Errors
+    /// If it cannot apply; then nothing has changed.
+    pub fn redo(&mut self) -> Result<(), Refusal> {
+        self.redo_while(&mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`redo`](Self::redo), and if it is not wanted any more.
+    pub fn redo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
+        self.end_gesture();
+        let Some(change) = self.redo.last().cloned() else { return Ok(()) };
+        let before = self.document.clone();
+        let done = match (&change.edit, change.beside) {
+            (_, Some(kept)) => {
+                self.document.keep_as(&change.before, kept);
+                Ok(())
+            }
+            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
+            (Some(timed), None) if self.is_running() && !change.plans() => {
+                self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
+            }
+            _ => self.return_to(&change.before, watch),
+        };
+        done?;
+        self.redo.pop();
+        self.undo.push(Arc::new(Change { before, ..Change::clone(&change) }));
+        Ok(())
+    }
+
+    /// What was, with the frames that are there, if it differs in nothing on which they depend; the scenario of its run.
+    fn aside(&self, before: &Document) -> Option<(Document, Scenario)> {
+        let document = Document { end: self.document.end, ..before.clone() };
+        let scenario = document.aside_of(&self.document)?;
+        Some((document, scenario))
+    }
+
+    /// Returns to that; whether it could.
+    fn go_aside(&mut self, before: &Document) -> bool {
+        let Some((document, scenario)) = self.aside(before) else { return false };
+        if self.run.set_asides(&scenario).is_err() {
+            return false;
+        }
+        self.unedited = None;
+        self.edits = document.script.to_vec().into_iter().collect();
+        self.document = document;
+        true
+    }
+
+    /// What was, where the inverse cannot apply; not if the inverse is not wanted any more.
+    fn instead(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+        if why == Refusal::Stopped { Err(why) } else { self.return_to(document, watch) }
+    }
+
+    /// What was, with time standing still.
+    fn return_to(&mut self, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+        self.restore(document.clone(), true, watch)?;
+        self.playing = false;
+        if self.is_led() {
+            self.cursor = self.frames.len() - 1;
+        }
+        Ok(())
+    }
+
+    /// Replaces everything by another scenario; undo brings this one back.
+    ///
+    /// # Errors
+    /// If it cannot start; then nothing has changed.
+    pub fn switch(&mut self, scenario: Scenario) -> Result<(), Refusal> {
+        self.take_over(Self::open(scenario)?);
+        Ok(())
+    }
+
+    /// Replaces everything by another session that has just been opened; undo brings this one back.
+    pub fn take_over(&mut self, mut next: Self) {
+        let title = format!("open {}", next.document.scenario.title);
+        next.undo = std::mem::take(&mut self.undo);
+        next.partings.0 = self.partings.0;
+        next.undo.push(Arc::new(Change {
+            before: self.document.clone(),
+            edit: None,
+            inverse: None,
+            title,
+            beside: None,
+        }));
+        *self = next;
+    }
+}

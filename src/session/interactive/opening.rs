@@ -1,0 +1,94 @@
+//! How a session is opened.
+
+use super::Session;
+use crate::query::Watch;
+use crate::session::changes::{Failed, in_order};
+use crate::session::document::{Document, Performed};
+use crate::session::edit::TimedEdit;
+use crate::session::refusal::Refusal;
+use crate::session::run::Run;
+use crate::session::scenario::{MAX_FRAMES, Scenario};
+use crate::session::script::Script;
+
+impl Session {
+    /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
+    ///
+    /// # Errors
+    /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
+    pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
+        Self::open_while(scenario, &mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), and if it is not wanted any more.
+    pub fn open_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
+        // A saved session may have waited; a task that has just been written has not.
+        let patient = !scenario.edits.is_empty();
+        Self::opened(scenario, patient, watch)
+    }
+
+    /// The same; a task that does not fit its machine waits, and [`Run::waiting`] says why.
+    ///
+    /// # Errors
+    /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.
+    pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
+        Self::opened(scenario, true, &mut |_| true)
+    }
+
+    fn opened(mut scenario: Scenario, patient: bool, watch: Watch<'_>) -> Result<Self, Refusal> {
+        let edits = std::mem::take(&mut scenario.edits);
+        let (bookmarks, branches) = (std::mem::take(&mut scenario.bookmarks), std::mem::take(&mut scenario.branches));
+        let opened = Self::replayed(scenario, in_order(&edits), patient, watch);
+        let mut session = opened.map_err(|failed| failed.named(&edits))?;
+        session.keep_beside(bookmarks, &branches);
+        Ok(session)
+    }
+
+    fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
+        let known: Script = script.iter().cloned().collect();
+        let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
+        let end = match runs {
+            true => {
+                let run = Run::begin(&scenario, &script, None)?.0;
+                let end = match run.waiting() {
+                    Some(_) => {
+                        let known = run.scenario().duration.map_or(0, |_| run.last_step());
+                        known.max(script.last().map_or(0, |e| e.step))
+                    }
+                    None => run.whole(&script)?,
+                };
+                let end = end.min(MAX_FRAMES as u64 - 1);
+                if let Some(late) = script.iter().position(|e| e.step > end) {
+                    return Err(Failed::at(late, Refusal::Full { time: end as f64 * run.scenario().step }));
+                }
+                end
+            }
+            false => 0,
+        };
+        let mut session = Self::of(Document::new(scenario, known, end), patient, watch)?;
+        session.cursor = 0;
+        Ok(session)
+    }
+
+    fn of(document: Document, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
+        let Performed { run, frames, machines } = document.perform(None, patient, watch)?;
+        let cursor = frames.len() - 1;
+        Ok(Self {
+            edits: document.script.to_vec().into_iter().collect(),
+            document,
+            run,
+            frames,
+            machines,
+            cursor,
+            playing: false,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            gesture: false,
+            gesture_now: None,
+            unedited: None,
+            partings: (0, None),
+        })
+    }
+}

@@ -1,0 +1,94 @@
+//! How time passes in a session, and what of it is on display.
+
+use super::Session;
+use crate::query::Watch;
+use crate::session::document::WORD;
+
+impl Session {
+    /// Lets time pass. At the end of a finished motion it starts over.
+    pub fn play(&mut self) {
+        if self.run.waiting().is_some() {
+            return;
+        }
+        if self.is_at_end() && self.is_settled() {
+            self.cursor = 0;
+        }
+        self.playing = true;
+    }
+
+    /// Stops time.
+    pub fn pause(&mut self) {
+        self.playing = false;
+    }
+
+    /// Shows an instant, s, as far as the run has got or the planned motion goes.
+    pub fn seek(&mut self, time: f64) {
+        self.seek_while(time, &mut |_| true);
+    }
+
+    /// The same, as far as it is wanted.
+    pub fn seek_while(&mut self, time: f64, watch: Watch<'_>) {
+        let step = (time / self.scenario().step).round().max(0.0) as usize;
+        let ahead = self.steps_to(time);
+        for i in 1..=ahead {
+            if !self.has_room() || (i.is_multiple_of(WORD) && !watch(i as f64 / ahead as f64)) {
+                break;
+            }
+            self.advance_run();
+        }
+        self.cursor = step.min(self.frames.len() - 1);
+    }
+
+    /// How many steps the run has still to do before it is at a time, s, of its planned motion.
+    fn steps_to(&self, time: f64) -> usize {
+        if self.is_led() {
+            return 0;
+        }
+        let step = self.scenario().step;
+        let planned = (self.run.planned_time() / step - 1e-6).ceil() as usize;
+        let to = (time / step).round().max(0.0) as usize;
+        (to.min(planned) + 1).saturating_sub(self.frames.len())
+    }
+
+    /// Moves the display by steps, either way; past the newest frame the run goes on.
+    pub fn step_by(&mut self, steps: i64) {
+        self.playing = false;
+        let to = (self.cursor as i64).saturating_add(steps).max(0) as usize;
+        while self.frames.len() <= to && self.has_room() {
+            self.advance_run();
+        }
+        self.cursor = to.min(self.frames.len() - 1);
+    }
+
+    /// Lets `steps` steps pass, if time passes. Nothing happens once everything is at rest.
+    pub fn tick(&mut self, steps: u64) {
+        for _ in 0..steps {
+            if !self.is_moving() {
+                return;
+            }
+            if self.is_at_end() {
+                if !self.has_room() {
+                    self.playing = false;
+                    return;
+                }
+                self.advance_run();
+            }
+            self.cursor += 1;
+            if !self.frame().is_finite() {
+                self.playing = false;
+                return;
+            }
+        }
+    }
+
+    fn advance_run(&mut self) {
+        self.unedited = None;
+        self.run.advance();
+        let frame = self.run.frame();
+        self.frames.push(frame);
+        // A session can be opened again only as far as its run has numbers.
+        if frame.is_finite() {
+            self.document.end = frame.step;
+        }
+    }
+}
