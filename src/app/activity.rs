@@ -19,6 +19,8 @@ pub enum Activity {
     Ways,
     /// A run that is kept beside them.
     Kept,
+    /// Lengths are sought.
+    Seeking,
 }
 
 impl Activity {
@@ -32,6 +34,7 @@ impl Activity {
             Self::Given => ("finding what the table says", Some("cancelled: another choice asks the table again")),
             Self::Study => ("drawing machines", Some("cancelled: no machines were drawn for the run as it is")),
             Self::Ways => ("running the ways of the task", Some("cancelled: the ways of the task were not run again")),
+            Self::Seeking => ("seeking lengths", Some("cancelled: no lengths were found")),
             Self::Kept => ("running one more beside them", Some("cancelled: no run was added")),
         }
     }

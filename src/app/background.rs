@@ -11,6 +11,7 @@ use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
 use crate::study::comparison::Ways;
+use crate::study::lengths::Seeking;
 use crate::study::tolerance::Studying;
 
 /// Work that changes what is on display once it has ended.
@@ -110,9 +111,10 @@ pub(super) struct Background<A> {
 /// What queries are spoken of: their activity, how far they are, and what stops them.
 type Told = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
 
-const TOLD: [Told; 3] = [
+const TOLD: [Told; 4] = [
     (Activity::Given, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
     (Activity::Study, Queries::progress::<Studying>, Queries::stop::<Studying>),
+    (Activity::Seeking, Queries::progress::<Seeking>, Queries::stop::<Seeking>),
     (Activity::Ways, Queries::progress::<Ways>, Queries::stop::<Ways>),
 ];
 

@@ -6,6 +6,7 @@ use super::activity::Activity;
 use super::file_dialog::{FileDialog, PlotFile, Purpose};
 use super::given::assess::{Options, Taking};
 use super::layout::Layout;
+use crate::mechanics::counterweights::Objective;
 use crate::mechanics::machine::Machine;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
@@ -104,6 +105,8 @@ pub enum SessionCommand {
     TakeGiven(Taking),
     /// Take the counterweights of a machine of the front, by its place.
     Take(usize),
+    /// Take the lengths that were found, with their counterweights.
+    TakeLengths,
     /// Take the counterweights and ratios of rotors with which the drives give least to the base.
     TakeStillest,
     /// Keep the session's own run in the table of runs.
@@ -209,6 +212,8 @@ pub enum WindowCommand {
     Comparison(ComparisonCommand),
     /// Read the table that was opened so, and ask this of it.
     Ask(Options),
+    /// Seek lengths with which this is least, as the brief has them.
+    Seek(Objective),
     /// Change which fronts are drawn beside that of the machine that is designed.
     Fronts(FrontsCommand),
     /// Put the cursor where a signal to plot is sought.

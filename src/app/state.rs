@@ -24,13 +24,14 @@ use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::query::{Queries, Whole, Workers};
+use crate::query::{Queries, Query, Whole, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, SignalsOf};
 use crate::study::comparison::Comparison;
 use crate::study::fronts::FrontOf;
+use crate::study::lengths::Seeking;
 
 /// A session on display.
 pub struct AppState {
@@ -49,6 +50,8 @@ pub struct AppState {
     comparison: Option<Comparison>,
     /// Machines whose fronts are drawn beside that of the machine that is designed.
     fronts: Vec<FrontOf>,
+    /// The lengths that are sought, or were found.
+    seeking: Option<<Seeking as Query>::Input>,
     /// The table that was opened last.
     given: Option<Given>,
     /// What is under way beside the window.
@@ -88,6 +91,7 @@ impl AppState {
             comparison: None,
             given: None,
             fronts: Vec::new(),
+            seeking: None,
             background,
             owed: 0.0,
             pace: Pace::default(),
@@ -304,6 +308,7 @@ impl AppState {
         self.refresh_study();
         self.refresh_comparison();
         self.refresh_given();
+        self.refresh_seeking();
         self.collect();
     }
 }

@@ -26,6 +26,7 @@ pub const TESTS: &[Test] = tests![
     inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
+    lengths_are_sought_and_taken,
     fronts_are_kept_and_stand_beside_each_other,
     equations_light_up_their_links,
     equations_follow_the_machine_and_are_remembered,
@@ -340,6 +341,48 @@ fn discs_keep_clear_and_serve_a_range_of_payloads() {
         assert!(nearest.fold(f64::INFINITY, f64::min) > weight.radius + 0.005 - 1e-6, "link {}", weight.link);
     }
     assert!(h.query_by_label_contains("What is left over the payloads: at worst 0.05").is_some());
+}
+
+/// What is found is lighter than with the lengths as they are, reaches as far as it has to, and is one step to undo.
+fn lengths_are_sought_and_taken() {
+    // What is scrolled out of view cannot be clicked.
+    let mut h = window_of(Scenario::builtin("nine-link-bare").expect("built in"), Theme::Dark, 1300.0);
+    h.key_press(Key::D);
+    h.run_steps(4);
+    let before = session(&h).scenario().clone();
+    h.get_by_label("least mass").click();
+    h.run_steps(4);
+    let added = |h: &Window| machine(h).spec().counterweights.iter().map(|weight| weight.mass).sum::<f64>();
+    let with_these = added(&h);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    h.get_by_label("Lengths").click();
+    h.run_steps(6);
+    h.get_by_label("l5").click();
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().design.length.keys().collect::<Vec<_>>(), ["l5"]);
+    h.get_by_label("Seek lengths with least mass").click();
+    h.run_steps(4);
+    assert!(h.query_by_label_contains("Not certified").is_some(), "how it was found");
+    // What has to be reached asks anew.
+    h.get_by_label("reach at least").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("take these lengths").is_none());
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    h.get_by_label("Seek lengths with least mass").click();
+    h.run_steps(4);
+    h.get_by_label("take these lengths").click();
+    h.run_steps(4);
+    let taken = machine(&h);
+    assert!(is_balanced(taken) && added(&h) < with_these - 0.01, "{} kg of {with_these} kg", added(&h));
+    assert!(taken.reach() < before.machine.reach(), "nothing asks for reach");
+    assert!(h.query_by_label("take these lengths").is_none(), "they are taken");
+    for _ in 0..2 {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(3);
+    }
+    assert_eq!(*session(&h).scenario(), before);
 }
 
 /// A front that was kept stays as it was whatever becomes of the machine; what has none says so.

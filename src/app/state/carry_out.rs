@@ -120,6 +120,7 @@ impl AppState {
             SessionCommand::BackToPath => {}
             SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),
+            SessionCommand::TakeLengths => self.take_lengths()?,
             SessionCommand::TakeStillest => self.take_stillest()?,
             SessionCommand::KeepRun => self.keep_run(),
             SessionCommand::OpenRun(entry) => self.open_run(entry),
@@ -135,6 +136,7 @@ impl AppState {
                     given.options = options;
                 }
             }
+            WindowCommand::Seek(objective) => self.seek(objective),
             WindowCommand::Fronts(change) => self.change_fronts(change),
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::lengths::Sought;
 use super::lesson::Lesson;
 use crate::mechanics::balance::{Breakdown, Condition};
 use crate::mechanics::counterweights::{Front, FrontSearch, NoWeights, Placed, Residual, over_payloads};
@@ -14,6 +15,7 @@ use crate::session::design::Brief;
 use crate::settings::number::subscript;
 use crate::study::front_point::FrontMeasure;
 use crate::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
+use crate::study::lengths::Seeking;
 use crate::study::measures::Measures;
 
 /// How many machines the front has.
@@ -32,6 +34,8 @@ pub struct Facts {
     pub(super) payloads: Option<Arc<Vec<Residual>>>,
     /// What less inertia costs in mass; none while the equations are on display.
     front: Option<Asked<Points>>,
+    /// A search for lengths of this machine, if there is one.
+    pub(super) sought: Option<Sought>,
     /// Fronts of other machines; none while the equations are on display.
     beside: Option<Asked<Vec<MachineFront>>>,
     /// What tells the machines of the front apart, of each of them.
@@ -229,6 +233,7 @@ impl Facts {
             payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
+            sought: queries.newest::<Seeking>(),
             beside: None,
             told: None,
             lesson: None,

@@ -7,6 +7,7 @@ mod beside;
 mod equations;
 mod facts;
 mod front;
+mod lengths;
 mod lesson;
 mod measures;
 mod payload;
@@ -46,6 +47,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 asked::show(ui, session.scenario(), is_balanced, &p, commands);
+                lengths::show(ui, session.scenario(), facts.sought.as_ref(), &p, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

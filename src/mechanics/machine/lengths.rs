@@ -5,6 +5,18 @@ use super::model::Machine;
 use super::spec::{Length, MachineSpec};
 use crate::settings::range::{clipped, shortened};
 
+impl MachineSpec {
+    /// Every length that a machine has, m: named ones, and under the names of links those of links that share none.
+    pub fn own_lengths(&self) -> impl Iterator<Item = (&str, f64)> {
+        let named = self.lengths.iter().map(|(name, length)| (name.as_str(), *length));
+        let alone = self.links.iter().filter_map(|link| match link.length {
+            Length::Metres(length) => Some((link.name.as_str(), length)),
+            Length::Named(_) => None,
+        });
+        named.chain(alone)
+    }
+}
+
 /// A named length, m.
 pub(super) fn length_at(machine: &Machine, i: usize) -> f64 {
     machine.spec().lengths.values().nth(i).copied().unwrap_or_default()

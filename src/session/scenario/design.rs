@@ -15,6 +15,7 @@ use crate::settings::keyed::{Holding, keyed};
 use crate::settings::range::{Check, Range, clipped};
 
 const LINK: &str = "a link of this name";
+const SOUGHT: &str = "a length that is sought";
 const COUNTERWEIGHT: &str = "a counterweight of this number";
 
 keyed! {
@@ -49,7 +50,15 @@ keyed! {
         /// Counterweights leave the least worst residual over all that the end effector may hold, from the first to the
         /// second; to balance one payload exactly, hold it and leave this out.
         payload: Option<[f64; 2]> = Key::NONE, range: ranges::LOAD, instead: "what the end effector holds";
+        /// How far the arms reach together at least, Σ |L_k|, where lengths are sought.
+        reach: Option<f64> = Key::NONE, range: Range::new(0.0, 1e6, "m"), instead: "any reach", when: SOUGHT;
+        /// How large the reactionless workspace is at least where lengths are sought.
+        workspace: Option<f64> = Key::NONE, range: Range::new(0.0, 1e12, "m²"), instead: "any workspace", when: SOUGHT;
         named:
+        /// This length is sought from the first to the second, with the counterweights that are least: a name under
+        /// `[lengths]`, or a link that shares its length with no other.
+        length: BTreeMap<String, [f64; 2]> = Key::NONE, range: ranges::LENGTH, instead: "it stays",
+            when: "a length of this name, or such a link";
         /// The rotor's ratio may be chosen from the first to the second; below 0 it turns the other way.
         ratio: BTreeMap<String, [f64; 2]> = Key::NONE, range: ranges::RATIO, instead: "it stays",
             when: "a drive of this name whose rotor has inertia";
@@ -96,12 +105,16 @@ impl Brief {
         if let Some(name) = key.strip_prefix("fixed.") {
             return is_link(name);
         }
+        if let Some(name) = key.strip_prefix("length.") {
+            return spec.own_lengths().any(|(own, _)| own == name);
+        }
         if let Some(name) = key.strip_prefix("ratio.") {
             return spec.drives.iter().any(|drive| drive.name == name && is_geared(drive));
         }
         match key.strip_prefix("hold.").and_then(body_of) {
             Some(("link", name)) => is_link(name),
             Some((_, number)) => number.parse().is_ok_and(|n: usize| (1..=spec.counterweights.len()).contains(&n)),
+            None if ["reach", "workspace"].contains(&key) => !self.length.is_empty(),
             None => key != "penalties" || (spec.links.len() == 9 && spec.counterweights.is_empty()),
         }
     }
@@ -113,9 +126,10 @@ impl Brief {
             Hold::Fixed | Hold::Free => None,
         });
         let ratios = self.ratio.iter().map(|(drive, ends)| (format!("design.ratio.{drive}"), *ends));
+        let lengths = self.length.iter().map(|(name, ends)| (format!("design.length.{name}"), *ends));
         let payload = self.payload.map(|ends| ("design.payload".to_owned(), ends));
         let want = "the least value first, then the greatest";
-        let all = holds.chain(ratios).chain(payload);
+        let all = holds.chain(ratios).chain(lengths).chain(payload);
         all.map(|(key, [low, high])| Check::words(key, low, low <= high, want)).collect()
     }
 }

@@ -223,6 +223,7 @@ impl Scenario {
                 }
                 "length" | "plant.length" => spec.lengths.keys().cloned().collect(),
                 "limits" => spec.angles.iter().map(|angle| angle.name.clone()).collect(),
+                "design.length" => spec.own_lengths().map(|(name, _)| name.to_owned()).collect(),
                 "drive" | "design.ratio" => spec.drives.iter().map(|drive| drive.name.clone()).collect(),
                 _ => vec!["*".into()],
             }
