@@ -127,6 +127,43 @@ fn turned(v: Vector) -> Vector {
     Vector::new(-v.im, v.re)
 }
 
+/// What rates make of the momenta, and the forces that they want: velocity terms.
+#[inline(always)]
+fn velocity_terms<const N: usize>(im: &[[f64; N]; N], rate: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let (mut gain, mut v) = ([0.0; N], [0.0; N]);
+    for k in 0..N {
+        for l in k + 1..N {
+            let x = im[k][l] * rate[k] * rate[l];
+            gain[k] += x;
+            gain[l] -= x;
+            v[k] -= im[k][l] * (rate[l] * rate[l]);
+            v[l] += im[k][l] * (rate[k] * rate[k]);
+        }
+    }
+    (gain, v)
+}
+
+/// How a base is carried along; nothing of one that stands.
+struct Afloat<const N: usize> {
+    base: Pose2,
+    /// Of B, m/s.
+    velocity: Vector,
+    /// rad/s.
+    turning: f64,
+    /// Of the common centre of mass, m/s.
+    drift: Vector,
+    /// What each angle adds from the common centre of mass to B, m.
+    anchor: [Vector; N],
+}
+
+impl<const N: usize> Default for Afloat<N> {
+    #[inline(always)]
+    fn default() -> Self {
+        let still = Vector::default();
+        Self { base: Pose2::default(), velocity: still, turning: 0.0, drift: still, anchor: [still; N] }
+    }
+}
+
 impl<const N: usize> Stage<N> {
     /// Padded, as it is kept.
     #[inline(always)]
@@ -175,46 +212,18 @@ impl MovingBody {
         let n = if MOVES { N - 1 } else { N };
         let mut e = [Vector::default(); N];
         e.iter_mut().zip(at.q).for_each(|(e, q)| *e = unit(q));
-        // Mass matrix and the part of the couplings that rates act through.
-        let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
-        for k in 0..N {
-            h[k][k] = self.whole.c[k][k].re + self.whole.spin[k];
-            for l in k + 1..N {
-                let z = self.whole.c[k][l] * (e[k].conj() * e[l]);
-                let coupled = z.re + self.whole.gears[k][l];
-                h[k][l] = coupled;
-                h[l][k] = coupled;
-                im[k][l] = z.im;
-            }
-        }
+        let (h, im) = self.couplings(&e);
         let factors = Factors::of(&h);
         let mut momenta = at.momenta;
         if MOVES {
             momenta[N - 1] -= momenta[..N - 1].iter().sum::<f64>();
         }
         let rate = factors.solve(momenta);
-        let (mut gain, mut v) = ([0.0; N], [0.0; N]);
-        for k in 0..N {
-            for l in k + 1..N {
-                let x = im[k][l] * rate[k] * rate[l];
-                gain[k] += x;
-                gain[l] -= x;
-                v[k] -= im[k][l] * (rate[l] * rate[l]);
-                v[l] += im[k][l] * (rate[k] * rate[k]);
-            }
-        }
-        let (mut base, mut velocity, mut turning, mut drift) =
-            (Pose2::default(), Vector::default(), 0.0, Vector::default());
-        let mut anchor = [Vector::default(); N];
-        if MOVES {
-            drift = at.momentum / self.mass;
-            anchor = std::array::from_fn(|k| self.anchor[k] * e[k]);
-            let lever: Vector = anchor.iter().sum();
-            let swing: Vector = (0..N).map(|k| turned(anchor[k]) * rate[k]).sum();
-            base = Pose2 { at: at.place + lever, angle: at.q[N - 1] };
-            velocity = drift + swing;
-            turning = rate[N - 1];
-        }
+        let (gain, v) = velocity_terms(&im, &rate);
+        let Afloat { base, velocity, turning, drift, anchor } = match MOVES {
+            true => self.afloat(at, &e, &rate),
+            false => Afloat::default(),
+        };
         let Command { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
         // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
@@ -250,24 +259,20 @@ impl MovingBody {
         let mut momenta_rate: [f64; N] = std::array::from_fn(|k| gain[k] + force[k]);
         // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
         let mut base_acceleration = Vector::default();
-        let mut wrench;
-        if MOVES {
+        let wrench = if MOVES {
             momenta_rate[N - 1] = external;
             let pull: Vector = (0..N).map(|k| anchor[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
             base_acceleration = momentum_rate / self.mass + pull;
             // The constants of the arm are zero where the base has its place.
             let (h, v) = assemble(&self.arm, &e, &rate);
-            let inertial = times(&h, &acceleration);
-            let change = angular_rate(&self.arm, &inertial, &v, &acceleration);
-            wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
+            let mut wrench = self.wrench((&h, &v), &e, &rate, &acceleration);
             let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
             wrench.dynamic.force -= self.arm.mass * base_acceleration;
             wrench.dynamic.moment -= cross(lever, base_acceleration);
+            wrench
         } else {
-            let inertial = times(&h, &acceleration);
-            let change = angular_rate(&self.arm, &inertial, &v, &acceleration);
-            wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
-        }
+            self.wrench((&h, &v), &e, &rate, &acceleration)
+        };
         let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
             + 0.5 * dot(at.momentum, drift)
             + 0.5 * rotor * spin.rate * spin.rate;
@@ -293,6 +298,53 @@ impl MovingBody {
                 impulse: impulse(&wrench, base.at),
             },
         }
+    }
+
+    /// The mass matrix, and the part of the couplings that rates act through.
+    #[inline(always)]
+    fn couplings<const N: usize>(&self, e: &[Vector; N]) -> ([[f64; N]; N], [[f64; N]; N]) {
+        let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
+        for k in 0..N {
+            h[k][k] = self.whole.c[k][k].re + self.whole.spin[k];
+            for l in k + 1..N {
+                let z = self.whole.c[k][l] * (e[k].conj() * e[l]);
+                let coupled = z.re + self.whole.gears[k][l];
+                h[k][l] = coupled;
+                h[l][k] = coupled;
+                im[k][l] = z.im;
+            }
+        }
+        (h, im)
+    }
+
+    /// How a base that moves is carried along.
+    #[inline(always)]
+    fn afloat<const N: usize>(&self, at: &Point<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
+        let drift = at.momentum / self.mass;
+        let anchor: [Vector; N] = std::array::from_fn(|k| self.anchor[k] * e[k]);
+        let lever: Vector = anchor.iter().sum();
+        let swing: Vector = (0..N).map(|k| turned(anchor[k]) * rate[k]).sum();
+        Afloat {
+            base: Pose2 { at: at.place + lever, angle: at.q[N - 1] },
+            velocity: drift + swing,
+            turning: rate[N - 1],
+            drift,
+            anchor,
+        }
+    }
+
+    /// What the arm does to the base, about B at rest, by its mass matrix and velocity terms.
+    #[inline(always)]
+    fn wrench<const N: usize>(
+        &self,
+        (h, v): (&[[f64; N]; N], &[f64; N]),
+        e: &[Vector; N],
+        rate: &[f64; N],
+        acceleration: &[f64; N],
+    ) -> BaseWrench {
+        let inertial = times(h, acceleration);
+        let change = angular_rate(&self.arm, &inertial, v, acceleration);
+        wrench_with(&self.arm, e, rate, acceleration, &self.around, change)
     }
 
     /// Motors in joints act back on the links that carry them, and not on the base; what that changes of their power, W.

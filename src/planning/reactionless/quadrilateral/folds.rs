@@ -1,6 +1,7 @@
 //! Folds of the self-motion: where det = 0 and b turns back.
 
-use super::{Few, Quadrilateral};
+use super::Quadrilateral;
+use super::few::Few;
 use crate::mechanics::planar::{Vector, cross, unit};
 
 impl Quadrilateral {

@@ -1,0 +1,156 @@
+//! Actuators: which motors there are, and what they turn.
+
+use roxmltree::Node;
+
+use super::coupled::{Against, Coupled, Sum, unsigned};
+use crate::exchange::import::defaults::Element;
+use crate::exchange::import::linkage::{MOST_PARTS, Motor};
+use crate::exchange::import::read::{Source, each, number, numbers, several};
+use crate::exchange::import::refusal::{ImportError, wrong};
+use crate::mechanics::planar::MAX_DRIVES;
+use crate::settings::number::Short;
+use crate::settings::range::clipped;
+
+impl<'a> Coupled<'a> {
+    /// Actuators with their names; of several that turn the same the first, with all their torques.
+    pub(super) fn actuators(&self) -> Result<Vec<(Element<'a>, Motor)>, ImportError> {
+        let all = each(self.bodies.model, "actuator").flat_map(|node| node.children()).filter(Node::is_element);
+        let mut found: Vec<(Element, Motor)> = Vec::new();
+        for (count, node) in all.enumerate() {
+            if count == MOST_PARTS {
+                return Err(wrong(node, "too many actuators", format!("at most {MOST_PARTS}")));
+            }
+            let element = self.bodies.element(node)?;
+            let (own, sum) = (self.motor(&element)?, unsigned(&self.moved(&element)?));
+            let mut known = None;
+            for (i, (element, _)) in found.iter().enumerate() {
+                if unsigned(&self.moved(element)?) == sum {
+                    known = Some(i);
+                }
+            }
+            match known {
+                Some(i) => {
+                    let motor = &mut found[i].1;
+                    motor.torque_limit = motor.torque_limit.zip(own.torque_limit).map(|(a, b)| a + b);
+                }
+                None if found.len() == MAX_DRIVES => {
+                    return Err(wrong(node, "too many motors", format!("at most {MAX_DRIVES}")));
+                }
+                None => found.push((element, own)),
+            }
+        }
+        for (_, motor) in &mut found {
+            if let Some(hinge) = motor.hinge.and_then(|i| self.bodies.hinge(i)) {
+                // What the hinge bears at most is a limit, too.
+                let bears = self.largest(hinge, "actuatorfrcrange", "actuatorfrclimited")?;
+                motor.torque_limit = motor.torque_limit.into_iter().chain(bears).reduce(f64::min);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The hinges that an actuator turns.
+    pub(super) fn moved(&self, element: &Element<'a>) -> Result<Sum, ImportError> {
+        for attribute in ["joint", "jointinparent"] {
+            if element.get(attribute).is_some() {
+                return Ok(vec![(self.bodies.part_of(element, attribute)?, 1.0)]);
+            }
+        }
+        match element.get("tendon") {
+            Some(_) => self.tendon(element, "tendon"),
+            None => Err(wrong(element.node(), "an actuator of no joint or tendon", "joint=\"…\" or tendon=\"…\"")),
+        }
+    }
+
+    /// Motors with what they turn, as sets.
+    pub(super) fn motors(&self) -> Result<Vec<(Motor, Against)>, ImportError> {
+        let mut motors = Vec::new();
+        for (element, motor) in self.actuators()? {
+            let (to, from) = self.turned(element.node(), &self.moved(&element)?)?;
+            // The base is turned by no motor.
+            let (to, from) = if to == self.base { (from, to) } else { (to, from) };
+            motors.push((motor, (self.set(to), self.set(from))));
+        }
+        Ok(if motors.is_empty() { self.usual_motors() } else { motors })
+    }
+
+    /// A motor in the first hinge of each set.
+    fn usual_motors(&self) -> Vec<(Motor, Against)> {
+        let (mut seen, mut motors) = (vec![self.base], Vec::new());
+        for (i, part) in self.bodies.parts.iter().enumerate().filter(|(_, part)| part.hinge.is_some()) {
+            let is_geared = self.geared.iter().any(|geared| geared.part == i);
+            if !seen.contains(&self.set(i)) && !is_geared {
+                seen.push(self.set(i));
+                let of_hinge = self.bodies.hinge(i).and_then(|hinge| hinge.node().attribute("name"));
+                let name = of_hinge.map_or_else(|| part.name.clone(), Into::into);
+                let motor = Motor { name, hinge: Some(i), ..Motor::default() };
+                motors.push((motor, (self.set(i), self.set(self.on(i)))));
+            }
+        }
+        motors
+    }
+
+    /// Motors with the number of the set that carries each.
+    pub(super) fn numbered(&self, motors: &[(Motor, Against)]) -> Result<Vec<Motor>, ImportError> {
+        let number_of = |set: usize| motors.iter().position(|(_, (to, _))| *to == set);
+        let numbered = |(k, (motor, (to, from))): (usize, &(Motor, Against))| {
+            let said = |what: &str| format!("\"{}\" {what}", clipped(&motor.name));
+            if number_of(*to) != Some(k) || *to == self.base {
+                let what = said("turns what another motor turns, or nothing");
+                return Err(ImportError::whole(what, "one motor for each set of parallel bodies"));
+            }
+            let from = match *from {
+                from if from == self.base => None,
+                from => Some(number_of(from).ok_or_else(|| {
+                    ImportError::whole(said("sits on what no motor turns"), "a motor for every drive")
+                })?),
+            };
+            Ok(Motor { from, ..motor.clone() })
+        };
+        motors.iter().enumerate().map(numbered).collect()
+    }
+
+    /// What hinges add to the inertia of their angles, kg m²: that of a motor is taken along.
+    pub(super) fn armatures(&self, motors: &mut [Motor], rotors: &[(usize, usize, f64)]) -> Result<(), ImportError> {
+        for i in 0..self.base {
+            let Some(hinge) = self.bodies.hinge(i) else { continue };
+            let armature = number(hinge, "armature")?.filter(|x| *x != 0.0);
+            let Some(armature) = armature.filter(|_| !rotors.iter().any(|(rotor, ..)| *rotor == i)) else { continue };
+            let k = motors.iter().position(|motor| motor.hinge == Some(i));
+            let k = k.filter(|k| armature > 0.0 && !rotors.iter().any(|(_, of, _)| of == k));
+            let Some(k) = k else {
+                let want = "one that is above 0, of a hinge that a motor without a rotor turns";
+                return Err(wrong(hinge.node(), format!("an armature of {} kg m²", Short(armature)), want));
+            };
+            motors[k].armature = armature;
+        }
+        Ok(())
+    }
+
+    /// A motor by its own name, else by that of what it turns.
+    fn motor(&self, element: &Element<'a>) -> Result<Motor, ImportError> {
+        let own = ["name", "joint", "jointinparent", "tendon"].into_iter().find_map(|name| element.get(name));
+        let name = own.unwrap_or("motor").to_owned();
+        let gear = numbers(element, "gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0).abs();
+        let is_motor = element.node().has_tag_name("motor");
+        let of_control = if is_motor { self.largest(element, "ctrlrange", "ctrllimited")? } else { None };
+        let of_force = self.largest(element, "forcerange", "forcelimited")?;
+        let limit = of_control.into_iter().chain(of_force).reduce(f64::min);
+        let hinge = match self.moved(element)?[..] {
+            [(part, _)] => Some(part),
+            _ => None,
+        };
+        Ok(Motor { name, hinge, torque_limit: limit.map(|x| gear * x).filter(|x| *x > 0.0), ..Motor::default() })
+    }
+
+    /// The largest number of a range that is a limit, either way.
+    fn largest(
+        &self,
+        element: &Element<'a>,
+        range: &'static str,
+        limited: &'static str,
+    ) -> Result<Option<f64>, ImportError> {
+        let range = several::<2>(element, range)?.filter(|_| self.bodies.is_limit(element, limited));
+        Ok(range.map(|[least, most]| least.abs().max(most.abs())).filter(|most| *most > 0.0))
+    }
+}

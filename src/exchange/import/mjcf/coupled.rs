@@ -1,0 +1,136 @@
+//! [`Coupled`]: bodies, with what turns against what.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::together::Together;
+use crate::exchange::import::bodies::{Bodies, End};
+use crate::exchange::import::linkage::{MOST_PARTS, common_axis, owners, plane};
+use crate::exchange::import::read::{Source, each, number, word};
+use crate::exchange::import::refusal::{ImportError, wrong};
+use crate::settings::range::clipped;
+
+/// What couplings may do.
+pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \
+                                          coupling by 1 or -1 keeps two bodies parallel";
+
+/// A set, and one against which it turns.
+pub(super) type Against = (usize, usize);
+/// Hinges, each with how much its angle about the common axis counts.
+pub(super) type Sum = Vec<(usize, f64)>;
+
+/// A part that is coupled to a sum of hinges, and how often it turns for one turn of that.
+pub(super) struct Geared<'a> {
+    pub part: usize,
+    pub node: Node<'a, 'a>,
+    pub to: Sum,
+    pub ratio: f64,
+}
+
+/// Bodies, and what their loops and equalities keep together.
+pub(super) struct Coupled<'a> {
+    pub bodies: Bodies<'a>,
+    pub signs: Vec<f64>,
+    /// Two axes of the plane.
+    pub plane: [Vector3<f64>; 3],
+    pub owners: Vec<Option<usize>>,
+    /// What stands for the base among the parts.
+    pub base: usize,
+    pub tendons: BTreeMap<&'a str, Sum>,
+    pub together: Together,
+    pub geared: Vec<Geared<'a>>,
+    pub loops: Vec<[End; 2]>,
+}
+
+impl<'a> Coupled<'a> {
+    /// Of bodies, before any equality is read.
+    ///
+    /// # Errors
+    /// If they have no common axis, or tendons are wrong.
+    pub fn of(bodies: Bodies<'a>) -> Result<Self, ImportError> {
+        let (normal, signs) = common_axis(&bodies.parts)?;
+        let (owners, base) = (owners(&bodies.parts), bodies.parts.len());
+        let tendons = tendons(&bodies, &signs)?;
+        Ok(Self {
+            signs,
+            plane: plane(&normal),
+            owners,
+            base,
+            tendons,
+            together: Together::new(base),
+            geared: Vec::new(),
+            loops: Vec::new(),
+            bodies,
+        })
+    }
+
+    /// The sum of a fixed tendon that an attribute names.
+    pub fn tendon(&self, element: impl Source<'a>, attribute: &'static str) -> Result<Sum, ImportError> {
+        let name = word(&element, attribute)?;
+        let what = || format!("{attribute} \"{}\" is no fixed tendon", clipped(name));
+        self.tendons.get(name).cloned().ok_or_else(|| wrong(element.node(), what(), "the name of one"))
+    }
+
+    /// What moves with a part: itself or what it is fixed to.
+    pub fn owner(&self, part: Option<usize>) -> usize {
+        part.and_then(|part| self.owners[part]).unwrap_or(self.base)
+    }
+
+    /// What carries a hinge.
+    pub fn on(&self, part: usize) -> usize {
+        self.owner(self.bodies.parts[part].parent)
+    }
+
+    /// The set that a part is of.
+    pub fn set(&self, part: usize) -> usize {
+        self.together.root(part)
+    }
+
+    /// Which part turns against which by a sum of hinges.
+    pub fn against(&self, sum: &[(usize, f64)]) -> Option<Against> {
+        let mut turns: BTreeMap<usize, f64> = BTreeMap::new();
+        for (part, times) in sum {
+            *turns.entry(self.owner(Some(*part))).or_default() += times;
+            *turns.entry(self.on(*part)).or_default() -= times;
+        }
+        turns.retain(|_, times| *times != 0.0);
+        let of = |times: f64| turns.iter().find(|(_, own)| **own == times).map(|(part, _)| *part);
+        (turns.len() == 2).then(|| Some((of(1.0)?, of(-1.0)?))).flatten()
+    }
+
+    /// The same, or that a sum turns no part against another.
+    pub fn turned(&self, node: Node<'_, '_>, sum: &[(usize, f64)]) -> Result<Against, ImportError> {
+        let want = "a sum of hinges from one body to another";
+        self.against(sum).ok_or_else(|| wrong(node, "no body turns against another by its tendon", want))
+    }
+}
+
+/// Fixed tendons by name.
+fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, Sum>, ImportError> {
+    let mut all = BTreeMap::new();
+    let fixed = each(bodies.model, "tendon").flat_map(|node| each(node, "fixed"));
+    for (count, node) in fixed.enumerate() {
+        if count == MOST_PARTS || each(node, "joint").nth(MOST_PARTS).is_some() {
+            return Err(wrong(node, "too many tendons, or hinges of one", format!("at most {MOST_PARTS}")));
+        }
+        let mut sum = Vec::new();
+        for joint in each(node, "joint") {
+            let part = bodies.part_of(joint, "joint")?;
+            sum.push((part, signs[part] * number(joint, "coef")?.unwrap_or(1.0)));
+        }
+        all.insert(word(node, "name")?, sum);
+    }
+    Ok(all)
+}
+
+/// A sum whose first hinge counts once or more, in the order of its hinges.
+pub(super) fn unsigned(sum: &[(usize, f64)]) -> Sum {
+    let mut sum = sum.to_vec();
+    sum.sort_by_key(|(part, _)| *part);
+    if sum.first().is_some_and(|(_, times)| *times < 0.0) {
+        sum.iter_mut().for_each(|(_, times)| *times = -*times);
+    }
+    sum
+}

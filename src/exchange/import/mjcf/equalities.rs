@@ -1,0 +1,161 @@
+//! Equalities: what they keep parallel, and what they gear.
+
+use roxmltree::Node;
+
+use super::coupled::{Coupled, Geared, PARALLEL_WANTED, Sum, unsigned};
+use crate::exchange::import::bodies::{is_active, polynomial};
+use crate::exchange::import::defaults::Element;
+use crate::exchange::import::linkage::MOST_PARTS;
+use crate::exchange::import::read::{Source, each};
+use crate::exchange::import::refusal::{ImportError, wrong};
+use crate::settings::number::Short;
+use crate::settings::range::clipped;
+
+/// A tendon is where an equality wants it if it is off by less, rad.
+const HELD: f64 = 1e-6;
+/// A centre of mass is on an axis if it is off by less than this share of the distance, or of a metre.
+const ON_AXIS: f64 = 1e-9;
+
+/// Two sums of hinges, one so many times the other.
+struct Coupling<'a> {
+    node: Node<'a, 'a>,
+    one: Sum,
+    other: Sum,
+    ratio: f64,
+}
+
+impl<'a> Coupled<'a> {
+    /// Reads the equalities; loops come last, for they are seen better the more is known to be parallel.
+    pub(super) fn couple(&mut self) -> Result<(), ImportError> {
+        let all = each(self.bodies.model, "equality").flat_map(|node| node.children()).filter(Node::is_element);
+        let (mut loops, mut couplings) = (Vec::new(), Vec::new());
+        for (count, node) in all.enumerate() {
+            if count == MOST_PARTS {
+                return Err(wrong(node, "too many equalities", format!("at most {MOST_PARTS}")));
+            }
+            let element = self.bodies.element(node)?;
+            if !is_active(&element) {
+                continue;
+            }
+            match node.tag_name().name() {
+                "connect" => loops.push(node),
+                "joint" => couplings.extend(self.joint_equality(&element)?),
+                "tendon" => couplings.extend(self.tendon_equality(&element)?),
+                kind => {
+                    let what = format!("an equality of kind \"{}\"", clipped(kind));
+                    return Err(wrong(node, what, "connect, joint or tendon"));
+                }
+            }
+        }
+        let driven = self.driven()?;
+        let (rotors, mut others): (Vec<_>, Vec<_>) =
+            couplings.into_iter().partition(|coupling| self.is_rotor(coupling, &driven));
+        self.join_parallel(&mut others);
+        for node in loops {
+            let ends = self.bodies.ends(node)?;
+            self.close(node, &ends)?;
+            self.loops.push(ends);
+        }
+        self.join_parallel(&mut others);
+        for Coupling { node, one, other, ratio } in rotors.into_iter().chain(others) {
+            let [(part, times)] = one[..] else {
+                return Err(wrong(node, "it couples sums of hinges that keep no bodies parallel", PARALLEL_WANTED));
+            };
+            self.geared.push(Geared { part, node, to: other, ratio: ratio * times });
+        }
+        Ok(())
+    }
+
+    /// Joins what couplings keep parallel, and drops these: of A − B = ±(C − D), one side of which is among the other.
+    fn join_parallel(&mut self, couplings: &mut Vec<Coupling<'a>>) {
+        let mut count = usize::MAX;
+        while couplings.len() < count {
+            count = couplings.len();
+            couplings.retain(|coupling| !self.is_parallel(coupling));
+        }
+    }
+
+    fn is_parallel(&mut self, coupling: &Coupling<'a>) -> bool {
+        let (Some((a, b)), Some((c, d))) = (self.against(&coupling.one), self.against(&coupling.other)) else {
+            return false;
+        };
+        let (more, less) = match coupling.ratio {
+            1.0 => ([a, d], [b, c]),
+            -1.0 => ([a, c], [b, d]),
+            _ => return false,
+        };
+        let pairs = (0..4).map(|i| (i / 2, i % 2));
+        let same = pairs.into_iter().find(|(i, j)| self.set(more[*i]) == self.set(less[*j]));
+        if let Some((i, j)) = same {
+            self.together.join(more[1 - i], less[1 - j]);
+        }
+        same.is_some()
+    }
+
+    /// Whether it is of a rotor: a body that carries nothing, balanced about its hinge, coupled to what a motor turns.
+    fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[Sum]) -> bool {
+        let [(part, _)] = coupling.one[..] else { return false };
+        let parts = &self.bodies.parts;
+        let carries = parts.iter().any(|other| other.parent == Some(part))
+            || self.bodies.sites.iter().any(|(_, (own, _))| *own == Some(part));
+        let off = parts[part].hinge.map_or(0.0, |(axis, on)| {
+            let away = parts[part].com - on;
+            (away - axis.into_inner() * axis.dot(&away)).norm() / away.norm().max(1.0)
+        });
+        !carries && off <= ON_AXIS && driven.contains(&unsigned(&coupling.other))
+    }
+
+    /// Sums that motors turn.
+    fn driven(&self) -> Result<Vec<Sum>, ImportError> {
+        self.actuators()?.into_iter().map(|(element, _)| Ok(unsigned(&self.moved(&element)?))).collect()
+    }
+
+    fn joint_equality(&mut self, element: &Element<'a>) -> Result<Option<Coupling<'a>>, ImportError> {
+        let node = element.node();
+        let part = self.bodies.part_of(node, "joint1")?;
+        if !node.has_attribute("joint2") {
+            self.together.join(self.owner(Some(part)), self.on(part));
+            return Ok(None);
+        }
+        let of = self.bodies.part_of(node, "joint2")?;
+        let ratio = linear(element)? * self.signs[part] * self.signs[of];
+        Ok(Some(Coupling { node, one: vec![(part, 1.0)], other: vec![(of, 1.0)], ratio }))
+    }
+
+    fn tendon_equality(&mut self, element: &Element<'a>) -> Result<Option<Coupling<'a>>, ImportError> {
+        let node = element.node();
+        let one = self.tendon(node, "tendon1")?;
+        let factors = polynomial(element)?;
+        let other = node.has_attribute("tendon2").then(|| self.tendon(node, "tendon2")).transpose()?;
+        let x = other.as_ref().map_or(0.0, |other| self.stretch(other));
+        let off = self.stretch(&one) - factors.iter().rev().fold(0.0, |sum, factor| sum * x + factor);
+        match other {
+            // A gear may have any angle.
+            None if off.abs() > HELD => {
+                let what = format!("its tendon is off by {} rad in the pose of the file", Short(off));
+                Err(wrong(node, what, "a keyframe in which every equality holds"))
+            }
+            None => {
+                let (to, from) = self.turned(node, &one)?;
+                self.together.join(to, from);
+                Ok(None)
+            }
+            Some(other) => Ok(Some(Coupling { node, one, other, ratio: linear(element)? })),
+        }
+    }
+
+    /// How far a sum of hinges is from where it is drawn, rad.
+    fn stretch(&self, sum: &[(usize, f64)]) -> f64 {
+        sum.iter()
+            .map(|(i, times)| times * self.signs[*i] * (self.bodies.angle(*i) - self.bodies.drawn_angle(*i)))
+            .sum()
+    }
+}
+
+/// N of a coupling that is linear.
+fn linear(element: &Element<'_>) -> Result<f64, ImportError> {
+    match polynomial(element)?[..] {
+        [_, ratio, ref rest @ ..] if rest.iter().all(|x| *x == 0.0) => Ok(ratio),
+        _ => Err(wrong(element.node(), "a coupling that is not linear", "polycoef=\"0 N 0 0 0\"")),
+    }
+}

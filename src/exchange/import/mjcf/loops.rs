@@ -1,0 +1,76 @@
+//! Loops: what they keep parallel.
+
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::coupled::Coupled;
+use crate::exchange::import::bodies::End;
+use crate::exchange::import::refusal::{ImportError, wrong};
+use crate::mechanics::planar::Vector;
+
+/// Vectors of a loop whose sum is below this share of the largest cancel.
+const CLOSED: f64 = 1e-9;
+/// The most parts in one loop.
+const MOST_IN_LOOP: usize = 12;
+impl Coupled<'_> {
+    /// What a loop keeps parallel: opposite sides of parallelograms.
+    pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[End; 2]) -> Result<(), ImportError> {
+        let sides = self.sides(ends);
+        let largest = sides.iter().fold(0.0_f64, |most, (_, v)| most.max(v.norm()));
+        let is_none = |v: Vector| v.norm() <= CLOSED * largest;
+        // What turns as one is one side.
+        let mut merged: Vec<(usize, Vector)> = Vec::new();
+        for (i, v) in sides {
+            let set = self.together.root(i);
+            match merged.iter_mut().find(|(other, _)| *other == set) {
+                Some((_, sum)) => *sum += v,
+                None => merged.push((set, v)),
+            }
+        }
+        merged.retain(|(_, v)| !is_none(*v));
+        let total: Vector = merged.iter().map(|(_, v)| v).sum();
+        if !is_none(total) || merged.len() > MOST_IN_LOOP {
+            return Err(wrong(
+                node,
+                "its ends are apart in the pose of the file",
+                "a keyframe in which every loop is closed",
+            ));
+        }
+        // Opposite sides first, which neighbours of equal length must not be taken for.
+        while !merged.is_empty() {
+            let count = merged.len();
+            let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+            let pairs = pairs.filter(|(a, b)| is_none(merged[*a].1 + merged[*b].1));
+            let apart = |(a, b): &(usize, usize)| (b - a).min(count - (b - a));
+            let Some((a, b)) = pairs.max_by_key(apart) else {
+                return Err(wrong(node, "a loop that is no parallelogram", "loops whose opposite sides are equal"));
+            };
+            self.together.join(merged[a].0, merged[b].0);
+            merged.remove(b);
+            merged.remove(a);
+        }
+        Ok(())
+    }
+
+    /// Each part from its hinge to the next, around the loop.
+    fn sides(&self, ends: &[End; 2]) -> Vec<(usize, Vector)> {
+        let flat = |p: Vector3<f64>| Vector::new(self.plane[0].dot(&p), self.plane[1].dot(&p));
+        let mut sides: Vec<(usize, Vector)> = Vec::new();
+        for (direction, (part, at)) in [(1.0, ends[0]), (-1.0, ends[1])] {
+            let (mut at, mut part) = (flat(at), part.and_then(|part| self.owners[part]));
+            let mut own = Vec::new();
+            while let Some(i) = part {
+                let root = flat(self.bodies.parts[i].hinge.map_or(Vector3::zeros(), |(_, on)| on));
+                own.push((i, direction * (at - root)));
+                at = root;
+                part = self.bodies.parts[i].parent.and_then(|parent| self.owners[parent]);
+            }
+            own.push((self.base, direction * at));
+            if direction > 0.0 {
+                own.reverse();
+            }
+            sides.extend(own);
+        }
+        sides
+    }
+}

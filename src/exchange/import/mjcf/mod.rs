@@ -1,0 +1,76 @@
+//! MJCF: loops, tendons and equalities say what turns together, actuators what turns it.
+
+mod actuators;
+mod coupled;
+mod equalities;
+mod limits;
+mod loops;
+mod sets;
+mod together;
+
+use coupled::Coupled;
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::bodies::Bodies;
+use super::linkage::Linkage;
+use super::read::{child, numbers, vector};
+use super::refusal::ImportError;
+
+/// Of a `<mujoco>`.
+///
+/// # Errors
+/// What is outside of the family.
+pub fn linkage(model: Node<'_, '_>) -> Result<Linkage, ImportError> {
+    let mut coupled = Coupled::of(Bodies::of(model)?)?;
+    coupled.couple()?;
+    coupled.linkage()
+}
+
+impl Coupled<'_> {
+    fn linkage(mut self) -> Result<Linkage, ImportError> {
+        let motors = self.motors()?;
+        let (mut numbered, rotors) = (self.numbered(&motors)?, self.rotors(&motors)?);
+        self.armatures(&mut numbered, &rotors)?;
+        let (sets, limits) = (self.sets(&motors, &rotors)?, self.limits(&motors, &rotors)?);
+        let model = self.bodies.model;
+        let gravity = child(model, "option").map(|node| vector(node, "gravity")).transpose()?.flatten();
+        let mut notes = self.notes()?;
+        let end = self.bodies.end().and_then(|(part, at)| Some((self.owners[part?]?, at)));
+        notes.append(&mut self.bodies.notes);
+        let pins = self.loops.iter().map(|ends| ends.map(|(i, at)| (self.owner(i), at)));
+        let loops = pins.filter(|ends| ends.iter().all(|(i, _)| *i != self.base)).collect();
+        Ok(Linkage {
+            name: model.attribute("model").unwrap_or("model").into(),
+            gravity: gravity.unwrap_or(Vector3::new(0.0, 0.0, -9.81)),
+            sets,
+            motors: numbered,
+            limits,
+            rotors,
+            loops,
+            end,
+            ground: None,
+            notes,
+            parts: self.bodies.parts,
+        })
+    }
+
+    /// What of a model belongs elsewhere or is left out.
+    fn notes(&self) -> Result<Vec<String>, ImportError> {
+        let model = self.bodies.model;
+        let mut notes = Vec::new();
+        if model.descendants().any(|node| node.has_tag_name("mesh")) {
+            notes.push("meshes are left out: a machine here is made of bars".to_owned());
+        }
+        for (name, what) in [("damping", "damping"), ("frictionloss", "friction"), ("stiffness", "stiffness")] {
+            let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i));
+            let mut values = hinges.map(|hinge| Ok(numbers(hinge, name)?.unwrap_or_default()));
+            if values.try_fold(false, |any, all: Result<Vec<f64>, ImportError>| {
+                Ok::<_, ImportError>(any || all?.iter().any(|x| *x != 0.0))
+            })? {
+                notes.push(format!("{what} of joints is left out: friction belongs into the plant of a scenario"));
+            }
+        }
+        Ok(notes)
+    }
+}

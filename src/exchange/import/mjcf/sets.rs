@@ -1,0 +1,42 @@
+//! Which motor turns each part in the end, and which parts are rotors.
+
+use super::coupled::{Against, Coupled, Geared, PARALLEL_WANTED};
+use crate::exchange::import::linkage::{Motor, Part};
+use crate::exchange::import::refusal::{ImportError, wrong};
+
+impl Coupled<'_> {
+    /// Parts that are rotors, the motor of each, and how often it turns for one turn of that.
+    pub(super) fn rotors(&self, motors: &[(Motor, Against)]) -> Result<Vec<(usize, usize, f64)>, ImportError> {
+        let rotor = |geared: &Geared| {
+            let turned = self.against(&geared.to).map(|(to, from)| (self.set(to), self.set(from)));
+            let k = motors.iter().position(|(_, against)| Some(*against) == turned);
+            let is_leaf = !self.bodies.parts.iter().any(|part| part.parent == Some(geared.part));
+            let sits = |k: &usize| motors[*k].1.1 == self.set(self.on(geared.part));
+            k.filter(|k| is_leaf && sits(k))
+                .map(|k| (geared.part, k, geared.ratio))
+                .ok_or_else(|| wrong(geared.node, "it couples what is no rotor and motor", PARALLEL_WANTED))
+        };
+        self.geared.iter().map(rotor).collect()
+    }
+
+    /// The motor that turns each part in the end.
+    pub(super) fn sets(
+        &self,
+        motors: &[(Motor, Against)],
+        rotors: &[(usize, usize, f64)],
+    ) -> Result<Vec<Option<usize>>, ImportError> {
+        let set = |(i, part): (usize, &Part)| {
+            let own = self.owner(Some(i));
+            let k = motors.iter().position(|(_, (to, _))| own != self.base && *to == self.set(own));
+            let is_rotor = rotors.iter().any(|(rotor, ..)| *rotor == i);
+            match k.is_some() || own != i || is_rotor || self.set(own) == self.base {
+                true => Ok(k),
+                false => {
+                    let what = "no motor turns it, and nothing keeps it parallel to what one turns";
+                    Err(part.wrong(what, "a motor, a loop or an equality"))
+                }
+            }
+        };
+        self.bodies.parts.iter().enumerate().map(set).collect()
+    }
+}

@@ -1,0 +1,64 @@
+//! [`Cut`]: where arcs end.
+
+use std::f64::consts::PI;
+
+use super::few::Few;
+use super::lifts::lifts;
+use super::{Quadrilateral, bend};
+use crate::mechanics::planar::{Vector, unit};
+use crate::planning::reactionless::plane::AngleLimit;
+
+/// Folds that pass a bound by less than this count as within, rad.
+const NEAR_BOUND: f64 = 1e-3;
+/// 4 crossings of limits, 2 flat poses, 6 folds; each of these may be found several times where some merge.
+pub(super) const CUTS: usize = 36;
+
+/// Where a graph is cut, α modulo 2π. More cuts than needed do no harm.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub alpha: f64,
+    /// β modulo 2π, or whatever the graph says.
+    pub beta: Option<f64>,
+    /// Whether β is a bound.
+    pub edge: bool,
+}
+
+impl Quadrilateral {
+    /// All of them.
+    pub(super) fn cuts(&self) -> Few<Cut, CUTS> {
+        let mut cuts = Few::new(Cut { alpha: 0.0, beta: None, edge: false });
+        self.limit_crossings(|alpha, beta| cuts.push(Cut { alpha, beta: Some(beta), edge: true }));
+        // The graphs touch where an end of the feasible α is flat: they have a corner there.
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * self.size();
+        if near(self.r + self.y, self.m + self.x) {
+            cuts.push(Cut { alpha: 0.0, beta: None, edge: false });
+        }
+        if near((self.r - self.y).abs(), (self.m - self.x).abs()) {
+            cuts.push(Cut { alpha: PI, beta: None, edge: false });
+        }
+        // Where the limits leave nothing of the graph, it need not be cut.
+        let AngleLimit { min, max } = self.limits[1];
+        let wide = AngleLimit { min: min - NEAR_BOUND, max: max + NEAR_BOUND };
+        self.folds(|alpha, beta| {
+            if beta.is_none_or(|beta| lifts(beta, wide).next().is_some()) {
+                cuts.push(Cut { alpha, beta, edge: false });
+            }
+        });
+        cuts
+    }
+
+    /// Where β is at a bound: the triangle of arm x, the point, and the other two arms held rigid.
+    fn limit_crossings(&self, mut push: impl FnMut(f64, f64)) {
+        let Self { m, x, y, r, .. } = *self;
+        for beta in [self.limits[1].min, self.limits[1].max] {
+            let e = unit(beta);
+            let rigid = Vector::new(m + y * e.re, y * e.im);
+            let length = rigid.norm();
+            if x > 0.0 && r <= length + x && r >= (length - x).abs() {
+                let (arg, angle) = (rigid.im.atan2(rigid.re), bend(length, x, r));
+                push(arg + angle, beta);
+                push(arg - angle, beta);
+            }
+        }
+    }
+}
