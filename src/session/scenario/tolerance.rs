@@ -87,19 +87,22 @@ const ROWS: [Row; 4] = [
 /// A key of a spread, and what is taken where no spread at all is given.
 struct Varies {
     key: Key,
-    /// A spread as it is typed, and whether the links or lengths of a machine have any of what varies.
-    usual: Option<(&'static str, fn(&MachineSpec) -> bool)>,
+    /// A spread as it is typed, if it varies then.
+    usual: Option<&'static str>,
+    /// Whether a machine has any of what varies.
+    has: fn(&MachineSpec) -> bool,
 }
 
 /// Path, unit and meaning of a key; the spread that is usual for a machine that has what varies.
 macro_rules! varies {
     ($path:literal, $unit:literal, $words:literal) => {
-        Varies { key: spread($path, $unit, $words).instead("it does not"), usual: None }
+        Varies { key: spread($path, $unit, $words).instead("it does not"), usual: None, has: |_| true }
     };
     ($path:literal, $unit:literal, $words:literal, $usual:literal, $has:expr) => {
         Varies {
             key: spread($path, $unit, $words).instead(concat!($usual, " if no spread is given at all")),
-            usual: Some(($usual, $has)),
+            usual: Some($usual),
+            has: $has,
         }
     };
 }
@@ -187,8 +190,8 @@ impl Tolerance {
 /// masses to 0.5 %, inertias to 2 %, lengths with a name to 0.05 mm; all normal, standard deviations. What a machine
 /// has none of does not vary.
 pub fn default_spreads(machine: &Machine) -> BTreeMap<String, Spread> {
-    let usual = |Varies { key, usual }: &Varies| {
-        let (typed, _) = usual.filter(|(_, has)| has(machine.spec()))?;
+    let usual = |Varies { key, usual, has }: &Varies| {
+        let typed = usual.filter(|_| has(machine.spec()))?;
         Some((key.path.trim_start_matches(PART).to_owned(), typed.parse().ok()?))
     };
     SPREADS.iter().filter_map(usual).collect()
