@@ -6,7 +6,8 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::command::Look;
 use super::theme::other;
 use super::{
-    Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, set_b,
+    Below, Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState,
+    WindowCommand, set_b,
 };
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
@@ -183,7 +184,7 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::Session(SessionCommand::Bookmark(time, name)))
     };
     Run, "Name the bookmark here", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
-        (v.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
+        (v.arrangement.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
     };
     Run, "To the next mark: bookmark, event, branch", [on(PLAIN, Key::N)], "time line", |_, _| {
         Some(Command::Session(SessionCommand::ToMark(true)))
@@ -268,14 +269,15 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::View(ViewChange::Layout(Layout::Present)))
     };
     View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard" turns Times;
-    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.theme))));
+    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
-        v.compare.then_some(Command::Session(SessionCommand::KeepRun))
+        (v.below == Some(Below::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
+    Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Given;
     Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
     Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
@@ -290,7 +292,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, scenario", |s, _| new_session(s);
-    File, "Open a session, scenario, machine or model" = "load file import machine model urdf mjcf xml toml recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
+    File, "Open a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
     File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
     File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
     File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
@@ -302,7 +304,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, Purpose::Machine);
     File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
     File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
-    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.tour.is_none())));
+    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 

@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
             // As the table of actions calls it.
             let action = format!("{}: {}", layout.name(), layout.words());
             let what = (layout.name(), key_of(&action), layout.words());
-            line(ui, what, view_state.layout == layout, Command::View(ViewChange::Layout(layout)));
+            line(ui, what, view_state.arrangement.layout == layout, Command::View(ViewChange::Layout(layout)));
         }
         ui.separator();
         heading(ui, "PANELS");

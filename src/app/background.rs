@@ -4,19 +4,61 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::change::{Change, NotOpened, Opened};
+use super::change::Change;
+use super::given::assess::Assessing;
 use super::{Activity, SessionCommand};
 use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
-use crate::study::comparison::{Compared, Ways};
+use crate::study::comparison::Ways;
+use crate::study::lengths::Seeking;
 use crate::study::tolerance::Studying;
 
-/// A job and what it is of, while it is under way.
-pub(super) type Slot<K, T> = Option<(K, Job<T>)>;
+/// Work that changes what is on display once it has ended.
+trait Pending<A> {
+    /// How much of it is done, from 0 to 1.
+    fn progress(&self) -> f64;
 
-/// A run to keep, with what to say when it is there.
-pub(super) type Keeping = (Option<&'static str>, Job<Result<Compared, Refusal>>);
+    /// Whether it has ended.
+    fn has_ended(&mut self) -> bool;
+
+    /// Waits until it has.
+    fn wait(&mut self);
+
+    /// Does what is to be done then.
+    fn finish(self: Box<Self>, app_state: &mut A);
+}
+
+/// A job, what it has come to, and what is to be done then. Nothing comes of a job that broke off.
+struct Running<T, F> {
+    job: Option<Job<T>>,
+    result: Option<T>,
+    then: F,
+}
+
+impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<T, F> {
+    fn progress(&self) -> f64 {
+        self.job.as_ref().map_or(1.0, Job::progress)
+    }
+
+    fn has_ended(&mut self) -> bool {
+        match self.job.as_ref().map(Job::poll) {
+            Some(Poll::Working) => return false,
+            Some(Poll::Done(result)) => self.result = Some(result),
+            Some(Poll::Broken) | None => {}
+        }
+        self.job = None;
+        true
+    }
+
+    fn wait(&mut self) {
+        self.result = self.job.take().and_then(Job::wait);
+    }
+
+    fn finish(self: Box<Self>, app_state: &mut A) {
+        (self.then)(app_state, self.result);
+    }
+}
 
 /// What to do with a session that has been opened.
 #[derive(Clone, Debug, Default)]
@@ -51,44 +93,45 @@ const LONG: usize = 20_000;
 /// Repaints for which a change is not spoken of: most are made by then.
 const UNSPOKEN: u32 = 6;
 
-/// What is under way, and who does it.
-pub(super) struct Background {
+/// What is under way, who does it, and what it changes in `A` once it has ended.
+pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
     /// What is derived of the session.
     pub queries: Queries,
     /// Woken when a job has ended.
     ctx: Option<egui::Context>,
-    /// A change of the session, made of a copy; and for how many repaints.
-    pub change: Slot<(Change, u32), Changed>,
+    /// Work that changes what is on display, in the order in which it began.
+    running: Vec<(Activity, Box<dyn Pending<A>>)>,
+    /// The change of the session that is being made, and for how many repaints.
+    pub change: Option<(Change, u32)>,
     /// What is to be done after that.
     pub later: VecDeque<SessionCommand>,
-    /// A session that takes the place of the present one.
-    pub opening: Slot<Opening, Result<Opened, NotOpened>>,
-    /// Runs to keep beside them, each with what to say when it is there.
-    pub kept: VecDeque<Keeping>,
-    /// What to say when the recording is there.
-    pub recording: Slot<(), Result<String, String>>,
-    /// What to say when a file is saved; of a session, after how many changes, and where.
-    pub saving: Slot<Option<(u64, PathBuf)>, Result<String, String>>,
 }
 
-impl Default for Background {
+/// What queries are spoken of: their activity, how far they are, and what stops them.
+type Told = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
+
+const TOLD: [Told; 4] = [
+    (Activity::Given, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
+    (Activity::Study, Queries::progress::<Studying>, Queries::stop::<Studying>),
+    (Activity::Seeking, Queries::progress::<Seeking>, Queries::stop::<Seeking>),
+    (Activity::Ways, Queries::progress::<Ways>, Queries::stop::<Ways>),
+];
+
+impl<A> Default for Background<A> {
     fn default() -> Self {
         Self {
             workers: Arc::new(AtOnce),
             queries: Queries::default(),
             ctx: None,
+            running: Vec::new(),
             change: None,
             later: VecDeque::new(),
-            opening: None,
-            kept: VecDeque::new(),
-            recording: None,
-            saving: None,
         }
     }
 }
 
-impl Background {
+impl<A> Background<A> {
     /// Has everything done by somebody from now on.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
         self.workers = Arc::new(workers);
@@ -104,14 +147,9 @@ impl Background {
         }
     }
 
-    /// Starts work beside the window.
-    pub fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
+    /// Starts work beside the window that nobody waits for.
+    fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
         self.start_by(&*self.workers, work)
-    }
-
-    /// The same of work that is done by the next repaint as a rule.
-    pub fn start_short<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
-        self.start_by(&Short(&*self.workers), work)
     }
 
     fn start_by<T: Send + 'static>(
@@ -126,6 +164,60 @@ impl Background {
             }
         };
         Job::start(workers, wake, work)
+    }
+
+    /// Does work beside the window, and something with what it has come to.
+    pub fn run<T: Send + 'static>(
+        &mut self,
+        activity: Activity,
+        work: impl FnOnce(&Ticket) -> T + Send + 'static,
+        then: impl FnOnce(&mut A, Option<T>) + 'static,
+    ) {
+        let job = match activity {
+            // Most are made by the next repaint.
+            Activity::Change => self.start_by(&Short(&*self.workers), work),
+            _ => self.start_by(&*self.workers, work),
+        };
+        self.running.push((activity, Box::new(Running { job: Some(job), result: None, then })));
+    }
+
+    /// The first work that has ended and whose turn it is, taken out: what is done to the session comes before another
+    /// session is opened, and of one activity the first ends first.
+    pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
+        let is_changing = self.is_changing();
+        let (mut place, mut before) = (None, Vec::new());
+        for (i, (activity, work)) in self.running.iter_mut().enumerate() {
+            let waits = before.contains(activity) || (*activity == Activity::Opening && is_changing);
+            if !waits && work.has_ended() {
+                place = Some(i);
+                break;
+            }
+            before.push(*activity);
+        }
+        let (_, work) = self.running.remove(place?);
+        Some(|app_state: &mut A| work.finish(app_state))
+    }
+
+    /// Whether such work is under way.
+    pub fn runs(&self, activity: Activity) -> bool {
+        self.running.iter().any(|(own, _)| *own == activity)
+    }
+
+    /// Stops it.
+    pub fn stop(&mut self, activity: Activity) {
+        self.running.retain(|(own, _)| *own != activity);
+        if let Some((_, _, stop)) = TOLD.iter().find(|(own, ..)| *own == activity) {
+            stop(&self.queries);
+        }
+        if activity == Activity::Change {
+            self.change = None;
+            self.later.clear();
+        }
+    }
+
+    /// Waits for the end of such work; nothing is done then.
+    pub fn wait_for(&mut self, activity: Activity) {
+        self.running.iter_mut().filter(|(own, _)| *own == activity).for_each(|(_, work)| work.wait());
     }
 
     /// Lets go of a session in whose place there is another; of a long one that shares nothing where nobody waits for it.
@@ -157,41 +249,31 @@ impl Background {
 
     /// One more repaint during which the session is being changed.
     pub fn count(&mut self) {
-        if let Some(((_, shown), _)) = &mut self.change {
+        if let Some((_, shown)) = &mut self.change {
             *shown += 1;
         }
     }
 
     /// What is under way and how far it is, for the line at the bottom.
     pub fn under_way(&self) -> Option<(Activity, f64)> {
-        self.all_under_way().next()
+        self.all_under_way().into_iter().next()
     }
 
     /// All that is under way, what matters most first.
-    pub fn all_under_way(&self) -> impl Iterator<Item = (Activity, f64)> {
-        let change = self.change.as_ref().filter(|((_, shown), _)| *shown > UNSPOKEN);
-        let change = change.map(|(_, job)| (Activity::Change, job.progress()));
-        let opening = self.opening.as_ref().map(|(_, job)| (Activity::Opening, job.progress()));
-        let recording = self.recording.as_ref().map(|(_, job)| (Activity::Recording, job.progress()));
-        let saving = self.saving.as_ref().map(|(_, job)| (Activity::Saving, job.progress()));
-        let study = self.queries.progress::<Studying>().map(|share| (Activity::Study, share));
-        let ways = self.queries.progress::<Ways>().map(|share| (Activity::Ways, share));
-        let kept = self.kept.front().map(|(_, job)| (Activity::Kept, job.progress()));
-        [change, opening, saving, recording, study, ways, kept].into_iter().flatten()
+    pub fn all_under_way(&self) -> Vec<(Activity, f64)> {
+        let is_unspoken = self.change.as_ref().is_some_and(|(_, shown)| *shown <= UNSPOKEN);
+        let running = self.running.iter().filter(|(activity, _)| *activity != Activity::Change || !is_unspoken);
+        let running = running.map(|(activity, work)| (*activity, work.progress()));
+        let told = TOLD.iter().filter_map(|(activity, progress, _)| Some((*activity, progress(&self.queries)?)));
+        let mut all: Vec<(Activity, f64)> = running.chain(told).collect();
+        all.sort_by_key(|(activity, _)| *activity);
+        // Of several of one kind the first.
+        all.dedup_by_key(|(activity, _)| *activity);
+        all
     }
 
     /// Whether anything at all is under way.
     pub fn is_busy(&self) -> bool {
-        self.is_changing() || self.queries.is_busy() || self.under_way().is_some()
+        self.is_changing() || self.queries.is_busy() || !self.running.is_empty()
     }
-}
-
-/// What a job has come to, with what it is of, once it has ended; nothing came of one that broke off.
-pub(super) fn ended<K, T: Send + 'static>(slot: &mut Slot<K, T>) -> Option<(K, Option<T>)> {
-    let result = match slot.as_ref()?.1.poll() {
-        Poll::Working => return None,
-        Poll::Done(result) => Some(result),
-        Poll::Broken => None,
-    };
-    slot.take().map(|(of, _)| (of, result))
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::given::assess::Table;
 use super::{LeftOff, RefusedEdit};
 use crate::files::Found;
 use crate::session::scenario::Scenario;
@@ -90,7 +91,14 @@ pub(super) enum Source {
 }
 
 /// What was opened.
-pub(super) struct Opened {
+pub(super) enum Opened {
+    Session(Box<OpenedSession>),
+    /// A table of numbers, which is about the session on display.
+    Table(PathBuf, Table),
+}
+
+/// A session that was opened.
+pub(super) struct OpenedSession {
     pub session: Session,
     /// What is to be said of where it comes from.
     pub said: Option<String>,
@@ -112,6 +120,13 @@ impl Source {
             let found = crate::files::scenario(&path.display().to_string());
             found.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })
         };
+        if let Self::File(path) = &self
+            && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+        {
+            let text = crate::files::text::read(path);
+            let text = text.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })?;
+            return Ok(Opened::Table(path.clone(), Table { name: path.display().to_string(), text }));
+        }
         let (Found { scenario, made }, from_file, left_off) = match self {
             Self::Scenario(scenario) => (Found { scenario: *scenario, made: None }, false, None),
             Self::File(path) => (read(&path)?, true, None),
@@ -129,6 +144,6 @@ impl Source {
             // A file may say anything: no more of the run is made than there was.
             session.seek_while(time.min(session.length()), watch);
         }
-        Ok(Opened { session, said: made, left_off })
+        Ok(Opened::Session(Box::new(OpenedSession { session, said: made, left_off })))
     }
 }

@@ -2,15 +2,19 @@
 
 use std::path::PathBuf;
 
+use super::activity::Activity;
+use super::file_dialog::{FileDialog, PlotFile, Purpose};
+use super::given::assess::{Options, Taking};
 use super::layout::Layout;
-use crate::exchange::form;
+use crate::mechanics::counterweights::Objective;
+use crate::mechanics::machine::Machine;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
+use crate::session::Edit;
 use crate::session::scenario::Scenario;
-use crate::session::{Edit, Session};
 use crate::study::front_point::FrontMeasure;
 
 /// What a person can ask for.
@@ -97,8 +101,12 @@ pub enum SessionCommand {
     GoTo(usize),
     /// Put the machine back at the start of its planned path.
     BackToPath,
+    /// Take something of what a table says that was opened.
+    TakeGiven(Taking),
     /// Take the counterweights of a machine of the front, by its place.
     Take(usize),
+    /// Take the lengths that were found, with their counterweights.
+    TakeLengths,
     /// Take the counterweights and ratios of rotors with which the drives give least to the base.
     TakeStillest,
     /// Keep the session's own run in the table of runs.
@@ -124,6 +132,8 @@ pub enum Switch {
     Compare,
     /// The study of tolerances.
     Study,
+    /// What a table says that was opened.
+    Given,
     /// What pins carry.
     Pins,
     /// Snapshots along the motion.
@@ -200,6 +210,12 @@ pub enum ViewChange {
 pub enum WindowCommand {
     /// Change the table of runs.
     Comparison(ComparisonCommand),
+    /// Read the table that was opened so, and ask this of it.
+    Ask(Options),
+    /// Seek lengths with which this is least, as the brief has them.
+    Seek(Objective),
+    /// Change which fronts are drawn beside that of the machine that is designed.
+    Fronts(FrontsCommand),
     /// Put the cursor where a signal to plot is sought.
     LookFor,
     /// Show why a number that was typed is refused.
@@ -220,56 +236,15 @@ pub enum WindowCommand {
     TurnTour(bool),
 }
 
-/// What can be under way beside the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Activity {
-    /// A change of the session.
-    Change,
-    /// A session is opened.
-    Opening,
-    /// The session is saved.
-    Saving,
-    /// A recording is written.
-    Recording,
-    /// Machines of a study of tolerances are drawn.
-    Study,
-    /// The ways of the task run side by side.
-    Ways,
-    /// A run that is kept beside them.
-    Kept,
-}
-
-impl Activity {
-    /// What it does, for the line at the bottom.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Change => "making the run again",
-            Self::Opening => "opening",
-            Self::Saving => "saving",
-            Self::Recording => "recording",
-            Self::Study => "drawing machines",
-            Self::Ways => "running the ways of the task",
-            Self::Kept => "running one more beside them",
-        }
-    }
-
-    /// Whether it stops when it is told to.
-    pub(super) fn can_stop(self) -> bool {
-        self != Self::Saving
-    }
-
-    /// What to say when it has been cancelled.
-    pub(super) fn cancelled(self) -> &'static str {
-        match self {
-            Self::Change => "cancelled: nothing has changed",
-            Self::Opening => "cancelled: nothing was opened",
-            Self::Saving => "",
-            Self::Recording => "cancelled: no file is left",
-            Self::Study => "cancelled: no machines were drawn for the run as it is",
-            Self::Ways => "cancelled: the ways of the task were not run again",
-            Self::Kept => "cancelled: no run was added",
-        }
-    }
+/// Which fronts are drawn beside that of the machine that is designed.
+#[derive(Clone, Debug)]
+pub enum FrontsCommand {
+    /// That of this machine stays as it is now.
+    Keep,
+    /// That of another machine, asked as this one is.
+    Add(Box<Machine>),
+    /// One is taken away, by its place.
+    Remove(usize),
 }
 
 /// What becomes of a session that was left behind.
@@ -305,81 +280,6 @@ pub enum ComparisonCommand {
     Remove(usize),
 }
 
-/// Asking for a file name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileDialog {
-    /// What the file is for.
-    pub purpose: Purpose,
-    /// What is typed so far.
-    pub path: String,
-}
-
-/// What a file name is for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// Read a session.
-    Open,
-    /// Write the session.
-    Save,
-    /// Write a recording.
-    Record,
-    /// Write the plot of a name.
-    Plot(String, PlotFile),
-    /// Write the machine for another program.
-    Machine,
-}
-
-/// How a plot is written to a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlotFile {
-    /// Every sample of the time shown.
-    Csv,
-    /// A drawing.
-    Svg,
-    /// A picture.
-    Png,
-}
-
-impl PlotFile {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
-
-    /// What it is called.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Csv => "CSV",
-            Self::Svg => "SVG",
-            Self::Png => "PNG",
-        }
-    }
-}
-
-impl Purpose {
-    /// What a dialog asks, what its button says, and how such a file may be called.
-    pub(super) fn words(&self) -> [&'static str; 3] {
-        match self {
-            Self::Open => ["Open a session, machine or model", "Open", ".toml .urdf .xml"],
-            Self::Save => ["Save the session", "Save", "session.toml"],
-            Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
-            Self::Machine => ["Take along", "Save", "machine.urdf"],
-            Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
-            Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
-            Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
-        }
-    }
-}
-
-impl Purpose {
-    /// What a dialog asks, with the endings to choose from.
-    pub(super) fn title(&self) -> String {
-        let [title, ..] = self.words();
-        match self {
-            Self::Machine => format!("{title}: .{}", form::endings().join(" .")),
-            _ => title.into(),
-        }
-    }
-}
-
 impl FileDialog {
     /// What to do with a file that was named.
     pub fn named(self, file: PathBuf) -> SessionCommand {
@@ -390,19 +290,5 @@ impl FileDialog {
             Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
             Purpose::Machine => SessionCommand::TakeElsewhere(file),
         }
-    }
-
-    /// A file name that is free, for a dialog to start from.
-    pub fn suggest(session: &Session, purpose: Purpose) -> Self {
-        let own = &session.scenario().name;
-        let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();
-        let name = match &purpose {
-            Purpose::Open => String::new(),
-            Purpose::Save => free(own, "toml"),
-            Purpose::Record => free(own, "rrd"),
-            Purpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
-            Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
-        };
-        Self { purpose, path: name }
     }
 }

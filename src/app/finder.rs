@@ -112,7 +112,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
-    let Some(mut finder) = view_state.finder.clone() else { return };
+    let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
     let list = found(entries(session, (&settings, recent), view_state), &finder.sought);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
@@ -167,7 +167,7 @@ pub fn show(
             Command::Session(SessionCommand::EndGesture),
         ]),
         None if elsewhere => commands.push(ViewChange::Switch(Switch::Finder, false).into()),
-        None => view_state.finder = Some(finder),
+        None => view_state.open.finder = Some(finder),
     }
 }
 

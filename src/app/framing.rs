@@ -25,7 +25,7 @@ pub fn keep(
         Framing::Held(_, last) if *last == size => return,
         Framing::Held(content, _) => content.clone(),
         // What a hand holds stays under it; all is seen again once that lets go.
-        Framing::Wanted if view_state.grabbed.is_some() => return,
+        Framing::Wanted if view_state.gesture.grabbed.is_some() => return,
         Framing::Wanted => Arc::new(views.content(view, session.frame(), &poses())),
     };
     let part = |part: &Rect| {

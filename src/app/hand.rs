@@ -3,7 +3,7 @@
 use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
 use super::widgets::FINE;
-use super::{Command, SessionCommand, ViewChange, ViewState, place, set_b};
+use super::{Command, Gesture, SessionCommand, Tool, ViewChange, ViewState, place, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::paint::Spot;
 use crate::picture::scene::exaggeration::Shown;
@@ -45,7 +45,7 @@ impl<'a> Hand<'a> {
     ) -> Self {
         let view = view_state.view;
         // Dragging pushes with Alt held, or after U.
-        let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
+        let pushes = view.shows_machine() && (view_state.tool == Tool::Push || ui.input(|i| i.modifiers.alt));
         let catches_arm = demonstrates && view.shows_machine() && !pushes;
         Self { ui, response, spot, session, shown, views, view, catches_arm, pushes }
     }
@@ -54,15 +54,12 @@ impl<'a> Hand<'a> {
     pub fn points(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         self.looks(view_state);
         self.takes_hold(view_state, commands);
-        match view_state.grabbed {
+        match view_state.gesture.grabbed {
             Some(pick) => self.pulls(pick, view_state, commands),
             None => self.hovers(view_state),
         }
         self.clicks(view_state, commands);
         self.takes_out(view_state, commands);
-        if view_state.grabbed.is_none() {
-            view_state.held = None;
-        }
     }
 
     /// The arm of the demonstration, near a place.
@@ -84,7 +81,7 @@ impl<'a> Hand<'a> {
 
     /// Remembers what is under the pointer.
     fn looks(&self, view_state: &mut ViewState) {
-        if view_state.grabbed.is_some() {
+        if view_state.gesture.grabbed.is_some() {
             return;
         }
         let seen = |pos: Pos2| match self.pushes {
@@ -94,7 +91,7 @@ impl<'a> Hand<'a> {
                 arm.or_else(|| self.views.under(self.view, self.shown, &self.spot.pointer(pos)))
             }
         };
-        view_state.hot = self.response.hover_pos().and_then(seen);
+        view_state.pointed.hot = self.response.hover_pos().and_then(seen);
     }
 
     /// Takes hold of what was there when the button went down: it may move on.
@@ -102,7 +99,7 @@ impl<'a> Hand<'a> {
         let origin = || self.ui.input(|i| i.pointer.press_origin());
         if self.response.is_pointer_button_down_on() && self.ui.input(|i| i.pointer.primary_pressed()) {
             let origin = origin();
-            view_state.pressed = origin.and_then(|pos| self.under(pos));
+            view_state.gesture.pressed = origin.and_then(|pos| self.under(pos));
             if self.session.is_playing() && origin.and_then(|pos| self.arm(pos)).is_some() {
                 commands.push(SessionCommand::TogglePlay.into());
             }
@@ -110,10 +107,13 @@ impl<'a> Hand<'a> {
         if self.response.drag_started_by(PointerButton::Primary) {
             // A drag begins where the button went down, not where it was noticed.
             let origin = origin();
-            view_state.grabbed = view_state.pressed.take().or_else(|| origin.and_then(|pos| self.under(pos)));
-            view_state.fine = [origin.unwrap_or_default().to_vec2(), Vec2::ZERO];
-            view_state.force = Some(self.session.scenario().plant.force);
-            view_state.undone_to = self.session.undo_count();
+            view_state.gesture = Gesture {
+                grabbed: view_state.gesture.pressed.or_else(|| origin.and_then(|pos| self.under(pos))),
+                fine: [origin.unwrap_or_default().to_vec2(), Vec2::ZERO],
+                force: self.session.scenario().plant.force,
+                undone_to: self.session.undo_count(),
+                ..Gesture::default()
+            };
         }
     }
 
@@ -125,7 +125,7 @@ impl<'a> Hand<'a> {
         let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
         let aim = if snaps { aim.snapped() } else { aim };
         if let Aim::Target(at) | Aim::Waypoint(_, at) = aim {
-            view_state.held = Some(at);
+            view_state.gesture.held = Some(at);
         }
         edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
     }
@@ -138,9 +138,10 @@ impl<'a> Hand<'a> {
         // A push goes on while the pointer stands still and the machine moves on.
         let lasts = pushes && self.session.is_moving();
         // The last movement may come together with the release.
-        let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || lasts;
+        let moved =
+            response.drag_delta() != Vec2::ZERO || (view_state.gesture.dragged && response.drag_stopped()) || lasts;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            let [last, behind] = &mut view_state.fine;
+            let [last, behind] = &mut view_state.gesture.fine;
             if self.ui.input(|i| i.modifiers.shift) {
                 *behind += (1.0 - FINE) * (pos.to_vec2() - *last);
             }
@@ -153,23 +154,21 @@ impl<'a> Hand<'a> {
         }
         let gives_up = self.ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || gives_up {
-            view_state.grabbed = None;
-            if pushes && view_state.dragged {
+            let Gesture { dragged, undone_to, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
+            if pushes && dragged {
                 // Back to the force that acted before the push.
-                let [x, y] = view_state.force.take().unwrap_or_default();
                 commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
             }
             commands.push(SessionCommand::EndGesture.into());
-            if gives_up && view_state.dragged {
-                commands.push(SessionCommand::TakeBack(view_state.undone_to).into());
+            if gives_up && dragged {
+                commands.push(SessionCommand::TakeBack(undone_to).into());
             }
-            view_state.dragged = false;
         }
     }
 
     /// Shows by the cursor what could be pulled at.
     fn hovers(&self, view_state: &ViewState) {
-        let Some(hot) = view_state.hot else { return };
+        let Some(hot) = view_state.pointed.hot else { return };
         let turns = self.session.follows_hands()
             && self.session.run().pose_space().is_ok_and(|map| map.leaves_freedoms() || map.planes().is_ok());
         let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
@@ -187,10 +186,10 @@ impl<'a> Hand<'a> {
         {
             commands.extend([edit, Command::Session(SessionCommand::EndGesture)]);
         }
-        if clicked && let Some(thing) = view_state.hot.filter(|thing| place::is_in_panel(*thing)) {
+        if clicked && let Some(thing) = view_state.pointed.hot.filter(|thing| place::is_in_panel(*thing)) {
             commands.push(ViewChange::Reveal(thing).into());
         }
-        let beside = !view_state.hot.is_some_and(Handle::can_be_dragged);
+        let beside = !view_state.pointed.hot.is_some_and(Handle::can_be_dragged);
         let twice = self.response.double_clicked_by(PointerButton::Primary) && beside && self.view.shows_machine();
         let height = self.views.stage().handle_height();
         if let Some(pos) = pos.filter(|_| twice)
@@ -209,14 +208,14 @@ impl<'a> Hand<'a> {
         let typing = self.ui.ctx().egui_wants_keyboard_input();
         let key = |i: &egui::InputState| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace);
         let out = !typing && self.ui.input(key);
-        if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
+        if let (Some(Handle::Waypoint(i)), None, true) = (view_state.pointed.hot, view_state.gesture.grabbed, out)
             && let Some(change) = self.session.scenario().task.removing(i)
         {
             commands.extend([
                 Command::Session(SessionCommand::Edit(Edit::of("task", change))),
                 Command::Session(SessionCommand::EndGesture),
             ]);
-            view_state.hot = None;
+            view_state.pointed.hot = None;
         }
     }
 }

@@ -26,12 +26,12 @@ pub fn show(
     let p = view_state.palette();
     let key = key_of_switch(Switch::History).unwrap_or_default();
     let tip = format!("history ({key})\nWhat was done, to go back and forth in; Ctrl Z undoes, Ctrl Y redoes");
-    let on = Some(view_state.history);
+    let on = Some(view_state.open.history);
     let button = IconButton { size, on, ..IconButton::of(Icon::History, "history", &tip) }.show(ui, &p);
     if button.clicked() {
-        commands.push(ViewChange::Switch(Switch::History, !view_state.history).into());
+        commands.push(ViewChange::Switch(Switch::History, !view_state.open.history).into());
     }
-    let mut open = view_state.history;
+    let mut open = view_state.open.history;
     let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new("HISTORY").font(bold(11.0)).color(colour(p.dim)));
@@ -45,7 +45,7 @@ pub fn show(
             area.show(ui, |ui| list_branches(ui, branches, &p, commands));
         }
     });
-    if view_state.history && !open && !button.clicked() {
+    if view_state.open.history && !open && !button.clicked() {
         commands.push(ViewChange::Switch(Switch::History, false).into());
     }
 }

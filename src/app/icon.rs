@@ -24,6 +24,8 @@ pub enum Icon {
     Pin,
     /// A spread of values.
     Bell,
+    /// Samples of a motion.
+    Samples,
     /// Two things beside each other.
     Beside,
     /// All of it.
@@ -96,6 +98,12 @@ impl Icon {
                     let x = 2.0 * t - 1.0;
                     [8.0 * x, 6.0 - 12.5 * (-6.0 * x * x).exp()]
                 }));
+            }
+            Self::Samples => {
+                pen.line(&[[-7.0, -7.0], [-7.0, 6.5], [7.5, 6.5]]);
+                for at in [[-3.6, 2.4], [-0.8, -2.2], [2.4, -0.2], [5.8, -5.4]] {
+                    pen.dot(at, 1.6);
+                }
             }
             Self::Beside => {
                 pen.closed(&[[-7.0, -6.0], [-1.5, -6.0], [-1.5, 6.0], [-7.0, 6.0]]);

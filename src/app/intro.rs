@@ -145,7 +145,7 @@ impl Intro {
             ) => !held,
             Command::View(
                 ViewChange::Switch(Switch::Drawing | Switch::Pushing, _)
-                | ViewChange::Switch(Switch::Compare | Switch::Study, true)
+                | ViewChange::Switch(Switch::Compare | Switch::Study | Switch::Given, true)
                 | ViewChange::Reveal(_)
                 | ViewChange::LookUp(_),
             ) => true,
@@ -185,7 +185,7 @@ impl Intro {
 
     /// Draws the straight run on the left of a view, with what both are about.
     pub fn show_straight(&self, ui: &Ui, rect: egui::Rect, now: &Instant, camera: &Camera, view_state: &ViewState) {
-        let Some((frame, scene)) = self.straight(now, view_state.theme) else { return };
+        let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
         words(ui, &Spot { rect, camera: *camera }, &scene, &[]);
@@ -226,7 +226,7 @@ impl Intro {
         let size = ctx.memory(|m| m.area_rect(id)).map_or(vec2(width, 100.0), |last| last.size());
         let stands = Id::unique("corner of the hint");
         // What a hand holds may pass under it.
-        let corner = view_state.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
+        let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
         let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, spoken_of));
         ctx.data_mut(|d| d.insert_temp(stands, corner));
         let area = Area::new(id).pivot(Align2::LEFT_TOP);

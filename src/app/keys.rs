@@ -5,21 +5,22 @@ use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea
 use super::actions::{ACTIONS, Action, FINE_ACTIONS, GESTURES, Group, shown};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, search};
+use super::{Command, Layout, Open, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
 /// Turns keys into commands; while text is typed only what does not type counts: shortcuts with Ctrl that a field does
 /// not know, and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let typing = ctx.egui_wants_keyboard_input() || view_state.dialog.is_some() || view_state.finder.is_some();
+    let typing =
+        ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // While something is dragged or a list is open, Esc ends that and nothing else.
-    let busy = view_state.grabbed.is_some()
-        || view_state.history
-        || view_state.naming.is_some()
+    let busy = view_state.gesture.grabbed.is_some()
+        || view_state.open.history
+        || view_state.open.naming.is_some()
         || ctx.input(|i| i.pointer.any_down())
-        || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx))
+        || (view_state.open.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
     if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
@@ -44,7 +45,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     }
     // What a held key moves is one undo.
     let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
-    if !typing && view_state.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
+    if !typing && view_state.gesture.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
         commands.push(SessionCommand::EndGesture.into());
     }
 }
@@ -61,22 +62,23 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 
 /// What Esc closes.
 fn escape(view_state: &ViewState) -> Command {
-    match view_state {
-        ViewState { dialog: Some(_), .. } => Command::View(ViewChange::Dialog(None)),
-        ViewState { finder: Some(_), .. } => Command::View(ViewChange::Switch(Switch::Finder, false)),
-        ViewState { help: true, .. } => Command::View(ViewChange::Switch(Switch::Help, false)),
-        ViewState { stroke: Some(_), .. } => Command::View(ViewChange::Switch(Switch::Drawing, false)),
-        ViewState { mark: Some(_), .. } => Command::View(ViewChange::Mark(None)),
-        ViewState { pushing: true, .. } => Command::View(ViewChange::Switch(Switch::Pushing, false)),
-        ViewState { layout: Layout::Present, .. } => Command::View(ViewChange::Layout(Layout::Explore)),
-        ViewState { tour: Some(_), .. } => Command::Window(WindowCommand::Tour(false)),
-        _ => Command::Window(WindowCommand::SkipHints),
+    let ViewState { open, tool, arrangement, .. } = view_state;
+    match open {
+        Open { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
+        Open { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
+        Open { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
+        _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
+        _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
+        _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
+        _ if arrangement.layout == Layout::Present => ViewChange::Layout(Layout::Explore).into(),
+        Open { tour: Some(_), .. } => WindowCommand::Tour(false).into(),
+        _ => WindowCommand::SkipHints.into(),
     }
 }
 
 /// The card of keys and gestures, in groups, and what of it answers a few letters.
 pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) {
-    if !view_state.help {
+    if !view_state.open.help {
         return;
     }
     let p = view_state.palette();

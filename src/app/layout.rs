@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::picture::scene::palette::Theme;
+
 /// What the window is for just now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -66,15 +68,64 @@ pub struct Panels {
     pub side: Panel,
     /// Plots.
     pub plots: Panel,
-    /// The table of runs side by side.
-    pub compare: bool,
 }
 
 impl Panels {
     /// As a layout has them until a hand changes that.
     pub const fn usual(layout: Layout) -> Self {
         let (side, plots) = (matches!(layout, Layout::Explore), !matches!(layout, Layout::Present));
-        let compare = matches!(layout, Layout::Compare);
-        Self { side: Panel::usual(side), plots: Panel::usual(plots), compare }
+        Self { side: Panel::usual(side), plots: Panel::usual(plots) }
+    }
+}
+
+/// What is on display below the scene: the window has room for one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Below {
+    /// The table of runs side by side.
+    Runs,
+    /// The study of tolerances.
+    Tolerances,
+    /// What a table says that was opened.
+    Given,
+}
+
+/// How the window is arranged: a person's liking, which outlives the session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrangement {
+    /// Light or dark.
+    pub theme: Theme,
+    /// What the window is for just now.
+    pub layout: Layout,
+    /// Settings stand on the right and plots on the left.
+    pub swapped: bool,
+    /// The equations stand beside the machine that is designed, and not its balance.
+    pub learns: bool,
+    /// The panels of each layout, in the order of [`Layout::ALL`].
+    pub panels: [Panels; Layout::ALL.len()],
+}
+
+impl Arrangement {
+    /// As it is until a hand changes that.
+    pub fn usual(theme: Theme) -> Self {
+        let panels = Layout::ALL.map(Panels::usual);
+        Self { theme, layout: Layout::Explore, swapped: false, learns: false, panels }
+    }
+
+    /// The panels on display.
+    pub fn now(&self) -> &Panels {
+        &self.panels[self.layout as usize]
+    }
+
+    /// The panels on display, to change.
+    pub fn now_mut(&mut self) -> &mut Panels {
+        &mut self.panels[self.layout as usize]
+    }
+
+    /// Lays the window out; again, and to present: as that layout is at first.
+    pub(super) fn lay_out(&mut self, layout: Layout) {
+        if layout == self.layout || layout == Layout::Present {
+            self.panels[layout as usize] = Panels::usual(layout);
+        }
+        self.layout = layout;
     }
 }

@@ -4,6 +4,7 @@
 //! carries out at the end of the pass. Nothing is computed here.
 
 pub mod actions;
+mod activity;
 mod arrangement;
 mod background;
 mod card;
@@ -13,9 +14,12 @@ mod compare;
 mod coordinates;
 mod corner;
 mod facts;
+mod file_dialog;
 mod finder;
 mod framing;
 mod gallery;
+mod gesture;
+mod given;
 mod hand;
 mod history;
 mod icon;
@@ -26,6 +30,7 @@ mod layout;
 mod left_off;
 mod marks;
 mod menu;
+mod open;
 mod order;
 mod pace;
 mod path;
@@ -34,6 +39,7 @@ mod plots;
 mod preferences;
 mod present;
 mod rail;
+mod said;
 mod saving;
 mod search;
 mod side;
@@ -52,14 +58,19 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
+pub use activity::Activity;
 pub use command::{
-    Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery, SessionCommand, Switch,
-    ViewChange, WindowCommand,
+    Command, ComparisonCommand, FrontsCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
 };
+pub use file_dialog::{FileDialog, PlotFile, Purpose};
+pub use gesture::{Gesture, Pointed, Tool};
+pub use given::assess::{Content, Options, Taking};
 use intro::Intro;
-pub use layout::{Layout, Panel, Panels};
+pub use layout::{Arrangement, Below, Layout, Panel, Panels};
 pub use left_off::LeftOff;
+pub use open::{Finder, Open};
 pub use preferences::Preferences;
+pub use said::{RefusedEdit, Said};
 pub use state::AppState;
 use view_state::set_b;
-pub use view_state::{Finder, Framing, RefusedEdit, ViewState};
+pub use view_state::{Framing, ViewState};

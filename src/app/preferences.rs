@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::layout::{Layout, Panel, Panels};
+use super::layout::{Arrangement, Layout, Panel, Panels};
 use crate::picture::scene::palette::Theme;
 
 /// How the window is liked. A file of an older or newer program reads as far as it is understood.
@@ -66,21 +66,38 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// The panels of each layout, in their order.
-    pub(super) fn panels(&self) -> [Panels; 3] {
+    /// Of a window so arranged and so large, points of the screen.
+    pub(super) fn of(arrangement: &Arrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
+        let Arrangement { theme, layout, swapped, learns, panels: [explore, compare, _] } = arrangement;
+        Self {
+            theme: *theme,
+            size,
+            hints,
+            layout: *layout,
+            swapped: *swapped,
+            learns: *learns,
+            side: explore.side.shown,
+            side_width: explore.side.width,
+            plots: explore.plots.shown,
+            plots_width: explore.plots.width,
+            compare_side: compare.side.shown,
+            compare_side_width: compare.side.width,
+            compare_plots: compare.plots.shown,
+            compare_plots_width: compare.plots.width,
+            recent: recent.to_vec(),
+        }
+    }
+
+    /// How the window is arranged; to explore, until it is laid out for what it was for last.
+    pub(super) fn arrangement(&self) -> Arrangement {
         let panel = |shown, width| Panel { shown, width };
-        Layout::ALL.map(|layout| {
-            let usual = Panels::usual(layout);
-            let (side, plots) = match layout {
-                Layout::Explore => (panel(self.side, self.side_width), panel(self.plots, self.plots_width)),
-                Layout::Compare => (
-                    panel(self.compare_side, self.compare_side_width),
-                    panel(self.compare_plots, self.compare_plots_width),
-                ),
-                Layout::Present => (usual.side, usual.plots),
-            };
-            Panels { side, plots, ..usual }
-        })
+        let explore = Panels { side: panel(self.side, self.side_width), plots: panel(self.plots, self.plots_width) };
+        let compare = Panels {
+            side: panel(self.compare_side, self.compare_side_width),
+            plots: panel(self.compare_plots, self.compare_plots_width),
+        };
+        let panels = [explore, compare, Panels::usual(Layout::Present)];
+        Arrangement { swapped: self.swapped, learns: self.learns, panels, ..Arrangement::usual(self.theme) }
     }
 
     /// With sizes that a window can have, whatever a file said.

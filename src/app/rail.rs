@@ -16,7 +16,7 @@ const WIDTH: f32 = 50.0;
 const BUTTON: egui::Vec2 = vec2(42.0, 30.0);
 
 /// A button that is on or off.
-struct Tool {
+struct Toggle {
     icon: Icon,
     /// Its name.
     label: &'static str,
@@ -25,12 +25,12 @@ struct Tool {
     switch: Switch,
 }
 
-const fn tool(switch: Switch, icon: Icon, label: &'static str, does: &'static str) -> Tool {
-    Tool { icon, label, does, switch }
+const fn tool(switch: Switch, icon: Icon, label: &'static str, does: &'static str) -> Toggle {
+    Toggle { icon, label, does, switch }
 }
 
 /// What the pointer does.
-const HANDS: [Tool; 3] = [
+const HANDS: [Toggle; 3] = [
     tool(
         Switch::Holding,
         Icon::Pointer,
@@ -47,16 +47,22 @@ const HANDS: [Tool; 3] = [
 ];
 
 /// What is shown of the machine.
-const LAYERS: [Tool; 3] = [
+const LAYERS: [Toggle; 3] = [
     tool(Switch::Dexterity, Icon::Ellipse, "dexterity", "Shade the workspace by how well the end effector moves"),
     tool(Switch::Snapshots, Icon::Fan, "snapshots", "Poses along the motion, as in Fig. 5"),
     tool(Switch::Pins, Icon::Pin, "pins", "What pins and bearings carry"),
 ];
 
 /// What is found out about it.
-const ANALYSES: [Tool; 2] = [
+const ANALYSES: [Toggle; 3] = [
     tool(Switch::Study, Icon::Bell, "tolerances", "What the bases of many machines feel, and the spectrum"),
     tool(Switch::Compare, Icon::Beside, "side by side", "The same task done in other ways"),
+    tool(
+        Switch::Given,
+        Icon::Samples,
+        "table",
+        "A motion of your own without reactions, or what a measured machine lacks of balance: from a table, CSV",
+    ),
 ];
 
 /// Draws it.
@@ -99,7 +105,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
     });
 }
 
-fn toggle(ui: &mut Ui, p: &Palette, tool: &Tool, view_state: &ViewState, commands: &mut Vec<Command>) {
+fn toggle(ui: &mut Ui, p: &Palette, tool: &Toggle, view_state: &ViewState, commands: &mut Vec<Command>) {
     let enabled = !tool.switch.is_of_machine() || view_state.view.shows_machine();
     let on = view_state.is_on(tool.switch);
     let only = if enabled { "" } else { "\n(in 2D and 3D)" };

@@ -43,9 +43,12 @@ pub fn show(
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 2, top: 12, bottom: 8 });
     let usual = (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round();
-    let salt = ("side", usual as u32, view_state.swapped);
-    let panel = if view_state.swapped { Panel::right(salt) } else { Panel::left(salt) };
-    let panel = panel.default_size(view_state.side.width.unwrap_or(usual)).size_range(220.0..=480.0).resizable(true);
+    let salt = ("side", usual as u32, view_state.arrangement.swapped);
+    let panel = if view_state.arrangement.swapped { Panel::right(salt) } else { Panel::left(salt) };
+    let panel = panel
+        .default_size(view_state.arrangement.now().side.width.unwrap_or(usual))
+        .size_range(220.0..=480.0)
+        .resizable(true);
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - BAR);
@@ -63,7 +66,7 @@ pub fn show(
             all::show(ui, facts, &p, commands);
         });
     });
-    view_state.side.made(shown.response.rect.width(), usual)
+    view_state.arrangement.now().side.made(shown.response.rect.width(), usual)
 }
 
 fn pose_constant(

@@ -4,6 +4,7 @@ mod beside;
 mod carry_out;
 mod changing;
 mod designing;
+mod given;
 mod opening;
 mod pass;
 mod time;
@@ -14,20 +15,23 @@ use std::sync::Arc;
 
 use super::background::Background;
 use super::change::Change;
+use super::given::assess::Given;
 use super::pace::Pace;
 use super::saving::Saving;
-use super::{Activity, Framing, Intro, Layout, LeftOff, Panels, Preferences, SessionCommand, ViewState};
+use super::{Activity, Framing, Intro, Layout, LeftOff, Preferences, SessionCommand, ViewState};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::query::{Queries, Whole, Workers};
+use crate::query::{Queries, Query, Whole, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Ahead, Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, SignalsOf};
 use crate::study::comparison::Comparison;
+use crate::study::fronts::FrontOf;
+use crate::study::lengths::Seeking;
 
 /// A session on display.
 pub struct AppState {
@@ -44,8 +48,14 @@ pub struct AppState {
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
+    /// Machines whose fronts are drawn beside that of the machine that is designed.
+    fronts: Vec<FrontOf>,
+    /// The lengths that are sought, or were found.
+    seeking: Option<<Seeking as Query>::Input>,
+    /// The table that was opened last.
+    given: Option<Given>,
     /// What is under way beside the window.
-    background: Background,
+    background: Background<Self>,
     /// Wall time not yet turned into steps, s.
     owed: f64,
     pace: Pace,
@@ -79,6 +89,9 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
+            given: None,
+            fronts: Vec::new(),
+            seeking: None,
             background,
             owed: 0.0,
             pace: Pace::default(),
@@ -94,11 +107,7 @@ impl AppState {
     /// The same as a person likes it, with the first minute if that is still to come.
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
-        self.view_state.theme = liked.theme;
-        self.view_state.kept = liked.panels();
-        let Panels { side, plots, .. } = self.view_state.kept[Layout::Explore as usize];
-        (self.view_state.side, self.view_state.plots, self.view_state.swapped) = (side, plots, liked.swapped);
-        self.view_state.learns = liked.learns;
+        self.view_state.arrangement = liked.arrangement();
         if liked.layout != Layout::Explore {
             self.view_state.lay_out(liked.layout);
             self.refresh();
@@ -128,26 +137,7 @@ impl AppState {
 
     /// How it is liked, to be remembered; of a window so large, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
-        let ViewState { theme, layout, swapped, learns, .. } = self.view_state;
-        let Panels { side, plots, .. } = self.view_state.panels(Layout::Explore);
-        let compare = self.view_state.panels(Layout::Compare);
-        Preferences {
-            theme,
-            size,
-            hints: self.hints,
-            layout,
-            swapped,
-            learns,
-            compare_side: compare.side.shown,
-            compare_side_width: compare.side.width,
-            compare_plots: compare.plots.shown,
-            compare_plots_width: compare.plots.width,
-            side: side.shown,
-            side_width: side.width,
-            plots: plots.shown,
-            plots_width: plots.width,
-            recent: self.saving.recent.clone(),
-        }
+        Preferences::of(&self.view_state.arrangement, size, self.hints, &self.saving.recent)
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -230,8 +220,8 @@ impl AppState {
 
     /// Whether a change is being made beside the window, and is in no count yet.
     fn is_making(&self) -> bool {
-        let change = self.background.change.as_ref().map(|((change, _), _)| change);
-        change.is_some_and(|change| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
+        let change = self.background.change.as_ref();
+        change.is_some_and(|(change, _)| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
     }
 
     /// Whether the window is to close.
@@ -251,33 +241,33 @@ impl AppState {
 
     /// What is under way beside the window, as far as it is spoken of.
     pub fn under_way(&self) -> Vec<Activity> {
-        self.background.all_under_way().map(|(activity, _)| activity).collect()
+        self.background.all_under_way().into_iter().map(|(activity, _)| activity).collect()
     }
 
     /// Says how something went.
     pub(super) fn tell(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
-            Ok(Some(news)) => self.view_state.message = Some((news, false)),
-            Err(problem) => self.view_state.message = Some((problem, true)),
+            Ok(Some(news)) => self.view_state.said.message = Some((news, false)),
+            Err(problem) => self.view_state.said.message = Some((problem, true)),
         }
     }
 
     /// Says something that the person did not ask for.
     pub(super) fn announce(&mut self, news: &str) {
-        self.view_state.message = Some((news.into(), false));
+        self.view_state.said.message = Some((news.into(), false));
     }
 
-    /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.
-    fn adjust(&mut self) {
-        let reach = self.views.stage().linkage().reach();
+    /// How many times the motion of the base is shown: as often as it takes to be seen, from as much of the run as is
+    /// known.
+    pub fn base_exaggeration(&self) -> f64 {
+        if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() {
+            return 1.0;
+        }
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
         let ahead = self.queries().last::<Ahead>().map_or_else(Totals::default, |totals| *totals);
         let motion = [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)];
-        self.view_state.enough_exaggeration = match self.session.scenario().base.moves() {
-            true => exaggeration(motion, reach),
-            false => 1.0,
-        };
+        exaggeration(motion, self.views.stage().linkage().reach())
     }
 
     /// The signals of the machine on display.
@@ -306,7 +296,7 @@ impl AppState {
         }
         // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the hand.
         let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
-        if !views.looks_like(&self.views) || (is_outlined && self.view_state.grabbed.is_none()) {
+        if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
         }
         self.views = views;
@@ -315,9 +305,10 @@ impl AppState {
     /// Shows what follows from the session as it is now.
     fn refresh(&mut self) {
         self.refresh_views();
-        self.adjust();
         self.refresh_study();
         self.refresh_comparison();
+        self.refresh_given();
+        self.refresh_seeking();
         self.collect();
     }
 }

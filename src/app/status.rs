@@ -5,7 +5,7 @@ use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 use super::facts::Facts;
 use super::theme::{colour, plain};
 use super::widgets::name;
-use super::{Activity, Command, SessionCommand, ViewState, WindowCommand};
+use super::{Activity, Command, SessionCommand, Tool, ViewState, WindowCommand};
 use crate::picture::numbers::signed;
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
@@ -16,8 +16,8 @@ use crate::simulation::frame::{Frame, Reach};
 
 /// Whether there is bad news.
 pub fn tells(session: &Session, view_state: &ViewState) -> bool {
-    let bad = matches!(view_state.message, Some((_, true))) || session.run().waiting().is_some();
-    (bad || fault(session.frame()).is_some()) && view_state.dialog.is_none()
+    let bad = matches!(view_state.said.message, Some((_, true))) || session.run().waiting().is_some();
+    (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
 }
 
 /// Where it stood last.
@@ -36,7 +36,7 @@ pub fn news(
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
-    let text = match (&view_state.message, &fault, &waiting, &view_state.dialog) {
+    let text = match (&view_state.said.message, &fault, &waiting, &view_state.open.dialog) {
         (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
@@ -59,7 +59,7 @@ pub fn news(
             if let Some((_, said)) = also {
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
-            let remedy = view_state.refused.as_ref().and_then(|refused| refused.remedy.clone());
+            let remedy = view_state.said.refused.as_ref().and_then(|refused| refused.remedy.clone());
             let mends = waits.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
             let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
@@ -195,7 +195,7 @@ pub fn show(
             if let Ok(map) = session.run().pose_space() {
                 facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
             }
-            let bad_news = matches!(view_state.message, Some((_, true)));
+            let bad_news = matches!(view_state.said.message, Some((_, true)));
             if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 // A narrow window keeps its room for what to do next.
@@ -222,10 +222,10 @@ pub fn show(
                     ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.dim))).truncate());
                     return;
                 }
-                let (text, tone) = match (&view_state.message, f.target.reach) {
+                let (text, tone) = match (&view_state.said.message, f.target.reach) {
                     (Some((_, true)), _) => (String::new(), p.reaction),
                     (Some((text, false)), _) => {
-                        let newest = session.branch_count().checked_sub(1).filter(|_| view_state.left_branch);
+                        let newest = session.branch_count().checked_sub(1).filter(|_| view_state.said.left_branch);
                         if let Some(branch) = newest {
                             let back = ui.button("show it").on_hover_text("Shows the branch; G leads there and back");
                             name(&back, "Show the branch");
@@ -255,10 +255,10 @@ pub fn show(
                         ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("no b reaches the target".into(), p.ink),
-                    (None, _) if view_state.stroke.is_some() => {
+                    (None, _) if matches!(view_state.tool, Tool::Draw(_)) => {
                         ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }
-                    (None, _) if view_state.pushing => {
+                    (None, _) if view_state.tool == Tool::Push => {
                         ("drag the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }
                     (None, _) if session.run().waiting().is_some() => {

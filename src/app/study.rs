@@ -179,7 +179,7 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
 }
 
 /// A plot that cannot be dragged or zoomed, with some space above and below.
-fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
+pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 

@@ -41,7 +41,7 @@ pub fn show(
     }
     // The middle of the handle goes from end to end less its radius.
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
-    let asked = view_state.naming.filter(|time| session.bookmark_at(*time).is_some());
+    let asked = view_state.open.naming.filter(|time| session.bookmark_at(*time).is_some());
     let mut named = false;
     for group in marks.on_line(length, f64::from(line.width())).iter() {
         let x = line.left() + line.width() * (group.time / length) as f32;
@@ -54,7 +54,7 @@ pub fn show(
         }
     }
     // It has gone meanwhile.
-    if view_state.naming.is_some() && !named {
+    if view_state.open.naming.is_some() && !named {
         commands.push(ViewChange::LeaveNaming.into());
     }
 }

@@ -156,7 +156,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     let help = ui.add(egui::Button::new(dim("?")).frame(false)).on_hover_text("Tour and keys (F1)");
     name(&help, "Help");
     if help.clicked() {
-        commands.push(ViewChange::Switch(Switch::Help, !view_state.help).into());
+        commands.push(ViewChange::Switch(Switch::Help, !view_state.open.help).into());
     }
     // Where there is room it reads as what it is.
     let words = if is_narrow(ui) { "Ctrl K" } else { "Search commands   Ctrl K" };
@@ -167,9 +167,9 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     if find.clicked() {
         commands.push(ViewChange::Switch(Switch::Finder, true).into());
     }
-    let word = if view_state.theme == Theme::Dark { "Light" } else { "Dark" };
+    let word = if view_state.arrangement.theme == Theme::Dark { "Light" } else { "Dark" };
     if IconButton::of(Icon::Halves, word, "Light or dark (L)").show_in(ui, &p, colour(p.dim)).clicked() {
-        commands.push(ViewChange::Theme(other(view_state.theme)).into());
+        commands.push(ViewChange::Theme(other(view_state.arrangement.theme)).into());
     }
     let record = IconButton::of(Icon::Record, "Record", "Write this run for the Rerun viewer (R)");
     if record.show_in(ui, &p, colour(p.reaction)).clicked() {
@@ -179,7 +179,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
 
 /// Asks for a file name.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
-    let Some(mut dialog) = view_state.dialog.clone() else { return };
+    let Some(mut dialog) = view_state.open.dialog.clone() else { return };
     let ([_, verb, hint], title) = (dialog.purpose.words(), dialog.purpose.title());
     let mut open = true;
     egui::Window::new(title)
@@ -208,9 +208,9 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                     ui.label(RichText::new("or drop a file on the window").weak());
                 }
             });
-            if let Some((text, true)) = &view_state.message {
+            if let Some((text, true)) = &view_state.said.message {
                 ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
             }
         });
-    view_state.dialog = open.then_some(dialog);
+    view_state.open.dialog = open.then_some(dialog);
 }

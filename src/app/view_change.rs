@@ -1,6 +1,6 @@
 //! What a [`ViewChange`] does to a [`ViewState`].
 
-use super::{Command, Finder, Framing, Layout, Switch, ViewChange, ViewState};
+use super::{Below, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::ViewKind;
 use crate::session::Session;
@@ -16,26 +16,31 @@ impl ViewState {
     /// Whether something is on.
     pub fn is_on(&self, switch: Switch) -> bool {
         match switch {
-            Switch::Side => self.side.shown,
-            Switch::Plots => self.plots.shown,
-            Switch::Panels => self.side.shown || self.plots.shown,
-            Switch::Swapped => self.swapped,
-            Switch::History => self.history,
-            Switch::Compare => self.compare,
-            Switch::Study => self.study,
+            Switch::Side => self.arrangement.now().side.shown,
+            Switch::Plots => self.arrangement.now().plots.shown,
+            Switch::Panels => {
+                [self.arrangement.now().side, self.arrangement.now().plots].iter().any(|panel| panel.shown)
+            }
+            Switch::Swapped => self.arrangement.swapped,
+            Switch::History => self.open.history,
+            Switch::Compare => self.below == Some(Below::Runs),
+            Switch::Study => self.below == Some(Below::Tolerances),
+            Switch::Given => self.below == Some(Below::Given),
             Switch::Pins => self.pins,
             Switch::Snapshots => self.snapshots,
-            Switch::Help => self.help,
-            Switch::Times => self.times,
-            Switch::Finder => self.finder.is_some(),
-            Switch::Equations => self.view == ViewKind::Design && self.plots.shown && self.learns,
+            Switch::Help => self.open.help,
+            Switch::Times => self.open.times,
+            Switch::Finder => self.open.finder.is_some(),
+            Switch::Equations => {
+                self.view == ViewKind::Design && self.arrangement.now().plots.shown && self.arrangement.learns
+            }
             Switch::Loop => self.loops,
             Switch::Exaggeration => self.exaggerates_base,
             Switch::TurnTask => self.turn_task,
             Switch::Dexterity => self.dexterity.is_some(),
-            Switch::Holding => self.stroke.is_none() && !self.pushing,
-            Switch::Drawing => self.stroke.is_some(),
-            Switch::Pushing => self.pushing,
+            Switch::Holding => self.tool == Tool::Hold,
+            Switch::Drawing => matches!(self.tool, Tool::Draw(_)),
+            Switch::Pushing => self.tool == Tool::Push,
         }
     }
 
@@ -43,7 +48,7 @@ impl ViewState {
     pub fn has(&self, switch: Switch, session: &Session) -> bool {
         match switch {
             Switch::Exaggeration => session.scenario().base.moves(),
-            Switch::History => self.layout != Layout::Present,
+            Switch::History => self.arrangement.layout != Layout::Present,
             _ => !switch.is_of_machine() || self.view.shows_machine(),
         }
     }
@@ -55,40 +60,49 @@ impl ViewState {
 
     fn turn(&mut self, switch: Switch, on: bool) {
         match switch {
-            Switch::Side => self.side.shown = on,
-            Switch::Plots => self.plots.shown = on,
-            Switch::Panels => (self.side.shown, self.plots.shown) = (on, on),
-            Switch::Swapped => self.swapped = on,
-            Switch::History => self.history = on,
-            // The window has room for one of the two panels.
-            Switch::Compare => (self.compare, self.study) = (on, self.study && !on),
-            Switch::Study => (self.study, self.compare) = (on, self.compare && !on),
+            Switch::Side => self.arrangement.now_mut().side.shown = on,
+            Switch::Plots => self.arrangement.now_mut().plots.shown = on,
+            Switch::Panels => {
+                let panels = self.arrangement.now_mut();
+                (panels.side.shown, panels.plots.shown) = (on, on);
+            }
+            Switch::Swapped => self.arrangement.swapped = on,
+            Switch::History => self.open.history = on,
+            Switch::Compare => self.put_below(Below::Runs, on),
+            Switch::Study => self.put_below(Below::Tolerances, on),
+            Switch::Given => self.put_below(Below::Given, on),
             Switch::Pins => self.pins = on,
             Switch::Snapshots => self.snapshots = on,
-            Switch::Help => self.help = on,
-            Switch::Times => self.times = on,
-            Switch::Finder => self.finder = on.then(Finder::default),
+            Switch::Help => self.open.help = on,
+            Switch::Times => self.open.times = on,
+            Switch::Finder => self.open.finder = on.then(Finder::default),
             Switch::Equations => {
-                self.learns = on;
+                self.arrangement.learns = on;
                 // The front is out of sight.
                 self.ghost = None;
                 if on {
-                    (self.plots.shown, self.view) = (true, ViewKind::Design);
+                    self.arrangement.now_mut().plots.shown = true;
+                    self.view = ViewKind::Design;
                 }
             }
             Switch::Loop => self.loops = on,
             Switch::Exaggeration => self.exaggerates_base = on,
             Switch::TurnTask => self.turn_task = on,
             Switch::Dexterity => self.dexterity = on.then_some(Measure::Det),
-            Switch::Holding => (self.stroke, self.pushing) = (None, false),
-            Switch::Drawing => {
-                self.stroke = on.then(Vec::new);
-                self.pushing &= !on;
-            }
-            Switch::Pushing => {
-                self.pushing = on;
-                self.stroke = self.stroke.take().filter(|_| !on);
-            }
+            Switch::Holding => self.tool = Tool::Hold,
+            Switch::Drawing if on => self.tool = Tool::Draw(Vec::new()),
+            Switch::Pushing if on => self.tool = Tool::Push,
+            Switch::Drawing | Switch::Pushing if self.is_on(switch) => self.tool = Tool::Hold,
+            Switch::Drawing | Switch::Pushing => {}
+        }
+    }
+
+    /// Shows something below the scene in the place of what is there, or takes it away.
+    fn put_below(&mut self, thing: Below, on: bool) {
+        match on {
+            true => self.below = Some(thing),
+            false if self.below == Some(thing) => self.below = None,
+            false => {}
         }
     }
 
@@ -97,7 +111,7 @@ impl ViewState {
             ViewChange::Switch(switch, on) => self.turn(switch, on),
             ViewChange::Kind(view) => self.view = view,
             ViewChange::Layout(layout) => self.lay_out(layout),
-            ViewChange::Theme(theme) => self.theme = theme,
+            ViewChange::Theme(theme) => self.arrangement.theme = theme,
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,
             ViewChange::Fit => self.framing[self.view as usize] = Framing::Wanted,
@@ -108,22 +122,22 @@ impl ViewState {
             }
             ViewChange::Mark(time) => self.mark = time,
             ViewChange::Charts(change) => self.charts.change(change),
-            ViewChange::Preview(b) => self.preview = b,
+            ViewChange::Preview(b) => self.pointed.preview = b,
             ViewChange::Ghost(i) => self.ghost = i,
             ViewChange::FrontBy(by) => self.front_by = by,
             ViewChange::Reveal(thing) => {
-                self.side.shown = true;
+                self.arrangement.now_mut().side.shown = true;
                 self.revealed = Some(thing);
             }
             ViewChange::LookUp(path) => {
-                self.side.shown = true;
+                self.arrangement.now_mut().side.shown = true;
                 if self.view == ViewKind::Design {
                     self.view = ViewKind::Flat;
                 }
                 self.looked_up = Some(path);
             }
-            ViewChange::LeaveNaming => self.naming = None,
-            ViewChange::Dialog(dialog) => self.dialog = dialog,
+            ViewChange::LeaveNaming => self.open.naming = None,
+            ViewChange::Dialog(dialog) => self.open.dialog = dialog,
         }
     }
 }

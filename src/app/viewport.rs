@@ -10,7 +10,8 @@ use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
-    Command, Layout, SessionCommand, Switch, ViewChange, ViewState, coordinates, corner, framing, menu, present, status,
+    Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, menu, present,
+    status,
 };
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
@@ -28,7 +29,7 @@ use crate::study::comparison::Comparison;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    views: &Views,
+    (views, exaggeration): (&Views, f64),
     (comparison, intro, chosen): (Option<&Comparison>, Option<&Intro>, &[Offered]),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
@@ -49,16 +50,16 @@ pub fn show(
         let mut covered = vec![corner::strip(rect)];
         covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, session, both.is_some())));
         covered.extend(coordinates::covers(rect, views, view_state));
-        let presents = view_state.layout == Layout::Present;
+        let presents = view_state.arrangement.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
-        covered.extend(view_state.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
+        covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
         framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
-        let exaggeration = Exaggeration::Times(view_state.base_exaggeration());
+        let exaggeration = Exaggeration::Times(exaggeration);
         let shown = Shown::of(session.frame(), exaggeration);
         let spot = Spot { rect, camera: *view_state.camera() };
-        if view_state.stroke.is_some() && view_state.view.shows_machine() {
+        if matches!(view_state.tool, Tool::Draw(_)) && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             let demonstrates = intro.is_some_and(Intro::demonstrates);
@@ -66,7 +67,7 @@ pub fn show(
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
-            menu::show(&response, session, (view_state.hot, at), commands);
+            menu::show(&response, session, (view_state.pointed.hot, at), commands);
             tell(&response, session, views, view_state);
             // What misses the machine in the demonstration moves nothing.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
@@ -74,13 +75,18 @@ pub fn show(
             }
         }
         let options = ViewOptions {
-            theme: view_state.theme,
+            theme: view_state.arrangement.theme,
             dexterity: view_state.dexterity,
-            hot: view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit),
-            held: view_state.held,
-            preview_b: view_state.preview,
-            stroke: view_state.stroke.clone().unwrap_or_default(),
-            refused: view_state.refused.as_ref().and_then(|r| r.curve.clone()),
+            hot: view_state
+                .gesture
+                .grabbed
+                .map(|pick| pick.handle)
+                .or(view_state.pointed.hot)
+                .or(view_state.pointed.lit),
+            held: view_state.gesture.held,
+            preview_b: view_state.pointed.preview,
+            stroke: drawn(&view_state.tool),
+            refused: view_state.said.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
             others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
             exaggeration,
@@ -91,7 +97,7 @@ pub fn show(
             invites: session.follows_hands(),
             compares: both.is_none(),
             weights: chosen.to_vec(),
-            links: view_state.lit_links.clone(),
+            links: view_state.pointed.lit_links.clone(),
             scale: None,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
@@ -112,7 +118,7 @@ pub fn show(
         if let Some(intro) = both {
             intro.caption(ui, rect, session.frame(), view_state);
         }
-        if let Some(tour) = &view_state.tour {
+        if let Some(tour) = &view_state.open.tour {
             tour.show(ui.ctx(), rect, session, view_state, commands);
         }
         if let Some(intro) = intro {
@@ -178,15 +184,15 @@ fn force(session: &Session) -> Option<[f64; 2]> {
 fn tell(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
     let (ctx, id) = (&response.ctx, response.id.with("told of"));
     let tooltip = || Tooltip::always_open(ctx.clone(), response.layer_id, id, PopupAnchor::Pointer).gap(18.0);
-    if let Some(Pick { handle: Handle::Link(i), .. }) = view_state.grabbed {
+    if let Some(Pick { handle: Handle::Link(i), .. }) = view_state.gesture.grabbed {
         if let Some(card) = Card::turned(i, session) {
             tooltip().show(|ui| card.show(ui, &view_state.palette()));
         }
         return;
     }
     let listed = egui::Popup::is_any_open(ctx);
-    let quiet = view_state.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
-    let Some(thing) = view_state.hot.filter(|_| quiet) else {
+    let quiet = view_state.gesture.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
+    let Some(thing) = view_state.pointed.hot.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
         return;
     };
@@ -204,6 +210,14 @@ fn tell(response: &egui::Response, session: &Session, views: &Views, view_state:
     }
 }
 
+/// What has been drawn so far, m.
+fn drawn(tool: &Tool) -> Vec<[f64; 2]> {
+    match tool {
+        Tool::Draw(stroke) => stroke.clone(),
+        Tool::Hold | Tool::Push => Vec::new(),
+    }
+}
+
 /// A path drawn by hand: from where the button goes down to where it comes up.
 fn draw(
     ui: &Ui,
@@ -214,7 +228,7 @@ fn draw(
     commands: &mut Vec<Command>,
 ) {
     ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-    let Some(stroke) = &mut view_state.stroke else { return };
+    let Tool::Draw(stroke) = &mut view_state.tool else { return };
     let place = |pos| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
     if response.drag_started_by(PointerButton::Primary) {
         stroke.clear();
@@ -239,7 +253,7 @@ fn draw(
 fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, view_state: &mut ViewState) {
     let height = f64::from(rect.height().max(1.0));
     let delta = response.drag_delta();
-    if view_state.grabbed.is_none() && delta != Vec2::ZERO {
+    if view_state.gesture.grabbed.is_none() && delta != Vec2::ZERO {
         let (x, y) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
         let aspect = f64::from(rect.width()) / height;
         let pans = matches!(view_state.view, ViewKind::Flat | ViewKind::Design)

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use stillbase::files::{NewFile, WriteError};
 use stillbase::session::scenario::Scenario;
-use stillbase::study::comparison::{COLUMNS, Candidate, Compared, DESIGN, Design, Summary, alternatives};
+use stillbase::study::comparison::{COLUMNS, DESIGN, Row, Rows, Summary, alternatives};
 
 use super::exit::say;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, scenario, told_apart};
 use super::output::{Format, Table, check_output};
 use stillbase::settings::number::{fixed, nine_digits};
 use stillbase::settings::text::sheet_cell;
@@ -46,67 +46,7 @@ pub struct Compare {
 
 #[derive(Serialize)]
 struct Answer {
-    runs: Vec<Row>,
-    /// The runs have different machines.
-    #[serde(skip)]
-    differ: bool,
-}
-
-struct Row {
-    name: String,
-    way: Option<&'static str>,
-    outcome: Result<Summary, String>,
-    /// Its machine beside that of the first run.
-    design: Option<Design>,
-}
-
-/// The figures of a design, and why some are not given.
-struct Figures<'a>(&'a Design);
-
-impl Serialize for Figures<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        use serde::ser::SerializeMap;
-        let mut map = serializer.serialize_map(None)?;
-        for column in DESIGN {
-            if let Some(value) = (column.value)(self.0) {
-                map.serialize_entry(column.key, &value)?;
-            }
-        }
-        if let Some(why) = &self.0.apart {
-            map.serialize_entry("apart", why)?;
-        }
-        map.end()
-    }
-}
-
-impl Serialize for Row {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        use serde::ser::SerializeMap;
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("scenario", &self.name)?;
-        if let Some(way) = self.way {
-            map.serialize_entry("way", way)?;
-        }
-        match &self.outcome {
-            Ok(summary) => {
-                for column in COLUMNS {
-                    if let Some(value) = (column.value)(summary) {
-                        map.serialize_entry(column.key, &value)?;
-                    }
-                }
-                map.serialize_entry("reactionless", &summary.reactionless)?;
-                map.serialize_entry("verdict", &summary.verdict.sentence())?;
-                if let Some(design) = &self.design {
-                    map.serialize_entry("design", &Figures(design))?;
-                }
-                if let Some(fault) = &summary.fault {
-                    map.serialize_entry("audit", fault)?;
-                }
-            }
-            Err(why) => map.serialize_entry("refused", why)?,
-        }
-        map.end()
-    }
+    runs: Rows,
 }
 
 impl Compare {
@@ -117,42 +57,31 @@ impl Compare {
             None => "",
         };
         let scenarios = self.scenarios()?;
-        let (mut runs, mut good) = (Vec::new(), Vec::new());
-        let (mut first, mut differ) = (None::<Candidate>, false);
-        for (way, scenario) in scenarios {
-            let outcome = Compared::of(scenario.clone()).map_err(|why| why.to_string());
-            let design = outcome.as_ref().ok().map(|run| {
-                let first = first.get_or_insert_with(|| run.candidate.clone());
-                differ |= !run.candidate.is_alike(first);
-                run.candidate.beside(first)
-            });
-            let outcome = outcome.map(|run| run.summary);
-            if let Ok(summary) = &outcome {
-                if let Some(fault) = &summary.fault {
-                    say(format!("{}: audit failed: {fault}", scenario.name));
-                }
-                good.push(scenario.clone());
-            }
-            runs.push(Row { name: scenario.name, way, outcome, design });
-        }
-        if let [Row { name, outcome: Err(why), .. }] = &runs[..] {
+        let mut runs = Rows::default();
+        scenarios.iter().for_each(|(way, scenario)| runs.run(*way, scenario));
+        let faults =
+            || runs.rows().iter().filter_map(|row| Some((&row.name, row.outcome.as_ref().ok()?.fault.as_ref()?)));
+        faults().for_each(|(name, fault)| say(format!("{name}: audit failed: {fault}")));
+        let good = runs.rows().iter().zip(scenarios).filter(|(row, _)| row.outcome.is_ok());
+        let good: Vec<Scenario> = good.map(|(_, (_, scenario))| scenario).collect();
+        if let [Row { name, outcome: Err(why), .. }] = runs.rows() {
             return Err(Failure::NoAnswer(format!("{name}: {why}")));
         }
         if good.is_empty() {
-            let why = runs.iter().find_map(|r| r.outcome.as_ref().err()).cloned().unwrap_or_default();
+            let why = runs.rows().iter().find_map(|r| r.outcome.as_ref().err()).cloned().unwrap_or_default();
             return Err(Failure::NoAnswer(format!("none of these can be done: {why}")));
         }
         match &self.output {
             Some(file) if ending == "rrd" => self.record(&good, file)?,
-            Some(file) => self.csv(&runs, file)?,
+            Some(file) => self.csv(runs.rows(), file)?,
             None => {}
         }
-        let fault = runs.iter().find_map(|r| Some((r.name.clone(), r.outcome.as_ref().ok()?.fault.clone()?)));
-        self.format.print(&Answer { runs, differ }, |answer| match answer.differ {
-            true => format!("{}\n{}", table(answer), designs(answer)),
-            false => table(answer),
+        let fault = faults().next().map(|(name, why)| Failure::untrusted(name, why));
+        self.format.print(&Answer { runs }, |Answer { runs }| match runs.have_designs() {
+            true => format!("{}\n{}", table(runs.rows()), designs(runs.rows())),
+            false => table(runs.rows()),
         })?;
-        fault.map_or(Ok(()), |(name, why)| Err(Failure::untrusted(&name, why)))
+        fault.map_or(Ok(()), Err)
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
@@ -163,11 +92,7 @@ impl Compare {
         let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
         for name in &self.scenarios {
             let mut next = scenario(name, &self.settings)?;
-            let (own, mut count) = (next.name.clone(), 1);
-            while all.iter().any(|(_, s)| s.name == next.name) {
-                count += 1;
-                next.name = format!("{own}-{count}");
-            }
+            next.name = told_apart(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
             all.push((None, next));
         }
         Ok(all)
@@ -225,15 +150,15 @@ impl Compare {
 }
 
 /// The machines of the runs, each beside that of the first; columns that hold nothing are left out.
-fn designs(answer: &Answer) -> String {
-    let all = || answer.runs.iter().filter_map(|row| Some((row, row.design.as_ref()?)));
+fn designs(rows: &[Row]) -> String {
+    let all = || rows.iter().filter_map(|row| Some((row, row.design.as_ref()?)));
     let columns: Vec<_> = DESIGN.iter().filter(|c| all().any(|(_, design)| (c.value)(design).is_some())).collect();
     let heads = columns.iter().map(|c| if c.unit == "1" { c.head.into() } else { format!("{} {}", c.head, c.unit) });
     let mut table = Table::new(["machine of".to_owned()].into_iter().chain(heads));
     let mut apart = String::new();
     for (row, design) in all() {
         let cells = columns.iter().map(|c| (c.value)(design).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
-        let name = row.way.unwrap_or(&row.name);
+        let name = row.title();
         table.row([name.to_owned()].into_iter().chain(cells));
         if let Some(why) = &design.apart {
             apart += &format!("{name}: {why}\n");
@@ -243,8 +168,8 @@ fn designs(answer: &Answer) -> String {
 }
 
 /// Runs downwards, figures across; columns that hold nothing are left out.
-fn table(answer: &Answer) -> String {
-    let good: Vec<&Summary> = answer.runs.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
+fn table(rows: &[Row]) -> String {
+    let good: Vec<&Summary> = rows.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
     let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);
     let columns: Vec<_> = COLUMNS
         .iter()
@@ -254,8 +179,8 @@ fn table(answer: &Answer) -> String {
     let heads = columns.iter().map(|c| format!("{} {}", c.head, c.unit));
     let mut table = Table::new(["run".to_owned()].into_iter().chain(heads).chain(["reactionless".into()]));
     let mut refused = String::new();
-    for row in &answer.runs {
-        let name = row.way.unwrap_or(&row.name).to_owned();
+    for row in rows {
+        let name = row.title().to_owned();
         match &row.outcome {
             Ok(s) => {
                 let cells = columns.iter().map(|c| (c.value)(s).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));

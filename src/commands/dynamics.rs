@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use stillbase::mechanics::dynamics::{
-    Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix,
-};
+use stillbase::mechanics::dynamics::Surroundings;
+use stillbase::mechanics::loads::Loads;
 use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::mechanics::planar::PerDrive;
 use stillbase::settings::range::shortened;
 
 use super::failure::Failure;
@@ -45,17 +44,7 @@ struct State {
 
 #[derive(Serialize)]
 struct Answer {
-    results: Vec<Outcome>,
-}
-
-#[derive(Serialize)]
-struct Outcome {
-    mass_matrix: Vec<Vec<f64>>,
-    torque: Vec<f64>,
-    base_force: [f64; 2],
-    base_moment: f64,
-    com: [f64; 2],
-    angular_momentum_about_base: f64,
+    results: Vec<Loads>,
 }
 
 impl Dynamics {
@@ -65,24 +54,8 @@ impl Dynamics {
         let inertia = Inertia::of(&machine);
         let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
         let states = states(&self.states, &machine)?;
-        let results = states.iter().map(|[q, qd, qdd]| outcome(&inertia, &around, q, qd, qdd)).collect();
+        let results = states.iter().map(|[q, qd, qdd]| Loads::of(&inertia, &around, q, qd, qdd)).collect();
         self.format.print(&Answer { results }, |answer| tables(answer, inertia.drives()))
-    }
-}
-
-fn outcome(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Outcome {
-    let e = DriveAngles(*q).units();
-    let (h, _) = mass_matrix(inertia, &e, qd);
-    let (torque, wrench) = inverse_with_wrench(inertia, &e, qd, qdd, around);
-    let (total, com) = (wrench.total(), centre_of_mass(inertia, &e));
-    let n = inertia.drives();
-    Outcome {
-        mass_matrix: (0..n).map(|k| (0..n).map(|l| h.get(k, l)).collect()).collect(),
-        torque: inertia.motors().torques(&torque).to_vec(),
-        base_force: [total.force.re, total.force.im],
-        base_moment: total.moment,
-        com: [com.re, com.im],
-        angular_momentum_about_base: angular_momentum(inertia, &e, qd),
     }
 }
 

@@ -109,6 +109,30 @@ impl MachineArgument {
     pub fn load(&self) -> Result<Machine, Failure> {
         self.settings.apply(stillbase::files::machine(&self.name, None)?)
     }
+
+    /// It and others beside it with the same changes, each under a name of its own.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), with what the machine is called on the command line.
+    pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
+        let mut all: Vec<(String, Machine)> = Vec::new();
+        for called in std::iter::once(&self.name).chain(others) {
+            let machine = stillbase::files::machine(called, None)?;
+            let machine = self.settings.apply(machine).map_err(|why| why.of(called))?;
+            all.push((told_apart(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
+        }
+        Ok(all)
+    }
+}
+
+/// A name that is not taken: its own, or that with the first number that tells it apart.
+pub fn told_apart(own: &str, taken: impl Fn(&str) -> bool) -> String {
+    let (mut name, mut count) = (own.to_owned(), 1);
+    while taken(&name) {
+        count += 1;
+        name = format!("{own}-{count}");
+    }
+    name
 }
 
 /// A scenario by name or file, with settings laid over it before anything is planned, for a command that draws no

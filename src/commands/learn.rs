@@ -1,15 +1,16 @@
 //! `stillbase learn`
 
 use clap::Args;
-use serde::Serialize;
 use stillbase::exchange::mjcf::middle;
 use stillbase::mechanics::balance::Preset;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
+use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Refusal, Session, replay_while};
-use stillbase::study::equations::{Cell, Equation, Line, NUMBERS, Origin, State, Term, When, cells, equations, plain};
+use stillbase::study::equations::{
+    Cell, Equation, Line, NUMBERS, NoInstant, State, Stated, When, cells, equations, plain,
+};
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, no_use, set};
@@ -77,68 +78,6 @@ enum Asked {
     Machine(Box<Machine>),
 }
 
-#[derive(Serialize)]
-struct Answer {
-    machine: String,
-    #[serde(flatten)]
-    when: Moment,
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    qdd: Vec<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    b: Option<f64>,
-    equations: Vec<OfEquation>,
-}
-
-/// The instant, s: of the run, or of the planned motion.
-#[derive(Serialize)]
-struct Moment {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    time: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    planned_time: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct OfEquation {
-    number: &'static str,
-    title: &'static str,
-    says: String,
-    form: String,
-    notes: Vec<String>,
-    /// Why it has no meaning for this machine.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    why_not: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    holds: Option<bool>,
-    lines: Vec<OfLine>,
-}
-
-#[derive(Serialize)]
-struct OfLine {
-    name: String,
-    unit: &'static str,
-    left: f64,
-    right: f64,
-    holds: bool,
-    left_terms: Vec<OfTerm>,
-    right_terms: Vec<OfTerm>,
-}
-
-#[derive(Serialize)]
-struct OfTerm {
-    /// With its sign.
-    symbol: String,
-    value: f64,
-    parts: Vec<OfPart>,
-}
-
-#[derive(Serialize)]
-struct OfPart {
-    from: String,
-    value: f64,
-}
-
 impl Learn {
     /// Prints the equations.
     pub fn run(&self) -> Result<(), Failure> {
@@ -146,19 +85,7 @@ impl Learn {
         let all = equations(&machine, &state, Preset::Table1);
         let asked = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
         let chosen: Vec<&Equation> = all.iter().filter(asked).collect();
-        let answer = Answer {
-            machine: machine.name().into(),
-            when: match state.when {
-                When::Run(time) => Moment { time: Some(time), planned_time: None },
-                When::Plan(time) => Moment { time: None, planned_time: Some(time) },
-                When::Given => Moment { time: None, planned_time: None },
-            },
-            q: state.q.to_vec(),
-            qd: state.qd.to_vec(),
-            qdd: state.qdd.to_vec(),
-            b: state.b,
-            equations: chosen.iter().map(|equation| of_equation(&machine, equation)).collect(),
-        };
+        let answer = Stated::of(&machine, &state, chosen.iter().copied());
         self.format.print(&answer, |_| {
             let texts: Vec<String> = chosen.iter().map(|equation| text(equation)).collect();
             format!("{}\n\n{}", head(&machine, &state), texts.join("\n"))
@@ -213,21 +140,10 @@ impl Learn {
             let session = Session::open(scenario.clone())?;
             return Ok(State::of(session.run(), session.frame()));
         };
-        let (mut found, mut end) = (None, 0.0);
-        let done = replay_while(scenario, |_, frame| {
-            end = frame.time;
-            let is_there = frame.time >= at - 0.5 * scenario.step;
-            found = is_there.then(|| State::now(frame));
-            !is_there
-        });
-        match (found, done) {
-            (Some(state), _) => Ok(state),
-            (None, Err(why)) if !matches!(why, Refusal::Stopped) => Err(why.into()),
-            _ => Err(Failure::wrong_input(format!(
-                "--at {at}: want a time up to the end of the run, {} s",
-                fixed(end, 3)
-            ))),
-        }
+        State::at(scenario, at).map_err(|why| match why {
+            NoInstant::Refused(why) => why.into(),
+            later => Failure::wrong_input(format!("--at {at}: {later}")),
+        })
     }
 }
 
@@ -318,38 +234,4 @@ fn both(cell: &Cell<'_>) -> [String; 2] {
         (sign, text) => format!("{sign} {text}"),
     };
     [joined(cell.sign, &plain(cell.symbol)), joined(cell.number_sign, &cell.number)]
-}
-
-fn of_equation(machine: &Machine, equation: &Equation) -> OfEquation {
-    OfEquation {
-        number: equation.number,
-        title: equation.title,
-        says: plain(equation.says),
-        form: plain(equation.form),
-        notes: equation.notes.iter().map(|note| plain(note)).collect(),
-        why_not: equation.lines.as_ref().err().cloned(),
-        holds: equation.holds(),
-        lines: equation.lines.iter().flatten().map(|line| of_line(machine, line)).collect(),
-    }
-}
-
-fn of_line(machine: &Machine, line: &Line) -> OfLine {
-    let [left, right] = line.sides();
-    let terms = |terms: &[Term]| terms.iter().map(|term| of_term(machine, term)).collect();
-    OfLine {
-        name: line.name.clone(),
-        unit: line.unit,
-        left,
-        right,
-        holds: line.holds(),
-        left_terms: terms(&line.left),
-        right_terms: terms(&line.right),
-    }
-}
-
-fn of_term(machine: &Machine, term: &Term) -> OfTerm {
-    let sign = if term.is_negative { "−" } else { "" };
-    let parts = term.parts.iter().filter(|(_, value)| *value != 0.0);
-    let part = |(origin, value): &(Origin, f64)| OfPart { from: origin.words(machine), value: *value };
-    OfTerm { symbol: format!("{sign}{}", plain(&term.symbol)), value: term.value, parts: parts.map(part).collect() }
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError};
-use stillbase::session::felt;
-use stillbase::study::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, Window};
+use stillbase::study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
+use stillbase::study::spectrum::{JitterLimit, Window};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -58,55 +58,22 @@ pub struct SpectrumOf {
     format: Format,
 }
 
-/// One value for each axis.
-#[derive(Serialize)]
-struct Axes<T> {
-    force_x: T,
-    force_y: T,
-    moment: T,
-}
-
-impl<T> Axes<T> {
-    fn map<U>(&self, f: impl Fn(&T) -> U) -> Axes<U> {
-        Axes { force_x: f(&self.force_x), force_y: f(&self.force_y), moment: f(&self.moment) }
-    }
-
-    fn named(&self) -> [(&'static str, &'static str, &T); 3] {
-        [("f_Bx", "N", &self.force_x), ("f_By", "N", &self.force_y), ("n_B", "N m", &self.moment)]
-    }
-}
-
-#[derive(Serialize)]
-struct Axis {
-    unit: &'static str,
-    /// Of the samples, all alike.
-    rms: f64,
-    /// As the window weighs the samples: where the cumulative RMS ends.
-    weighted_rms: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    limit: Option<JitterVerdict>,
-}
-
 #[derive(Serialize)]
 struct Answer {
-    scenario: String,
-    window: Window,
-    samples: usize,
-    step: f64,
-    resolution: f64,
-    axes: Axes<Axis>,
-    frequency: Vec<f64>,
-    density: Axes<Vec<f64>>,
-    cumulative_rms: Axes<Vec<f64>>,
+    #[serde(flatten)]
+    of: BaseSpectrum,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     audit_failed: Option<String>,
 }
 
-impl From<SpectrumError> for Failure {
-    fn from(e: SpectrumError) -> Self {
-        Self::no_answer(e)
+/// A run that cannot be done is called by its scenario.
+fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
+    match why {
+        NoBaseSpectrum::Run(why) => Failure::from(why).of(scenario),
+        NoBaseSpectrum::Spectrum(why) => Failure::no_answer(why),
+        beyond @ NoBaseSpectrum::Beyond { .. } => Failure::wrong_input(beyond),
     }
 }
 
@@ -120,66 +87,21 @@ impl SpectrumOf {
         if scenario.base.wheel.is_some() {
             say(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
         }
-        let ([force_x, force_y, moment], fault) = felt(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
-        let course = Axes { force_x, force_y, moment };
-        let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, self.window);
-        let spectra =
-            Axes { force_x: of(&course.force_x)?, force_y: of(&course.force_y)?, moment: of(&course.moment)? };
-        // Of the run itself: a window weighs its middle.
-        let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
-        let axis = |unit, samples: &[f64], spectrum: &Spectrum, limit: &Option<JitterLimit>| {
-            let verdict = limit.as_ref().map(|limit| spectrum.against(limit).ok_or_else(|| beyond(limit, spectrum)));
-            let (rms, weighted_rms) = (rms(samples), spectrum.rms());
-            Ok::<_, Failure>(Axis { unit, rms, weighted_rms, limit: verdict.transpose()? })
-        };
+        let failed = |why| failed(why, &scenario.name);
+        let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
         if let Some(file) = &self.output {
-            write(file, self.force, &spectra)?;
+            write(file, self.force, &of)?;
             say(format!("wrote {}", file.display()));
         }
-        let frequency = spectra.moment.frequency.clone();
-        let answer = Answer {
-            scenario: scenario.name.clone(),
-            window: self.window,
-            samples: course.moment.len(),
-            step: scenario.step,
-            resolution: frequency.get(1).copied().unwrap_or(0.0),
-            axes: Axes {
-                force_x: axis("N", &course.force_x, &spectra.force_x, &self.limit_force)?,
-                force_y: axis("N", &course.force_y, &spectra.force_y, &self.limit_force)?,
-                moment: axis("N m", &course.moment, &spectra.moment, &self.limit_moment)?,
-            },
-            frequency,
-            density: spectra.map(|s| s.density.clone()),
-            cumulative_rms: spectra.map(|s| s.cumulative_rms.clone()),
-            file: self.output.as_ref().map(|file| file.display().to_string()),
-            audit_failed: fault.map(|lamp| lamp.to_string()),
-        };
-        self.format.print(&answer, |answer| text(answer, &spectra))?;
-        trusted(&answer.scenario, answer.audit_failed)
+        of.judge(self.limit_force.as_ref(), self.limit_moment.as_ref()).map_err(failed)?;
+        let file = self.output.as_ref().map(|file| file.display().to_string());
+        let answer = Answer { file, audit_failed: of.fault.clone(), of };
+        self.format.print(&answer, |answer| text(&answer.of))?;
+        trusted(&answer.of.scenario, answer.audit_failed)
     }
 }
 
-fn beyond(limit: &JitterLimit, spectrum: &Spectrum) -> Failure {
-    let ends = [limit.points().first(), limit.points().last()].map(|p| p.map_or(0.0, |p| p.0));
-    let [first, last] = [spectrum.frequency.get(1), spectrum.frequency.last()].map(|f| f.copied().unwrap_or(0.0));
-    Failure::wrong_input(format!(
-        "a limit from {} to {} Hz holds at no line of the spectrum, {} to {} Hz by {}: want one that does",
-        ends[0],
-        ends[1],
-        fixed(first, 3),
-        fixed(last, 3),
-        fixed(first, 3),
-    ))
-}
-
-/// The frequency below which a share of the power lies, Hz.
-fn below(spectrum: &Spectrum, share: f64) -> f64 {
-    let wanted = share.sqrt() * spectrum.rms();
-    let at = spectrum.cumulative_rms.iter().position(|r| *r >= wanted).unwrap_or(0);
-    spectrum.frequency.get(at).copied().unwrap_or(0.0)
-}
-
-fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
+fn text(answer: &BaseSpectrum) -> String {
     let window = match answer.window {
         Window::Hann => "Hann window",
         Window::Rectangular => "no window",
@@ -195,15 +117,14 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         "99 % below Hz",
     ])
     .with_words(1);
-    for ((name, unit, spectrum), (_, _, axis)) in spectra.named().into_iter().zip(answer.axes.named()) {
-        let lines = spectrum.frequency.iter().zip(&spectrum.density);
-        let (at, most) = lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or((0.0, 0.0), |(f, d)| (*f, *d));
-        let frequencies = [at, below(spectrum, 0.5), below(spectrum, 0.99)].map(|f| fixed(f, 3));
+    for ((name, unit, spectrum), (_, _, axis)) in answer.spectra.named().into_iter().zip(answer.axes.named()) {
+        let [at, most] = spectrum.greatest();
+        let frequencies = [at, spectrum.below(0.5), spectrum.below(0.99)].map(|f| fixed(f, 3));
         let sizes = [axis.rms, axis.weighted_rms, most].map(|x| shown(x, 6));
         let row = [name.to_owned(), unit.to_owned()].into_iter().chain(sizes);
         table.row(row.chain(frequencies));
     }
-    let (samples, step, resolution) = (counted(answer.samples, "sample"), answer.step, fixed(answer.resolution, 3));
+    let (samples, step, resolution) = (counted(answer.samples, "sample"), answer.step, fixed(answer.resolution(), 3));
     let head = format!("{} · {samples} by {step} s, {window}, lines by {resolution} Hz", answer.scenario);
     let mut verdicts =
         Table::new(["limit", "unit", "kept", "worst at Hz", "density", "limit", "density/limit"]).with_words(1);
@@ -225,17 +146,17 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
     if any { format!("{head}\n\n{table}{why}\n{verdicts}") } else { format!("{head}\n\n{table}{why}") }
 }
 
-fn write(file: &Path, force: bool, spectra: &Axes<Spectrum>) -> Result<(), Failure> {
+fn write(file: &Path, force: bool, of: &BaseSpectrum) -> Result<(), Failure> {
     let failed = |e: csv::Error| match e.into_kind() {
         csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
         other => Failure::wrong_input(format!("{}: {other:?}", file.display())),
     };
     let mut csv = csv::Writer::from_writer(NewFile::create(file, force)?);
-    let heads = spectra.named().map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
+    let heads = of.spectra.named().map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
     let head = ["frequency Hz".to_owned()].into_iter().chain(heads.into_iter().flatten());
     csv.write_record(head).map_err(failed)?;
-    for (m, frequency) in spectra.moment.frequency.iter().enumerate() {
-        let columns = spectra.named().map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
+    for (m, frequency) in of.frequency().iter().enumerate() {
+        let columns = of.spectra.named().map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
         csv.serialize((frequency, columns)).map_err(failed)?;
     }
     let out = csv.into_inner().map_err(|e| failed(e.into_error().into()))?;

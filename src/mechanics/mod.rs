@@ -5,5 +5,6 @@ pub mod counterweights;
 pub mod dynamics;
 pub mod joint_forces;
 pub mod kinematics;
+pub mod loads;
 pub mod machine;
 pub mod planar;

@@ -12,7 +12,7 @@ use crate::mechanics::counterweights::{
 };
 use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine};
 use crate::session::scenario::Scenario;
-use crate::settings::change::{DEFAULT, join, leaves, one};
+use crate::settings::change::{DEFAULT, at, join, leaves, one};
 
 /// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
 const MASS: f64 = 1.0;
@@ -202,6 +202,35 @@ pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     }
     let follows = next.design.followed(&next.machine, &next.machine, &Table::new())?;
     Ok(Edit::Set { change: join(follows, change) })
+}
+
+/// The edit that makes a machine another one with the same links: numbers of these, lengths, and counterweights; none where
+/// it is that.
+pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
+    let (was, is) = (scenario.machine.spec(), of.spec());
+    let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
+        let length = |link: &Link| match link.length {
+            Length::Metres(x) => Some(x),
+            Length::Named(_) => None,
+        };
+        let numbers = [
+            ("mass", Some(was.mass), Some(is.mass)),
+            ("com", Some(was.com), Some(is.com)),
+            ("com_normal", Some(was.com_normal), Some(is.com_normal)),
+            ("inertia", Some(was.inertia), Some(is.inertia)),
+            ("length", length(was), length(is)),
+        ];
+        let changed = numbers.into_iter().filter(|(_, was, is)| was != is);
+        changed.filter_map(|(what, _, is)| Some(at(&["link", &was.name, what], is?)))
+    });
+    let lengths = is.lengths.iter().filter(|(name, x)| was.lengths.get(*name) != Some(x));
+    let lengths = lengths.map(|(name, x)| at(&["length", name], *x));
+    let change = links.chain(lengths).fold(Table::new(), |all, one| join(all, &one));
+    let change = match weights_of(scenario, of) {
+        Edit::Set { change: weights } if was.counterweights != is.counterweights => join(change, &weights),
+        _ => change,
+    };
+    (!change.is_empty()).then_some(Edit::Set { change })
 }
 
 /// The edit that gives a machine the counterweights of another, what that holds, with which they balance it, and the

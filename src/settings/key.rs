@@ -249,3 +249,40 @@ fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
         value => list.extend(change::number(value).map(|x| range.check(path.to_owned(), x))),
     }
 }
+
+/// Keys in words, those of one thing together: `link.NAME.(com|mass)`, `gravity`.
+pub fn in_words(paths: impl IntoIterator<Item = &'static str>) -> Vec<String> {
+    // What stands before the last part, and all that stand behind that.
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for path in paths {
+        let named = path.rsplit_once('.').filter(|(_, field)| *field != "*");
+        let (head, field) = named.unwrap_or((path, ""));
+        match groups.iter_mut().find(|(known, _)| *known == head) {
+            Some((_, fields)) => fields.push(field),
+            None => groups.push((head, vec![field])),
+        }
+    }
+    // The own keys of a thing come before those of what it has.
+    let part = |head: &'static str| head.split('.').next();
+    let parts: Vec<_> = groups.iter().map(|(head, _)| part(head)).collect();
+    groups.sort_by_key(|(head, _)| (parts.iter().position(|known| *known == part(head)), head.matches('.').count()));
+    groups.iter().map(|(head, fields)| group(head, fields)).collect()
+}
+
+fn group(head: &str, fields: &[&str]) -> String {
+    let name = match head.split('.').next() {
+        Some("counterweight") => "NUMBER",
+        Some("limits") => "ANGLE",
+        _ => "NAME",
+    };
+    let head = head.replace('*', name);
+    // Of an ending that all share, such as `_limit`, they go without.
+    let ending = fields.first().and_then(|field| Some(&field[field.rfind('_')?..])).unwrap_or_default();
+    let stems: Option<Vec<&str>> = fields.iter().map(|field| field.strip_suffix(ending)).collect();
+    match (fields, stems) {
+        ([""], _) => head,
+        ([only], _) => format!("{head}.{only}"),
+        (_, Some(stems)) => format!("{head}.({}){ending}", stems.join("|")),
+        (_, None) => format!("{head}.({})", fields.join("|")),
+    }
+}

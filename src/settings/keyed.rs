@@ -1,5 +1,7 @@
 //! `keyed!`: a struct whose fields are settings, declared together with their [keys](super::key::Key): each stands once.
 
+use std::collections::BTreeMap;
+
 use super::key::Holds;
 use super::range::Range;
 
@@ -39,6 +41,11 @@ impl<const N: usize> Holding for [f64; N] {
 }
 
 impl<T: Holding> Holding for Option<T> {
+    const HOLDS: Holds = T::HOLDS;
+}
+
+/// What holds one value under each of several names.
+impl<T: Holding> Holding for BTreeMap<String, T> {
     const HOLDS: Holds = T::HOLDS;
 }
 
@@ -100,16 +107,28 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 /// * `instead`: what counts where nothing is the default ([`Key::NONE`](super::key::Key::NONE));
 /// * `when`: what the key wants to have an effect, in words, and whether it has that, if the part alone can tell;
 /// * `usual`: what the field holds where the default of the key is nothing, but the part is there;
+/// * `reaching`: what a change of the key reaches, where that is not the motion;
 /// * `saved: always` if a file states it even where it is the default.
 ///
-/// After `tables:` follow fields that have keys of their own below this part.
+/// A struct without `at` is of keys that stand alone.
+///
+/// After `named:` follow rows of what holds a value under each of several names: `*` stands for these in the key. What
+/// such a row states as default is that of one value; there is none to begin with. After `tables:` follow fields that
+/// have keys of their own below this part.
 ///
 /// It makes of them the struct with its documentation, `KEYS`, `Default`, what reads and writes a file (a field that is
 /// left out has its default, one that nobody knows is refused), and `uses`: whether a key has an effect as things are.
 macro_rules! keyed {
+    ($(#[$outer:meta])* pub struct $name:ident at $path:literal { $($rows:tt)* }) => {
+        $crate::settings::keyed::keyed!(@below concat!($path, "."); $(#[$outer])* pub struct $name { $($rows)* });
+    };
+    ($(#[$outer:meta])* pub struct $name:ident { $($rows:tt)* }) => {
+        $crate::settings::keyed::keyed!(@below ""; $(#[$outer])* pub struct $name { $($rows)* });
+    };
     (
+        @below $path:expr;
         $(#[$outer:meta])*
-        pub struct $name:ident at $path:literal {
+        pub struct $name:ident {
             $(
                 $(#[doc = $words:literal])+
                 $field:ident: $type:ty = $default:expr
@@ -117,8 +136,18 @@ macro_rules! keyed {
                     $(, instead: $instead:expr)?
                     $(, when: $when:expr $(=> $uses:expr)?)?
                     $(, usual: $usual:expr)?
+                    $(, reaching: $effect:expr)?
                     $(, saved: $saved:ident)?;
             )*
+            $(named:
+                $(
+                    $(#[doc = $said:literal])+
+                    $names:ident: $each:ty = $one:expr
+                        $(, range: $within:expr)?
+                        $(, instead: $else:expr)?
+                        $(, when: $where:expr)?;
+                )+
+            )?
             $(tables:
                 $(
                     $(#[$inner:meta])+
@@ -133,10 +162,16 @@ macro_rules! keyed {
         pub struct $name {
             $(
                 $(#[doc = $words])+
-                #[doc = concat!("\n\nSetting `", $path, ".", stringify!($field), "`.")]
+                #[doc = concat!("\n\nSetting `", $path, stringify!($field), "`.")]
                 $(#[doc = concat!("Range `", stringify!($range), "`.")])?
                 pub $field: $type,
             )*
+            $($(
+                $(#[doc = $said])+
+                #[doc = concat!("\n\nSettings `", $path, stringify!($names), ".*`.")]
+                $(#[doc = concat!("Range `", stringify!($within), "`.")])?
+                pub $names: $each,
+            )+)?
             $($(
                 $(#[$inner])+
                 pub $table: $of,
@@ -144,17 +179,27 @@ macro_rules! keyed {
         }
 
         impl $name {
-            #[doc = concat!("The keys of `", $path, "`, but for those of tables in it.")]
+            #[doc = concat!("The keys `", $path, "*`, but for those of tables in it.")]
             pub const KEYS: &'static [$crate::settings::key::Key] = &[$(
                 $crate::settings::key::Key::new(
-                    concat!($path, ".", stringify!($field)),
+                    concat!($path, stringify!($field)),
                     <$type as $crate::settings::keyed::Holding>::HOLDS$(.within($range))?,
                     $default,
                     $crate::settings::keyed::sentence(concat!($($words),+)),
                 )
                 $(.instead($instead))?
-                $(.when($when))?,
-            )*];
+                $(.when($when))?
+                $(.reaching($effect))?,
+            )* $($(
+                $crate::settings::key::Key::new(
+                    concat!($path, stringify!($names), ".*"),
+                    <$each as $crate::settings::keyed::Holding>::HOLDS$(.within($within))?,
+                    $one,
+                    $crate::settings::keyed::sentence(concat!($($said),+)),
+                )
+                $(.instead($else))?
+                $(.when($where))?,
+            )+)?];
 
             /// Whether a key of this part has an effect as things are, as far as the part itself can tell.
             #[allow(dead_code, reason = "many parts have no key that waits for another")]
@@ -174,6 +219,7 @@ macro_rules! keyed {
             fn default() -> Self {
                 Self {
                     $($field: $crate::settings::keyed::keyed!(@usual $type, $default $(, $usual)?),)*
+                    $($($names: Default::default(),)+)?
                     $($($table: Default::default(),)+)?
                 }
             }
@@ -190,6 +236,11 @@ macro_rules! keyed {
                         part.serialize_field(stringify!($field), &self.$field)?;
                     }
                 )*
+                $($(
+                    if self.$names != usual.$names {
+                        part.serialize_field(stringify!($names), &self.$names)?;
+                    }
+                )+)?
                 $($(
                     if self.$table != usual.$table {
                         part.serialize_field(stringify!($table), &self.$table)?;

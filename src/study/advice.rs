@@ -58,6 +58,13 @@ impl Advice {
         self
     }
 
+    /// The same after some words.
+    #[must_use]
+    pub fn after(mut self, text: impl Into<String>) -> Self {
+        self.pieces.insert(0, Piece::Text(text.into()));
+        self
+    }
+
     /// A way out, named next in the sentence.
     #[must_use]
     pub fn name(mut self, remedy: Remedy) -> Self {

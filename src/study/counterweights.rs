@@ -195,7 +195,7 @@ impl CounterweightReport {
             taken_off: Vec::new(),
             gap: placed.gap,
             certified: placed.is_certified(),
-            front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
+            front: front_points.iter().map(FrontPoint::measures).collect(),
             front_points,
             sought: None,
             rotors: asked.rotors.iter().map(chosen).collect(),

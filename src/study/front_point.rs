@@ -64,6 +64,11 @@ impl FrontMeasure {
 }
 
 impl FrontPoint {
+    /// Added mass, kg, and Σ D_k, kg m².
+    pub fn measures(&self) -> [f64; 2] {
+        [self.added_mass, self.inertia]
+    }
+
     /// Of a machine of the front; a motion is one of as many drives. The workspace is found if it is asked for: it takes
     /// longer than all else.
     pub fn of(placed: &Placed, motion: Option<&Motion>, workspace: bool) -> Self {

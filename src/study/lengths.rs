@@ -9,10 +9,11 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::mechanics::counterweights::{NoWeights, Placed, Sites, Weighing, place};
+use crate::mechanics::counterweights::{NoWeights, Objective, Placed, Sites, Weighing, place};
 use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
 use crate::planning::pose_space::plane_area;
 use crate::query::{Portion, Query, Shared, Watch};
+use crate::session::design::Brief;
 
 /// A length that is sought: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,9 +193,9 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
             .into());
         }
     }
-    let known = known(machine.spec());
+    let known: Vec<&str> = machine.spec().own_lengths().map(|(name, _)| name).collect();
     for (i, FreeLength { name, ends: [from, to] }) in asked.lengths.iter().enumerate() {
-        if !known.contains(name) {
+        if !known.contains(&name.as_str()) {
             return Err(NoLengths::Unknown { name: name.clone(), known: known.join(", ") });
         }
         if !(*from > 0.0 && from < to && *to < 1e6) {
@@ -207,12 +208,6 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
     Ok(())
 }
 
-/// Named lengths, and links whose length has no name.
-fn known(spec: &MachineSpec) -> Vec<String> {
-    let alone = spec.links.iter().filter(|link| matches!(link.length, Length::Metres(_)));
-    spec.lengths.keys().cloned().chain(alone.map(|link| link.name.clone())).collect()
-}
-
 fn is_of(link: &Link, name: &str) -> bool {
     match &link.length {
         Length::Named(shared) => shared == name,
@@ -221,20 +216,32 @@ fn is_of(link: &Link, name: &str) -> bool {
 }
 
 fn length(spec: &MachineSpec, name: &str) -> f64 {
-    let alone = || {
-        spec.links.iter().find(|link| is_of(link, name)).and_then(|link| match link.length {
-            Length::Metres(x) => Some(x),
-            Length::Named(_) => None,
-        })
-    };
-    spec.lengths.get(name).copied().or_else(alone).unwrap_or_default()
+    spec.own_lengths().find(|(own, _)| *own == name).map(|(_, length)| length).unwrap_or_default()
 }
 
 fn share([from, to]: [f64; 2], x: f64) -> f64 {
     ((x - from) / (to - from)).clamp(0.0, 1.0)
 }
 
+/// From how many places a search starts that nobody has said more of.
+const STARTS: usize = 6;
+
 impl LengthSearch {
+    /// As a brief has it for a machine, with what is to be least.
+    pub fn of(brief: &Brief, machine: &Machine, objective: Objective) -> Self {
+        let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
+        let is_anywhere = brief.behind_root.is_none();
+        Self {
+            lengths: lengths.collect(),
+            weighing: Weighing { objective, ..brief.weighing(machine) },
+            anywhere: is_anywhere,
+            least_reach: brief.reach,
+            least_workspace: brief.workspace,
+            starts: STARTS,
+            seed: 1,
+        }
+    }
+
     /// A machine with other lengths, as shares of their ranges; its links keep their mass per metre.
     fn changed(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Machine), String> {
         let mut spec = machine.spec().clone();

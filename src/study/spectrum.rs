@@ -144,6 +144,19 @@ impl Spectrum {
         self.cumulative_rms.last().copied().unwrap_or(0.0)
     }
 
+    /// The frequency below which a share of the power lies, Hz.
+    pub fn below(&self, share: f64) -> f64 {
+        let wanted = share.sqrt() * self.rms();
+        let at = self.cumulative_rms.iter().position(|r| *r >= wanted).unwrap_or(0);
+        self.frequency.get(at).copied().unwrap_or(0.0)
+    }
+
+    /// Where the density is greatest, Hz, and what it is there, the signal's unit by √Hz.
+    pub fn greatest(&self) -> [f64; 2] {
+        let lines = self.frequency.iter().zip(&self.density);
+        lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or([0.0; 2], |(frequency, density)| [*frequency, *density])
+    }
+
     /// How the density stands against a limit; `None` if no line above 0 Hz lies where the limit is defined.
     pub fn against(&self, limit: &JitterLimit) -> Option<JitterVerdict> {
         let lines = self.frequency.iter().zip(&self.density).skip(1);

@@ -50,7 +50,7 @@ fn every_command_is_found_by_a_few_letters() {
         ("rec rerun", "Record for the Rerun viewer"),
         ("tow", "Tower of workspaces"),
         ("table 1", "Machine: nine-link-table-1"),
-        ("import", "Open a session, scenario, machine or model"),
+        ("import", "Open a session, scenario, machine, model or table"),
         ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
         ("csv", "Values of the first plot as CSV"),
         ("picture", "Picture of the first plot as PNG"),
@@ -62,7 +62,9 @@ fn every_command_is_found_by_a_few_letters() {
         type_text(&mut h, typed);
         assert!(h.query_by_label(first).is_some(), "{typed}: {first} is not among what is found");
         press(&mut h, Modifiers::NONE, Key::Escape);
-        assert!(h.query_by_label("Find a command").is_none_or(|_| h.state().app_state().view_state().finder.is_none()));
+        assert!(
+            h.query_by_label("Find a command").is_none_or(|_| h.state().app_state().view_state().open.finder.is_none())
+        );
     }
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "qqxz");
@@ -81,7 +83,12 @@ fn what_follows_the_key_in_one_pass_is_no_shortcut() {
     h.input_mut().events.extend(events);
     h.run_steps(3);
     let view_state = h.state().app_state().view_state();
-    assert!(view_state.finder.is_some() && view_state.theme == Theme::Dark && !view_state.pins && !view_state.study);
+    assert!(
+        view_state.open.finder.is_some()
+            && view_state.arrangement.theme == Theme::Dark
+            && !view_state.pins
+            && view_state.below.is_none()
+    );
     assert_eq!(session(&h).to_scenario(), before);
 }
 
@@ -126,7 +133,7 @@ fn the_list_of_commands_is_led_by_keys_alone() {
     type_text(&mut h, "snap");
     press(&mut h, Modifiers::NONE, Key::Enter);
     let view_state = h.state().app_state().view_state();
-    assert!(view_state.snapshots && view_state.finder.is_none(), "the first line is carried out, the list closes");
+    assert!(view_state.snapshots && view_state.open.finder.is_none(), "the first line is carried out, the list closes");
     // From the top upwards is the last line, and back.
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "tower");
@@ -146,7 +153,7 @@ fn a_machine_of_another_kind_brings_its_task() {
     h.run_steps(4);
     assert_eq!(session(&h).scenario().machine.drives(), 4);
     assert_eq!(session(&h).scenario().name, "four-drive");
-    assert!(h.state().app_state().view_state().message.is_none());
+    assert!(h.state().app_state().view_state().said.message.is_none());
 }
 
 fn a_list_of_commands_types_nothing_into_the_window() {
@@ -159,7 +166,10 @@ fn a_list_of_commands_types_nothing_into_the_window() {
     }
     press(&mut h, Modifiers::NONE, Key::Escape);
     let view_state = h.state().app_state().view_state();
-    assert_eq!((view_state.theme, view_state.view, view_state.snapshots), (Theme::Dark, ViewKind::Flat, false));
+    assert_eq!(
+        (view_state.arrangement.theme, view_state.view, view_state.snapshots),
+        (Theme::Dark, ViewKind::Flat, false)
+    );
     assert_eq!(session(&h).to_scenario(), before);
     assert!(!session(&h).is_playing() && session(&h).frame().time == 0.0);
 }
@@ -185,7 +195,7 @@ fn the_card_of_keys_is_searched() {
     assert!(h.query_by_label("Undo").is_some() && h.query_by_label("drag the b ring").is_none());
     press(&mut h, Modifiers::NONE, Key::Escape);
     press(&mut h, Modifiers::NONE, Key::Escape);
-    assert!(!h.state().app_state().view_state().help);
+    assert!(!h.state().app_state().view_state().open.help);
 }
 
 fn arrows_move_the_target_and_a_burst_is_one_undo() {

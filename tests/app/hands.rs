@@ -98,17 +98,17 @@ fn a_click_shows_the_place_in_the_panel() {
     let place = row(&h).expect("its rows are there");
     assert!(place.top() > 40.0 && place.bottom() < 790.0, "they are seen: {place:?}");
     assert!(session(&h).script().is_empty(), "to look changes nothing");
-    assert!(h.state().app_state().view_state().side.shown);
+    assert!(h.state().app_state().view_state().arrangement.now().side.shown);
     h.hover_at(place.center());
     h.run_steps(2);
     let (number, _) = link(&h, "5");
-    assert_eq!(h.state().app_state().view_state().lit, Some(Handle::Link(number)), "and it lights up");
+    assert_eq!(h.state().app_state().view_state().pointed.lit, Some(Handle::Link(number)), "and it lights up");
 }
 
 fn a_row_of_the_panel_lights_up_its_thing() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    let lit = |h: &Window| h.state().app_state().view_state().lit;
+    let lit = |h: &Window| h.state().app_state().view_state().pointed.lit;
     assert_eq!(lit(&h), None);
     let row = h.get_by_label("B x m").rect().center();
     h.hover_at(row);
@@ -294,7 +294,7 @@ fn the_target_is_typed() {
     assert!((f.end_effector.re - 0.55).abs() < 1e-4 && (f.end_effector.im - 0.6).abs() < 1e-4, "{}", f.end_effector);
     assert!((f.b - 2.4).abs() < 1e-9 && f.peaks.is_reactionless());
     type_into(&mut h, "target x m", "nan");
-    assert!(h.state().app_state().view_state().message.as_ref().is_some_and(|(_, bad)| *bad));
+    assert!(h.state().app_state().view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
 }
 
 /// The pointer moves with keys held, and stays down.
@@ -403,7 +403,7 @@ fn numbers_are_typed_with_units_and_arithmetic() {
     assert_eq!(task(&h).time, 1.5);
     type_into(&mut h, "B x m", "1.1/2 + 0.5 cm / 1 cm");
     assert_eq!(task(&h).to[0], 0.55, "different kinds are not added");
-    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
     assert!(bad && said.contains("B x") && said.contains("different kinds"), "{said}");
     type_into(&mut h, "B x m", "56 cm");
     assert!((task(&h).to[0] - 0.56).abs() < 1e-12);

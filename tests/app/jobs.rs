@@ -379,7 +379,7 @@ fn a_drag_that_is_given_up_takes_back_what_it_did() {
     // B is held by its name where the target covers it.
     let name = at - egui::vec2(17.0, 0.0);
     pull(&mut h, name, name + egui::vec2(-14.0, 6.0));
-    assert!(h.state().app_state().view_state().grabbed.is_some(), "it is held");
+    assert!(h.state().app_state().view_state().gesture.grabbed.is_some(), "it is held");
     h.key_press(egui::Key::Escape);
     h.run_steps(2);
     work_all(&mut h, &workers);
@@ -404,7 +404,7 @@ fn a_file_is_opened_beside_the_window() {
     assert_eq!(session(&h).scenario().name, "case-3");
     work_all(&mut h, &workers);
     assert_eq!(session(&h).scenario().task, Scenario::builtin("circle").expect("built in").task);
-    let said = h.state().app_state().view_state().message.clone();
+    let said = h.state().app_state().view_state().said.message.clone();
     assert_eq!(said, Some((format!("opened {}", file.display()), false)), "of two only the newest counts");
     tell(&mut h, Command::Session(SessionCommand::Undo));
     work_all(&mut h, &workers);

@@ -4,6 +4,7 @@ mod family;
 mod files;
 mod finder;
 mod gallery;
+mod given;
 mod hands;
 mod intro;
 mod jobs;
@@ -30,12 +31,13 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 18] = [
+pub const TESTS: [&[Test]; 19] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
     finder::TESTS,
     gallery::TESTS,
+    given::TESTS,
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,

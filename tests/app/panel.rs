@@ -3,7 +3,7 @@
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{SessionCommand, ViewChange};
+use stillbase::app::{SessionCommand, Tool, ViewChange};
 use stillbase::mechanics::planar::PerDrive;
 use stillbase::picture::scene::exaggeration::{Exaggeration, Shown};
 use stillbase::picture::scene::options::Handle;
@@ -205,16 +205,12 @@ fn a_base_that_moves_is_seen_to_move() {
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
     assert!(h.query_by_label_contains("Base over time").is_some());
-    let foreseen = h.state().app_state().view_state().base_exaggeration();
+    let foreseen = h.state().app_state().base_exaggeration();
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = *session(&h).frame();
     assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
-    assert_eq!(
-        h.state().app_state().view_state().base_exaggeration(),
-        foreseen,
-        "known before it plays, so that nothing jumps"
-    );
+    assert_eq!(h.state().app_state().base_exaggeration(), foreseen, "known before it plays, so that nothing jumps");
     let moved = foreseen * (f.totals.shift + f.totals.base_angle * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's field is where it is drawn, and pulling it there asks for the same b.
@@ -225,7 +221,7 @@ fn a_base_that_moves_is_seen_to_move() {
     assert!((b - f.b_reference).abs() < 1e-12);
     h.key_press(Key::X);
     h.run_steps(2);
-    assert_eq!(h.state().app_state().view_state().base_exaggeration(), 1.0);
+    assert_eq!(h.state().app_state().base_exaggeration(), 1.0);
     h.get_by_label("Base back to normal").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base, Base::default());
@@ -382,10 +378,10 @@ fn tools_are_named_and_reached_by_keyboard() {
     h.run_steps(2);
     h.key_press(Key::Enter);
     h.run_steps(2);
-    assert!(h.state().app_state().view_state().pushing && push(&h) == Some(Toggled::True));
+    assert!((h.state().app_state().view_state().tool == Tool::Push) && push(&h) == Some(Toggled::True));
     h.get_by_label("take hold").click();
     h.run_steps(2);
-    assert!(!h.state().app_state().view_state().pushing && push(&h) == Some(Toggled::False));
+    assert!(!(h.state().app_state().view_state().tool == Tool::Push) && push(&h) == Some(Toggled::False));
     h.get_by_label("Tower").click();
     h.run_steps(2);
     assert!(h.get_by_label("push").accesskit_node().is_disabled(), "only views of the machine have it");
@@ -419,7 +415,7 @@ fn lists_close_and_links_are_named() {
         h.key_press(Key::Escape);
         h.run_steps(3);
         assert!(!egui::Popup::is_any_open(&h.ctx), "{list} closes");
-        assert!(h.state().app_state().view_state().pushing, "Esc was for the list");
+        assert!((h.state().app_state().view_state().tool == Tool::Push), "Esc was for the list");
     }
     h.key_press(Key::U);
     let frame = *session(&h).frame();

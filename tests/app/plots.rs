@@ -330,7 +330,7 @@ fn a_plot_is_written_to_files() {
     let mut write = |file: PlotFile, name: &str| {
         let path = folder.path(name);
         h.state_mut().app_state_mut().carry_out(SessionCommand::WritePlot(path.clone(), "Torque".into(), file));
-        let message = h.state().app_state().view_state().message.clone().expect("it is said");
+        let message = h.state().app_state().view_state().said.message.clone().expect("it is said");
         (std::fs::read(&path).unwrap_or_default(), message)
     };
     let (csv, (said, bad)) = write(PlotFile::Csv, "plot.csv");
@@ -355,7 +355,7 @@ fn a_plot_is_written_to_files() {
     h.run_steps(3);
     h.get_by_label("Save as CSV…").click();
     h.run_steps(3);
-    let dialog = h.state().app_state().view_state().dialog.clone().expect("it asks");
+    let dialog = h.state().app_state().view_state().open.dialog.clone().expect("it asks");
     assert!(dialog.path.ends_with("torque.csv"), "{}", dialog.path);
     h.get_by_label("Cancel").click();
     h.run_steps(3);

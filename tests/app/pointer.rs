@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, Preferences, SessionCommand};
+use stillbase::app::{AppState, Preferences, SessionCommand, Tool};
 use stillbase::mechanics::planar::unit;
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
@@ -200,7 +200,7 @@ fn the_target_comes_before_the_point_that_it_covers() {
     let hot = |h: &mut Window, left: f32| {
         h.hover_at(ring - egui::vec2(left, 0.0));
         h.run_steps(40);
-        h.state().app_state().view_state().hot
+        h.state().app_state().view_state().pointed.hot
     };
     for left in [0.0, 9.0, 13.0, -13.0] {
         assert_eq!(hot(&mut h, left), Some(Handle::Target), "{left} px left");
@@ -219,7 +219,7 @@ fn a_case_that_another_machine_cannot_do_brings_its_own() {
     h.key_press(Key::Num3);
     h.run_steps(4);
     assert_eq!((session(&h).scenario().name.as_str(), session(&h).scenario().machine.name()), ("case-3", "nine-link"));
-    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
     assert!(!bad && said.contains("the paper's machine") && said.contains("two-drive cannot"), "{said}");
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(4);
@@ -292,7 +292,7 @@ fn a_path_is_drawn_by_hand() {
     let task = &session(&h).scenario().task;
     assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
     assert!(task.points().len() > 20, "{}", task.points().len());
-    assert!(h.state().app_state().view_state().stroke.is_none(), "the pencil is laid down");
+    assert!(h.state().app_state().view_state().tool == Tool::Hold, "the pencil is laid down");
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = session(&h).frame();
@@ -313,7 +313,7 @@ fn a_hand_pushes_the_end_effector() {
     let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
     h.key_press(Key::U);
     h.run_steps(2);
-    assert!(h.state().app_state().view_state().pushing);
+    assert!(h.state().app_state().view_state().tool == Tool::Push);
     pull(&mut h, from, to);
     let pushed = session(&h).scenario().plant.force;
     assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
@@ -361,7 +361,7 @@ fn a_hand_is_named_and_let_go() {
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
-    assert!(h.state().app_state().view_state().message.is_none());
+    assert!(h.state().app_state().view_state().said.message.is_none());
     // Another machine that somebody has chosen stays, and that is said.
     let case = Scenario::builtin("case-3").expect("built in");
     let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
@@ -375,7 +375,7 @@ fn a_hand_is_named_and_let_go() {
     h.state_mut().app_state_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);
-    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
     assert!(!bad && said.contains(other.name()), "{said}");
     assert_eq!(session(&h).scenario().machine.name(), other.name());
 }

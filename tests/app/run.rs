@@ -176,13 +176,13 @@ fn b_leaves_the_task_as_it_is() {
         let before = session(&h).to_scenario();
         type_into(&mut h, "b rad", text);
         let (said, bad) =
-            h.state().app_state().view_state().message.clone().unwrap_or_else(|| panic!("{text} is refused"));
+            h.state().app_state().view_state().said.message.clone().unwrap_or_else(|| panic!("{text} is refused"));
         assert!(bad && said.contains(words), "{said}");
         assert_eq!(session(&h).to_scenario(), before, "{text}");
     }
     type_into(&mut h, "b rad", "2.5");
     assert!((session(&h).frame().b - 2.5).abs() < 1e-9);
-    assert!(h.state().app_state().view_state().message.is_none());
+    assert!(h.state().app_state().view_state().said.message.is_none());
     h.get_by_label("turn the task too").click();
     h.run_steps(2);
     h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(3.6);

@@ -170,9 +170,12 @@ fn a_question_has_keys_and_pointer_for_itself() {
     assert!(h.query_by_label("Save before closing?").is_some());
     assert_eq!(session(&h).to_scenario(), before);
     let view_state = h.state().app_state().view_state();
-    assert_eq!(view_state.theme, Theme::Dark);
+    assert_eq!(view_state.arrangement.theme, Theme::Dark);
     assert!(
-        view_state.finder.is_none() && view_state.dialog.is_none() && !view_state.study && !session(&h).is_playing()
+        view_state.open.finder.is_none()
+            && view_state.open.dialog.is_none()
+            && view_state.below.is_none()
+            && !session(&h).is_playing()
     );
     h.key_press(Key::Escape);
     h.run_steps(3);

@@ -26,6 +26,8 @@ pub const TESTS: &[Test] = tests![
     inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
+    lengths_are_sought_and_taken,
+    fronts_are_kept_and_stand_beside_each_other,
     equations_light_up_their_links,
     equations_follow_the_machine_and_are_remembered,
 ];
@@ -87,7 +89,7 @@ fn bars_say_which_link_brings_what() {
     for x in (rect.left() as i32..rect.right() as i32).step_by(4) {
         h.hover_at(egui::pos2(x as f32, rect.top() + 12.0));
         h.run_steps(2);
-        lit.extend(h.state().app_state().view_state().lit);
+        lit.extend(h.state().app_state().view_state().pointed.lit);
     }
     let links: Vec<usize> = [4, 3, 8].into_iter().filter(|i| lit.contains(&Handle::Link(*i))).collect();
     assert_eq!(links, [4, 3, 8], "links 5, 4 and 9 are in the bar: {lit:?}");
@@ -205,7 +207,7 @@ fn equations_light_up_their_links() {
     h.key_press(Key::E);
     h.run_steps(4);
     let view_state = |h: &Window| h.state().app_state().view_state().clone();
-    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).learns);
+    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).arrangement.learns);
     h.get_by_label("Equation 7").click();
     h.run_steps(6);
     let line = "(7) g₁: m₁ l_c1 + m₄ l_c4 + m₆ l_c6 + (m₅ + m₇ + m₈ + m₉) l₁ = 0";
@@ -215,7 +217,7 @@ fn equations_light_up_their_links() {
         for x in (rect.left() as i32..rect.right() as i32).step_by(8) {
             h.hover_at(egui::pos2(x as f32, y as f32));
             h.run_steps(1);
-            let links = view_state(&h).lit_links;
+            let links = view_state(&h).pointed.lit_links;
             if !links.is_empty() && !lit.contains(&links) {
                 lit.push(links);
             }
@@ -226,11 +228,11 @@ fn equations_light_up_their_links() {
     // Beside it nothing is lit any more.
     h.hover_at(egui::pos2(500.0, 300.0));
     h.run_steps(2);
-    assert!(view_state(&h).lit_links.is_empty());
+    assert!(view_state(&h).pointed.lit_links.is_empty());
     // The key leads back.
     h.key_press(Key::E);
     h.run_steps(3);
-    assert!(!view_state(&h).learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
+    assert!(!view_state(&h).arrangement.learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
 }
 
 fn equations_follow_the_machine_and_are_remembered() {
@@ -256,7 +258,7 @@ fn equations_follow_the_machine_and_are_remembered() {
     let liked = h.state().app_state().preferences([1280.0, 800.0]);
     assert!(liked.learns);
     let again = stillbase::app::AppState::new(Scenario::builtin("case-3").expect("built in"), Theme::Dark);
-    assert!(again.expect("it starts").with_preferences(&liked).view_state().learns);
+    assert!(again.expect("it starts").with_preferences(&liked).view_state().arrangement.learns);
     h.get_by_label("Balance tab").click();
     h.run_steps(3);
     assert!(!h.state().app_state().preferences([1280.0, 800.0]).learns);
@@ -339,6 +341,73 @@ fn discs_keep_clear_and_serve_a_range_of_payloads() {
         assert!(nearest.fold(f64::INFINITY, f64::min) > weight.radius + 0.005 - 1e-6, "link {}", weight.link);
     }
     assert!(h.query_by_label_contains("What is left over the payloads: at worst 0.05").is_some());
+}
+
+/// What is found is lighter than with the lengths as they are, reaches as far as it has to, and is one step to undo.
+fn lengths_are_sought_and_taken() {
+    // What is scrolled out of view cannot be clicked.
+    let mut h = window_of(Scenario::builtin("nine-link-bare").expect("built in"), Theme::Dark, 1300.0);
+    h.key_press(Key::D);
+    h.run_steps(4);
+    let before = session(&h).scenario().clone();
+    h.get_by_label("least mass").click();
+    h.run_steps(4);
+    let added = |h: &Window| machine(h).spec().counterweights.iter().map(|weight| weight.mass).sum::<f64>();
+    let with_these = added(&h);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    h.get_by_label("Lengths").click();
+    h.run_steps(6);
+    h.get_by_label("l5").click();
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().design.length.keys().collect::<Vec<_>>(), ["l5"]);
+    h.get_by_label("Seek lengths with least mass").click();
+    h.run_steps(4);
+    assert!(h.query_by_label_contains("Not certified").is_some(), "how it was found");
+    // What has to be reached asks anew.
+    h.get_by_label("reach at least").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("take these lengths").is_none());
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    h.get_by_label("Seek lengths with least mass").click();
+    h.run_steps(4);
+    h.get_by_label("take these lengths").click();
+    h.run_steps(4);
+    let taken = machine(&h);
+    assert!(is_balanced(taken) && added(&h) < with_these - 0.01, "{} kg of {with_these} kg", added(&h));
+    assert!(taken.reach() < before.machine.reach(), "nothing asks for reach");
+    assert!(h.query_by_label("take these lengths").is_none(), "they are taken");
+    for _ in 0..2 {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(3);
+    }
+    assert_eq!(*session(&h).scenario(), before);
+}
+
+/// A front that was kept stays as it was whatever becomes of the machine; what has none says so.
+fn fronts_are_kept_and_stand_beside_each_other() {
+    let mut h = bare();
+    h.get_by_label("keep this front").click();
+    h.run_steps(4);
+    let kept = |h: &Window| {
+        let row = h.query_by_label_contains(" kg, ");
+        row.and_then(|row| row.accesskit_node().value().or_else(|| row.accesskit_node().label())).unwrap_or_default()
+    };
+    let before = kept(&h);
+    assert!(!before.is_empty());
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("design.density", 11_340.0)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("length.l1", 0.6)));
+    h.run_steps(4);
+    assert_eq!(kept(&h), before);
+    h.get_by_label("Add a front").click();
+    h.run_steps(3);
+    h.get_by_label("two-drive").click();
+    h.run_steps(4);
+    h.get_by_label("Remove the front of nine-link-bare").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("Remove the front of nine-link-bare").is_none());
+    assert!(h.query_by_label("Remove the front of two-drive").is_some());
 }
 
 fn colours_tell_the_machines_of_the_front_apart() {

@@ -68,7 +68,7 @@ fn bookmarks_are_found_again() {
     press(&mut h, PLAIN, Key::K);
     let app_state = h.state().app_state();
     assert!(app_state.changes().1, "it is in no file yet");
-    assert_eq!(app_state.view_state().message, Some(("bookmark 2 at 0.700 s".into(), false)));
+    assert_eq!(app_state.view_state().said.message, Some(("bookmark 2 at 0.700 s".into(), false)));
     press(&mut h, PLAIN, Key::Home);
     for (modifiers, want) in [(PLAIN, 0.4), (PLAIN, 0.7), (SHIFT, 0.4)] {
         press(&mut h, modifiers, Key::N);
@@ -124,7 +124,7 @@ fn a_bookmark_is_named_and_taken_away() {
     for _ in 0..2 {
         tell(&mut h, Command::Session(SessionCommand::Undo));
     }
-    assert!(h.state().app_state().view_state().naming.is_none() && session(&h).bookmarks().is_empty());
+    assert!(h.state().app_state().view_state().open.naming.is_none() && session(&h).bookmarks().is_empty());
     // Esc leaves it as it is.
     press(&mut h, SHIFT, Key::K);
     press(&mut h, PLAIN, Key::Escape);
@@ -195,7 +195,7 @@ fn a_branch_is_shown_compared_and_removed() {
     let here = session(&h).frames().to_vec();
     let at = h.get_by_label_contains("a branch parts: as planned").rect().center();
     right_click(&mut h, at);
-    assert!(h.state().app_state().view_state().history, "the right button lists the branches");
+    assert!(h.state().app_state().view_state().open.history, "the right button lists the branches");
     h.snapshot("branches-dark");
     h.get_by_label("Branch 1: as planned, parts at 0.500 s, to 1.000 s").click();
     h.run_steps(4);
@@ -247,7 +247,7 @@ fn the_branch_that_goes_is_named() {
     h.get_by_label("Play").click();
     h.run_steps(20);
     let said =
-        |h: &Window| h.state().app_state().view_state().message.clone().map_or_else(String::new, |(text, _)| text);
+        |h: &Window| h.state().app_state().view_state().said.message.clone().map_or_else(String::new, |(text, _)| text);
     for i in 0..=MAX_BRANCHES {
         assert!(!said(&h).contains("is gone"), "{}", said(&h));
         let app_state = h.state_mut().app_state_mut();
@@ -274,8 +274,8 @@ fn a_refused_bookmark_is_no_change() {
     ] {
         tell(&mut h, command);
         let app_state = h.state().app_state();
-        assert_eq!((app_state.changes(), app_state.view_state().naming), (before, None));
-        let (said, bad) = app_state.view_state().message.clone().expect("it is said");
+        assert_eq!((app_state.changes(), app_state.view_state().open.naming), (before, None));
+        let (said, bad) = app_state.view_state().said.message.clone().expect("it is said");
         assert!(bad && said.contains("take one away"), "{said}");
     }
 }

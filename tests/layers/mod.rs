@@ -151,6 +151,7 @@ fn the_reader_reads() {
         ("a/c.rs".into(), "use super::B;\npub fn g(_: &'static str) { let _ = r#\"crate::d\"#; }".into()),
         ("d.rs".into(), "fn h() -> char { '\"' }".into()),
         ("d/e.rs".into(), "pub struct E; pub struct F; fn i() { crate::a::f(); }".into()),
+        ("f.rs".into(), "pub(in crate::d) fn j() {}".into()),
     ]);
     let imports = tree.imports();
     let of = |file| imports.get(file).into_iter().flatten().map(|(to, _)| *to).collect::<Vec<_>>();
@@ -158,6 +159,7 @@ fn the_reader_reads() {
     assert_eq!(of("a/b.rs"), ["d.rs", "d/e.rs"]);
     assert_eq!(of("a/c.rs"), ["a/b.rs"], "seen through the file that hands it on");
     assert_eq!(of("d/e.rs"), ["a/mod.rs"]);
+    assert_eq!(of("f.rs"), [""; 0], "who may see it is no use");
     assert_eq!(circle(&imports), ["a/b.rs", "a/c.rs", "a/mod.rs", "d/e.rs"]);
 }
 

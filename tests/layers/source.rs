@@ -157,13 +157,16 @@ impl Source {
     fn paths(&self) -> Vec<Vec<String>> {
         let (mut all, mut inside, mut path): (Vec<Vec<String>>, _, Vec<String>) = (Vec::new(), false, Vec::new());
         let mut joined = false;
-        for token in &self.tokens {
+        // Who may see a name is no use of anything: `pub(in a::b)`.
+        let mut sees = false;
+        for (i, token) in self.tokens.iter().enumerate() {
             inside = (inside || token == "use") && token != ";";
-            let word = !inside && token.chars().all(|c| c.is_alphanumeric() || c == '_');
+            sees = (sees || self.tokens[..i].ends_with(&["pub", "(", "in"].map(String::from))) && token != ")";
+            let word = !inside && !sees && token.chars().all(|c| c.is_alphanumeric() || c == '_');
             if word && (joined || path.is_empty()) {
                 path.push(token.clone());
                 joined = false;
-            } else if token == "::" && !path.is_empty() && !joined && !inside {
+            } else if token == "::" && !path.is_empty() && !joined && !inside && !sees {
                 joined = true;
             } else {
                 if path.len() > 1 {

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 use proptest::prelude::*;
 use stillbase::mechanics::balance::{DesignError, Preset, conditions, design};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
+use stillbase::settings::word::Choice;
 
 use crate::mechanics::nine_body::NineBody;
 use crate::support::{Noise, array, close, family_machine, machine_of, numbers, planning};
@@ -102,15 +103,16 @@ proptest! {
 fn presets_give_the_reference_designs() {
     for want in planning()["design"].as_array().expect("designs") {
         let penalty: [f64; 9] = array(&want["penalty"]);
-        let (preset, name) = Preset::ALL
-            .into_iter()
-            .find(|(p, _)| {
+        let preset = Preset::ALL
+            .iter()
+            .find(|p| {
                 let ours = p.penalty(9).expect("nine links");
                 ours.iter().zip(&penalty).all(|(a, b)| (a - b).abs() < 1e-8)
             })
             .unwrap_or_else(|| panic!("no preset for {}", want["name"]));
         let designed = design(table_1(), &preset.penalty(9).expect("nine links")).expect("can be balanced");
         let com: Vec<f64> = designed.links().iter().map(|l| l.com).collect();
+        let name = preset.name();
         close(name, &com, &numbers(&want["com"]), 2e-8);
         let inertia = Inertia::of(&designed);
         assert!(inertia.force_residual() < 1e-14, "{name}: {:e}", inertia.force_residual());

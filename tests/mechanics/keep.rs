@@ -4,6 +4,7 @@ use stillbase::mechanics::balance::{
     Adjusted, Hold, Keep, Kept, NotKept, Parameter, Preset, Quantity, Side, design, keep,
 };
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
+use stillbase::settings::word::Choice;
 
 use super::breakdown::with_counterweights;
 use crate::support::{Noise, family_machine};
@@ -31,7 +32,7 @@ fn from_zero_it_is_the_design() {
             (1..10).map(|j| (format!("link.{j}.mass"), noise.between(0.2, 6.0).to_string())).collect();
         let machine = table_1.set_all(masses.iter().map(|(k, v)| (k.as_str(), v.as_str()))).expect("valid");
         let penalty = match Preset::ALL.get(i) {
-            Some((preset, _)) => preset.penalty(9).expect("nine links"),
+            Some(preset) => preset.penalty(9).expect("nine links"),
             None => (0..9).map(|_| noise.between(0.2, 5.0)).collect(),
         };
         let mut asked = Keep::coms(&machine, &penalty);

@@ -259,6 +259,50 @@ fn counterweights_are_placed_written_and_counted_in() {
 }
 
 #[test]
+fn fronts_of_several_machines_are_those_of_each_alone() {
+    let bounds = ["--counterweights", "--max-mass", "9", "--task", "case-3", "--front", "4"];
+    let called = [BARE, "two-drive", "serial-3r", BARE];
+    let all = object(&[&["design"], &called[..], &bounds[..]].concat());
+    assert_eq!(keys(&all), ["fronts"]);
+    let fronts = all["fronts"].as_array().expect("a list");
+    let names: Vec<&str> = fronts.iter().filter_map(|front| front["machine"].as_str()).collect();
+    assert_eq!(names, ["nine-link-bare", "two-drive", "serial-3r", "nine-link-bare-2"]);
+    for (front, name) in fronts.iter().zip(called) {
+        // Of another number of drives the task says nothing.
+        let bounds =
+            if name == "two-drive" { &["--counterweights", "--max-mass", "9", "--front", "4"] } else { &bounds[..] };
+        let alone = object(&[&["design", name], bounds].concat());
+        assert_eq!((&front["front"], &front["front_points"]), (&alone["front"], &alone["front_points"]), "{name}");
+        assert_eq!(keys(front), ["front", "front_points", "machine"]);
+    }
+    let table = prints(&[&["design", BARE, "two-drive"], &bounds[..]].concat());
+    assert!(table.starts_with("machine") && table.matches("\nnine-link-bare ").count() == 4, "{table}");
+    assert_eq!(table.matches("\ntwo-drive ").count(), 4, "{table}");
+}
+
+#[test]
+fn a_machine_without_a_front_says_why_beside_the_others() {
+    let line = ["design", BARE, "two-drive", "--counterweights", "--max-mass", "2", "--front", "3"];
+    let all = object(&line);
+    assert_eq!(keys(&all["fronts"][0]), ["machine", "refused"]);
+    assert!(all["fronts"][0]["refused"].as_str().expect("why").contains("no heavier"), "{all}");
+    assert_eq!(all["fronts"][1]["front"].as_array().map(Vec::len), Some(3));
+    assert!(prints(&line).contains("\nnine-link-bare: no counterweights balance this machine"));
+    let ask = |more: &[&str], status: i32, words: &[&str]| {
+        fails(&[&["design", BARE, "two-drive", "--counterweights"], more].concat(), status, words);
+    };
+    let none = ["design", BARE, BARE, "--counterweights", "--front", "3", "--max-mass", "0.01"];
+    fails(&none, 1, &["none of these can be balanced", "nine-link-bare: no counterw"]);
+    ask(&["--front", "3", "--thickness", "0"], 2, &["nine-link-bare: thickness 0: want 0.0001 to 1 m"]);
+    ask(&["--front", "3", "--range", "9=-0.3,0"], 2, &["two-drive: no link 9"]);
+    ask(&["--front", "3", "--set", "link.9.mass=0.3"], 2, &["two-drive: --set"]);
+    ask(&["--front", "3", "--task", "four-drive"], 2, &["its machine has 4 drives: want one of 3 or 2"]);
+    ask(&["--front", "3", "--objective", "mass"], 2, &["--objective"]);
+    ask(&["--front", "3", "-o", "a.toml"], 2, &["--output"]);
+    ask(&[], 2, &["--front"]);
+}
+
+#[test]
 fn counterweights_that_cannot_be_are_refused() {
     let ask = |more: &[&str], status: i32, words: &[&str]| {
         fails(&[&["design", BARE, "--counterweights"], more].concat(), status, words);

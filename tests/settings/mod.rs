@@ -1,4 +1,5 @@
-//! How values are typed, and what choices and parts are written as.
+//! What keys are called, how values are typed, and what choices and parts are written as.
 
+mod keys;
 mod quantity;
 mod words;

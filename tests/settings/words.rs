@@ -1,9 +1,11 @@
 //! Choices and parts: what files have of them is what their rows say.
 
 use serde::Serialize;
+use stillbase::mechanics::balance::Preset;
+use stillbase::mechanics::counterweights::Disc;
 use stillbase::planning::posture::Posture;
 use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{Corners, Least, Shape, Task, TaskKind};
+use stillbase::session::scenario::{Brief, Corners, Least, Shape, Task, TaskKind};
 use stillbase::settings::key::Key;
 use stillbase::settings::word::Choice;
 use stillbase::simulation::control::{Control, ControlLaw};
@@ -32,6 +34,7 @@ fn files_have_the_words_of_the_rows() {
     words_are_those_of_files::<TimeLaw>();
     words_are_those_of_files::<ControlLaw>();
     words_are_those_of_files::<BaseKind>();
+    words_are_those_of_files::<Preset>();
     // What files of earlier versions call the minimum norm.
     assert_eq!(Value::from("tip-line").try_into(), Ok(TaskKind::MinimumNorm));
 }
@@ -58,6 +61,8 @@ fn parts_are_written_as_their_rows_say() {
     states_little::<Friction>(Friction::KEYS, &[]);
     states_little::<PlantDifferences>(PlantDifferences::KEYS, &[]);
     states_little::<LinkDifference>(LinkDifference::KEYS, &[]);
+    states_little::<Brief>(Brief::KEYS, &[]);
+    assert_eq!(Brief::default().disc(), Disc::STEEL);
     assert_eq!(Wheel::default().inertia, 0.02);
     assert_eq!(Base::default().stiffness, [2e4, 2e4, 2e3]);
 }

@@ -6,7 +6,7 @@ use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
 
 use stillbase::query::{Shared, answered};
-use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, Ways, alternatives};
+use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, Rows, SLOWER, Ways, alternatives};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
@@ -275,4 +275,26 @@ fn designs_stand_beside_the_first() {
     // Without the first, the second is the one that all are set beside.
     comparison.remove(0);
     assert_eq!(comparison.entries()[0].value(of + 4), Some(0.0));
+}
+
+/// A row is what the run comes to, and its machine beside that of the first run that can be done.
+#[test]
+fn rows_are_what_runs_come_to() {
+    let mut impossible = scenario("case-3");
+    impossible.task.to = [5.0, 5.0];
+    let mut rows = Rows::default();
+    rows.run(None, &impossible);
+    rows.run(Some("as it is"), &scenario("case-3"));
+    assert!(!rows.have_designs());
+    rows.run(None, &scenario("two-drive"));
+    assert!(rows.have_designs());
+    let [refused, first, other] = rows.rows() else { panic!("three runs") };
+    assert!(refused.outcome.is_err() && refused.design.is_none() && refused.title() == "case-3");
+    let alone = Compared::of(scenario("case-3")).expect("it runs");
+    assert_eq!((first.outcome.as_ref().ok(), first.title()), (Some(&alone.summary), "as it is"));
+    assert_eq!(first.design, Some(alone.candidate.beside(&alone.candidate)));
+    let two = Compared::of(scenario("two-drive")).expect("it runs");
+    assert_eq!(other.design, Some(two.candidate.beside(&alone.candidate)));
+    let said = serde_json::to_value(&rows).expect("plain data");
+    assert!(said[0]["refused"].is_string() && said[1]["way"] == "as it is" && said[2]["design"]["apart"].is_string());
 }

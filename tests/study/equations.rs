@@ -8,7 +8,9 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
-use stillbase::study::equations::{Equation, Line, NUMBERS, State, Term, When, cells, equations, plain};
+use stillbase::study::equations::{
+    Equation, Line, NUMBERS, NoInstant, State, Stated, Term, When, cells, equations, plain,
+};
 
 use crate::support::{Noise, close, random};
 
@@ -402,4 +404,20 @@ fn one_drive_is_written_of_alone() {
     assert!(numbered(&all, "11").says.starts_with("With (7) met, the drive turns"));
     let all = of(&table_1(), &a_state(&mut Noise::of(80), 3));
     assert!(numbered(&all, "11").says.starts_with("With (7) and (8) met, every drive turns"));
+}
+
+/// The state at a time is that of the run then; past its end there is none.
+#[test]
+fn a_time_of_a_run_has_a_state() {
+    let scenario = Scenario::builtin("case-1").expect("built in");
+    let state = State::at(&scenario, 0.3).expect("it runs so far");
+    assert!(matches!(state.when, When::Run(time) if (time - 0.3).abs() < 1e-9));
+    let later = State::at(&scenario, 1e3).expect_err("it is over then");
+    assert!(matches!(later, NoInstant::Later { end } if end > 0.9), "{later}");
+    let stated = Stated::of(&scenario.machine, &state, &of(&scenario.machine, &state));
+    assert_eq!(stated.equations.len(), NUMBERS.len());
+    assert!(stated.time.is_some_and(|time| (time - 0.3).abs() < 1e-9) && stated.planned_time.is_none());
+    let force = &stated.equations[0].lines[0];
+    let sum: f64 = force.left_terms.iter().map(|term| term.value).sum();
+    assert!((sum - force.left).abs() < 1e-12 && force.holds);
 }

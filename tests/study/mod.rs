@@ -4,6 +4,7 @@ mod comparison;
 mod counterweights;
 mod doubt;
 mod equations;
+mod fronts;
 mod import;
 mod joint_extremes;
 mod lengths;

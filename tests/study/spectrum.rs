@@ -3,6 +3,9 @@
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
+use stillbase::session::felt;
+use stillbase::session::scenario::Scenario;
+use stillbase::study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase::study::spectrum::{JitterLimit, LEAST, Spectrum, SpectrumError, Window};
 
 /// The one-sided density by its definition, a sum for each line.
@@ -112,4 +115,27 @@ fn what_has_no_spectrum_is_refused() {
     }
     x[3] = f64::NAN;
     assert_eq!(Spectrum::of(&x, 0.1, Window::Hann), Err(SpectrumError::NotFinite { index: 3 }));
+}
+
+/// What is said of a run's base is the spectrum of what it felt, axis by axis.
+#[test]
+fn the_spectra_of_a_base_are_those_of_what_it_felt() {
+    let scenario = Scenario::builtin("case-1").expect("built in");
+    let mut found = BaseSpectrum::of(&scenario, Window::Rectangular).expect("long enough");
+    let ([x, y, n], fault) = felt(&scenario).expect("it runs");
+    assert_eq!((found.samples, found.fault.clone(), fault), (n.len(), None, None));
+    for ((.., spectrum), samples) in found.spectra.named().into_iter().zip([&x, &y, &n]) {
+        assert_eq!(*spectrum, Spectrum::of(samples, scenario.step, Window::Rectangular).expect("long enough"));
+        let [at, most] = spectrum.greatest();
+        assert!(spectrum.density.iter().all(|density| *density <= most) && spectrum.frequency.contains(&at));
+        assert!(spectrum.below(0.5) <= spectrum.below(0.99));
+    }
+    let moment = &found.axes.moment;
+    assert!((moment.rms / moment.weighted_rms - 1.0).abs() < 1e-9, "no window, one root mean square");
+    let limit: JitterLimit = "0.01".parse().expect("a limit");
+    found.judge(None, Some(&limit)).expect("at every frequency");
+    assert_eq!(found.axes.moment.limit, found.spectra.moment.against(&limit));
+    assert!(found.axes.force_x.limit.is_none());
+    let beyond: JitterLimit = "1e6:1,2e6:1".parse().expect("a limit");
+    assert!(matches!(found.judge(Some(&beyond), None), Err(NoBaseSpectrum::Beyond { .. })));
 }

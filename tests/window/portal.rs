@@ -152,7 +152,7 @@ fn files_are_asked_for_by_the_desktop() {
     // A dialog that is closed changes nothing; after a restart it begins in the same folder.
     answers.send(None).expect("taken");
     desk.display.keys(&[CTRL], u32::from('o'));
-    question("open", "Open a session, machine or model", None, Some(&folder));
+    question("open", "Open a file", None, Some(&folder));
     pause(1500);
     assert!(desk.bus.tree().expect("it answers").containing("File name").is_none(), "closed is closed");
     desk.display.close();
@@ -160,7 +160,7 @@ fn files_are_asked_for_by_the_desktop() {
     desk.open(&[]);
     answers.send(Some(file)).expect("taken");
     desk.display.keys(&[CTRL], u32::from('o'));
-    question("open", "Open a session, machine or model", None, Some(&folder));
+    question("open", "Open a file", None, Some(&folder));
     desk.reads("opened ");
     assert!(!desk.log().contains("panicked"), "{}", desk.log());
 }

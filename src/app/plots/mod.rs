@@ -49,12 +49,12 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
     let Shown { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
-    let usual = usual(ui, view_state.layout);
+    let usual = usual(ui, view_state.arrangement.layout);
     let most = (0.6 * ui.available_width()).max(usual);
-    let width = view_state.plots.width.unwrap_or(usual).min(most);
+    let width = view_state.arrangement.now().plots.width.unwrap_or(usual).min(most);
     // By its own width: where the window changes that, what was remembered of another does not count.
-    let salt = ("plots", usual as u32, view_state.swapped);
-    let panel = if view_state.swapped { Panel::left(salt) } else { Panel::right(salt) };
+    let salt = ("plots", usual as u32, view_state.arrangement.swapped);
+    let panel = if view_state.arrangement.swapped { Panel::left(salt) } else { Panel::right(salt) };
     let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
@@ -90,5 +90,5 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
             which_b::show(ui, &p, (session, queries), view_state, height, commands);
         });
     });
-    view_state.plots.made(made.response.rect.width(), usual)
+    view_state.arrangement.now().plots.made(made.response.rect.width(), usual)
 }

@@ -146,7 +146,7 @@ fn lines(
         });
     name(&response.response, "Which b: q1 against b of each point");
     let preview = response.inner.filter(|_| response.response.hovered());
-    if preview != view_state.preview {
+    if preview != view_state.pointed.preview {
         commands.push(ViewChange::Preview(preview).into());
     }
     let held = response.response.dragged() || response.response.clicked();

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::AppState;
-use crate::app::background::{Background, Opening, ended};
+use crate::app::background::{Background, Opening};
 use crate::app::change::Source;
-use crate::app::{Activity, ComparisonCommand};
+use crate::app::{Activity, Below, ComparisonCommand};
 use crate::picture::scene::stage::Outlining;
 use crate::query::{Asked, Same, Shared, State, Ticket};
 use crate::session::Ahead;
@@ -17,35 +17,24 @@ use crate::study::tolerance::{Studied, Study, Studying};
 const MOST_AHEAD: f64 = 20_000.0;
 
 impl AppState {
-    /// Takes what jobs have done; whether one has ended.
+    /// Does what is to be done after work that has ended; whether any has.
+    pub(super) fn finish(&mut self) -> bool {
+        let mut any = false;
+        while let Some(then) = self.background.ended() {
+            then(self);
+            any = true;
+        }
+        any
+    }
+
+    /// Takes what has been done beside the window; whether anything has.
     pub(super) fn collect(&mut self) -> bool {
-        let [changed, opened] = [self.collect_change(), self.collect_opening()];
-        let mut any = changed || opened;
+        let any = self.finish();
         if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
             && let Some(ways) = ways.known()
         {
             comparison.follow(ways);
         }
-        while let Some(first) = self.background.kept.pop_front() {
-            let mut first = Some(first);
-            let Some((news, run)) = ended(&mut first) else {
-                self.background.kept.extend(first);
-                self.background.kept.rotate_right(1);
-                break;
-            };
-            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
-            let said = match (run, &mut self.comparison) {
-                (Ok(run), Some(comparison)) => {
-                    comparison.keep_run(run);
-                    Ok(news.map(String::from))
-                }
-                (run, _) => run.map(|_| None),
-            };
-            self.tell(said);
-            any = true;
-        }
-        any |= self.collect_written();
-        self.adjust();
         any
     }
 
@@ -73,14 +62,13 @@ impl AppState {
         } else {
             self.queries().forget::<Ahead>();
         }
-        self.adjust();
     }
 
     /// Studies the run on display; only the newest counts.
     pub(super) fn refresh_study(&mut self) {
-        if !self.view_state.study {
+        if self.view_state.below != Some(Below::Tolerances) {
             self.queries().forget::<Studying>();
-        } else if self.view_state.grabbed.is_none() {
+        } else if self.view_state.gesture.grabbed.is_none() {
             let _ = self.queries().ask_beside::<Studying>(&Studied(Arc::new(self.session.run().clone())));
         }
     }
@@ -100,10 +88,10 @@ impl AppState {
 
     /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
     pub(super) fn refresh_comparison(&mut self) {
-        if !self.view_state.compare {
+        if self.view_state.below != Some(Below::Runs) {
             self.comparison = None;
             self.queries().forget::<Ways>();
-            self.background.kept.clear();
+            self.background.stop(Activity::Kept);
             return;
         }
         let scenario = self.session.scenario();
@@ -116,7 +104,7 @@ impl AppState {
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
         let wanted = stale || self.queries().progress::<Ways>().is_some();
-        if wanted && (first || self.view_state.grabbed.is_none()) {
+        if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
             let _ = self.queries().ask_beside::<Ways>(&self.session.run().shared_scenario());
         }
     }
@@ -155,7 +143,7 @@ impl AppState {
         if let Some(fork) = self.session.forks().get(branch) {
             scenario.name = format!("branch at {:.3} s", fork.from);
         }
-        (self.view_state.compare, self.view_state.study) = (true, false);
+        self.view_state.below = Some(Below::Runs);
         self.refresh_comparison();
         self.keep(scenario, Some("added the branch to the runs side by side"));
     }
@@ -163,34 +151,33 @@ impl AppState {
     /// Runs a scenario to be kept beside the ways of the task.
     pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
         let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
-        let job = self.background.start(work);
-        self.background.kept.push_back((news, job));
+        self.background.run(Activity::Kept, work, move |app_state, run| {
+            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
+            let said = match (run, &mut app_state.comparison) {
+                (Ok(run), Some(comparison)) => {
+                    comparison.keep_run(run);
+                    Ok(news.map(String::from))
+                }
+                (run, _) => run.map(|_| None),
+            };
+            app_state.tell(said);
+        });
         self.collect();
     }
 
     /// Ends the program's work: a session that is being saved is saved whole, all else is stopped.
     pub(in crate::app) fn close(&mut self) {
-        if let Some((_, job)) = self.background.saving.take() {
-            // Nobody is left to tell.
-            let _ = job.wait();
-        }
+        self.background.wait_for(Activity::Saving);
         self.background = Background::default();
     }
 
     /// Stops what is under way; what was shown stays.
     pub(super) fn cancel(&mut self, activity: Activity) -> String {
-        match activity {
-            Activity::Change => {
-                self.background.change = None;
-                self.background.later.clear();
-                self.session.end_gesture();
-            }
-            Activity::Opening => self.background.opening = None,
-            Activity::Recording => self.background.recording = None,
-            Activity::Study => self.queries().stop::<Studying>(),
-            Activity::Ways => self.queries().stop::<Ways>(),
-            Activity::Kept => self.background.kept.clear(),
-            Activity::Saving => {}
+        if activity.can_stop() {
+            self.background.stop(activity);
+        }
+        if activity == Activity::Change {
+            self.session.end_gesture();
         }
         activity.cancelled().into()
     }

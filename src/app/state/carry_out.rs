@@ -5,7 +5,7 @@ use crate::app::background::Opening;
 use crate::app::change::{Change, Source};
 use crate::app::marks;
 use crate::app::tour::Tour;
-use crate::app::{Command, SessionCommand, Switch, ViewChange, WindowCommand};
+use crate::app::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChange, WindowCommand};
 use crate::picture::scene::views::ViewKind;
 
 impl AppState {
@@ -17,7 +17,7 @@ impl AppState {
         match command.into() {
             Command::Session(command) if self.background.is_changing() => {
                 let edits = matches!(command, SessionCommand::Edit(_));
-                self.view_state.dragged |= self.view_state.grabbed.is_some() && edits;
+                self.view_state.gesture.dragged |= self.view_state.gesture.grabbed.is_some() && edits;
                 self.background.after(command);
             }
             command => self.do_now(command),
@@ -41,6 +41,11 @@ impl AppState {
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Session(command) => self.do_to_session(command),
+            // Where none was opened yet, one is asked for.
+            Command::View(ViewChange::Switch(Switch::Given, true)) if self.given.is_none() => {
+                self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, Purpose::Open));
+                Ok(None)
+            }
             Command::View(change) => {
                 let designs =
                     matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
@@ -59,15 +64,16 @@ impl AppState {
         match command {
             SessionCommand::Edit(edit) => {
                 let edit = self.designed(edit)?;
-                self.view_state.refused = None;
+                self.view_state.said.refused = None;
                 self.change(Change::Edit(edit));
-                self.view_state.dragged |= self.view_state.grabbed.is_some() && self.view_state.refused.is_none();
+                self.view_state.gesture.dragged |=
+                    self.view_state.gesture.grabbed.is_some() && self.view_state.said.refused.is_none();
             }
             SessionCommand::EndGesture => {
                 self.session.end_gesture();
                 self.designed_from = None;
                 let said = self.parted.take();
-                self.view_state.left_branch |= said.is_some();
+                self.view_state.said.left_branch |= said.is_some();
                 return Ok(said);
             }
             SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
@@ -112,7 +118,9 @@ impl AppState {
             SessionCommand::GoTo(changes) => self.change(Change::GoTo(changes)),
             SessionCommand::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
             SessionCommand::BackToPath => {}
+            SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),
+            SessionCommand::TakeLengths => self.take_lengths()?,
             SessionCommand::TakeStillest => self.take_stillest()?,
             SessionCommand::KeepRun => self.keep_run(),
             SessionCommand::OpenRun(entry) => self.open_run(entry),
@@ -123,8 +131,15 @@ impl AppState {
     fn do_to_window(&mut self, command: WindowCommand) -> Result<Option<String>, String> {
         match command {
             WindowCommand::Comparison(on) => self.change_comparison(on),
+            WindowCommand::Ask(options) => {
+                if let Some(given) = &mut self.given {
+                    given.options = options;
+                }
+            }
+            WindowCommand::Seek(objective) => self.seek(objective),
+            WindowCommand::Fronts(change) => self.change_fronts(change),
             WindowCommand::LookFor => {
-                self.view_state.plots.shown = true;
+                self.view_state.arrangement.now_mut().plots.shown = true;
                 self.looks = true;
             }
             WindowCommand::Refuse(why) => return Err(why),
@@ -139,12 +154,12 @@ impl AppState {
             WindowCommand::Tour(begins) => {
                 // One guide at a time; what was not done of the hints may come again.
                 self.intro = self.intro.take().filter(|_| !begins);
-                self.view_state.help &= !begins;
-                self.view_state.tour = begins.then(|| Tour::begin(&self.session));
+                self.view_state.open.help &= !begins;
+                self.view_state.open.tour = begins.then(|| Tour::begin(&self.session));
             }
             WindowCommand::TurnTour(forward) => {
-                let tour = self.view_state.tour.take();
-                self.view_state.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
+                let tour = self.view_state.open.tour.take();
+                self.view_state.open.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
             }
         }
         Ok(None)
@@ -156,7 +171,7 @@ impl AppState {
             let name = self.session.free_name();
             self.saving.changes += u64::from(self.session.bookmark(time, &name)?.is_some());
         }
-        self.view_state.naming = Some(time);
+        self.view_state.open.naming = Some(time);
         Ok(())
     }
 }

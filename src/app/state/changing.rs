@@ -1,9 +1,10 @@
 //! Changes of the session, made beside the window, and what follows from them.
 
 use super::AppState;
-use crate::app::RefusedEdit;
-use crate::app::background::ended;
+use crate::app::background::Changed;
 use crate::app::change::Change;
+use crate::app::{Activity, RefusedEdit};
+use crate::query::Ticket;
 use crate::session::scenario::MAX_BRANCHES;
 use crate::session::{Edit, Refusal};
 
@@ -12,19 +13,17 @@ impl AppState {
     /// repaint, and what was shown stays until then.
     pub(super) fn change(&mut self, change: Change) {
         let mut next = self.session.clone();
-        let job = self.background.start_short({
-            let change = change.clone();
-            move |ticket| {
-                let done = change.make(&mut next, &mut |done| ticket.goes_on(done));
-                (next, done)
-            }
-        });
-        self.background.change = Some(((change, 0), job));
-        self.collect_change();
+        self.background.change = Some((change.clone(), 0));
+        let work = move |ticket: &Ticket| {
+            let done = change.make(&mut next, &mut |done| ticket.goes_on(done));
+            (next, done)
+        };
+        self.background.run(Activity::Change, work, Self::take_change);
+        self.finish();
     }
 
-    pub(super) fn collect_change(&mut self) -> bool {
-        let Some(((change, _), made)) = ended(&mut self.background.change) else { return false };
+    fn take_change(&mut self, made: Option<Changed>) {
+        let Some((change, _)) = self.background.change.take() else { return };
         match made {
             Some((next, done)) => {
                 if done.is_ok() {
@@ -36,7 +35,6 @@ impl AppState {
             }
             None => self.tell(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
         }
-        true
     }
 
     /// Notes the message for a change that has left a branch. The tuple is the state before the change: the number of
@@ -59,16 +57,16 @@ impl AppState {
     /// After a change of the session, or its refusal.
     pub(super) fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
         if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
-            self.view_state.refused = Some(RefusedEdit::of(edit, refusal));
+            self.view_state.said.refused = Some(RefusedEdit::of(edit, refusal));
         }
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
             match change {
                 // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
-                Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
-                Change::Edit(edit) if edit.is_aside() => self.view_state.refused = None,
+                Change::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
+                Change::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
                 Change::Edit(_) => {
-                    self.view_state.refused = None;
+                    self.view_state.said.refused = None;
                     self.foresee();
                 }
                 Change::Undo | Change::Redo | Change::GoTo(_) | Change::Branch(_) | Change::BackToPath => {

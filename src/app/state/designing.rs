@@ -2,11 +2,16 @@
 
 use super::AppState;
 use crate::app::change::Change;
-use crate::app::studio;
+use crate::app::{FrontsCommand, studio};
+use crate::mechanics::counterweights::Objective;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::views::ViewKind;
+use crate::query::{Query, Shared};
 use crate::session::Edit;
-use crate::session::design::{briefed, weights_of};
+use crate::session::design::{becoming, briefed, weights_of};
+use crate::session::scenario::Scenario;
+use crate::study::fronts::FrontOf;
+use crate::study::lengths::{LengthSearch, Seeking};
 
 impl AppState {
     /// An edit with what follows from it where a machine that is designed is kept balanced.
@@ -21,6 +26,52 @@ impl AppState {
             return scenario.design.edit(&scenario.machine, start, change);
         }
         if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
+    }
+
+    /// Changes which fronts are drawn beside that of the machine that is designed.
+    pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
+        let Scenario { machine, design, .. } = self.session.scenario();
+        match change {
+            FrontsCommand::Keep => self.fronts.push(FrontOf::of(machine.name(), machine, design)),
+            FrontsCommand::Add(machine) => {
+                self.fronts.push(FrontOf::of(machine.name(), &machine, design));
+            }
+            FrontsCommand::Remove(place) if place < self.fronts.len() => drop(self.fronts.remove(place)),
+            FrontsCommand::Remove(_) => {}
+        }
+    }
+
+    /// What is sought with the brief as it is; none where the machine is none without its counterweights.
+    fn sought(&self, objective: Objective) -> Option<<Seeking as Query>::Input> {
+        let Scenario { machine, design, .. } = self.session.scenario();
+        let bare = machine.without_counterweights().ok()?;
+        let asked = LengthSearch::of(design, &bare, objective);
+        Some((Shared(bare.into()), asked))
+    }
+
+    /// Seeks lengths anew.
+    pub(super) fn seek(&mut self, objective: Objective) {
+        self.queries().forget::<Seeking>();
+        self.seeking = self.sought(objective);
+    }
+
+    /// Goes on with the search for lengths, until what it is of has changed.
+    pub(super) fn refresh_seeking(&mut self) {
+        let Some(seeking) = self.seeking.take() else { return };
+        self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
+        match &self.seeking {
+            Some(seeking) => drop(self.queries().ask_beside::<Seeking>(seeking)),
+            None => self.queries().forget::<Seeking>(),
+        }
+    }
+
+    /// Takes the lengths that were found.
+    pub(super) fn take_lengths(&mut self) -> Result<(), String> {
+        let found = self.seeking.as_ref().and_then(|seeking| self.queries().known::<Seeking>(seeking));
+        let found = found.as_deref().and_then(|found| found.as_ref().ok()).ok_or("no lengths were found yet")?;
+        let edit = becoming(self.session.scenario(), &found.placed.machine).ok_or("the machine has these lengths")?;
+        self.change(Change::Edit(edit));
+        Ok(())
     }
 
     /// Takes the counterweights of a machine of the front, by its place.

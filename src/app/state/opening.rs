@@ -3,31 +3,29 @@
 use std::path::PathBuf;
 
 use super::AppState;
-use crate::app::background::{File, Opening, ended};
-use crate::app::change::{NotOpened, Opened, Source};
-use crate::app::{Framing, LeftOff, Recovery};
+use crate::app::background::{File, Opening};
+use crate::app::change::{NotOpened, Opened, OpenedSession, Source};
+use crate::app::{Activity, Framing, LeftOff, Recovery};
 use crate::mechanics::machine::Machine;
+use crate::query::Ticket;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 impl AppState {
     /// Opens a session in place of the present one; only the newest counts.
     pub(super) fn open(&mut self, source: Source, opening: Opening) {
-        self.background.opening = None;
-        let job = self.background.start(move |ticket| source.open(&mut |done| ticket.goes_on(done)));
-        self.background.opening = Some((opening, job));
-        self.collect_opening();
+        self.background.stop(Activity::Opening);
+        let work = move |ticket: &Ticket| source.open(&mut |done| ticket.goes_on(done));
+        self.background.run(Activity::Opening, work, move |app_state, opened| app_state.take_opened(opening, opened));
+        self.finish();
     }
 
-    pub(super) fn collect_opening(&mut self) -> bool {
-        // What is done to the present session comes first.
-        if self.background.is_changing() {
-            return false;
-        }
-        let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
+    fn take_opened(&mut self, opening: Opening, opened: Option<Result<Opened, NotOpened>>) {
         let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
         match opened.unwrap_or_else(|| Err(broken())) {
-            Ok(Opened { session, said, left_off }) => {
+            Ok(Opened::Table(file, table)) => self.take_up(file, table),
+            Ok(Opened::Session(opened)) => {
+                let OpenedSession { session, said, left_off } = *opened;
                 let news = said.or_else(|| opening.news.clone());
                 self.take_over(session, Opening { news, ..opening });
                 if let Some(LeftOff { plots, .. }) = left_off {
@@ -44,12 +42,11 @@ impl AppState {
                 if let Some(File::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
-                self.view_state.refused = refused;
+                self.view_state.said.refused = refused;
                 self.tell(Err(why));
             }
         }
         self.refresh();
-        true
     }
 
     pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
@@ -72,7 +69,7 @@ impl AppState {
             self.session.play();
         }
         if closes {
-            self.view_state.dialog = None;
+            self.view_state.open.dialog = None;
         }
         self.tell(Ok(news));
     }

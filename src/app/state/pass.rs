@@ -4,8 +4,8 @@ use super::AppState;
 use crate::app::facts::Facts;
 use crate::app::marks::Marks;
 use crate::app::{
-    Command, Intro, Layout, SessionCommand, ViewChange, ViewState, WindowCommand, compare, finder, keys, order, place,
-    plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
+    Below, Command, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given, keys,
+    order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
 };
 use crate::picture::scene::views::ViewKind;
 
@@ -28,7 +28,7 @@ impl AppState {
         }
         self.catch_up();
         self.background.count();
-        if let Some(tour) = &mut self.view_state.tour {
+        if let Some(tour) = &mut self.view_state.open.tour {
             tour.follow(&self.session);
         }
         let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
@@ -43,7 +43,7 @@ impl AppState {
         if !self.saving.has_question() {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
-        let presents = self.view_state.layout == Layout::Present;
+        let presents = self.view_state.arrangement.layout == Layout::Present;
         let facts = Facts::of(&queries, &self.session);
         if !presents {
             let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.behind()));
@@ -55,43 +55,57 @@ impl AppState {
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
-        if self.view_state.study {
+        if self.view_state.below == Some(Below::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
+        }
+        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Given)) {
+            let found = self.assessed();
+            let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
+            let shown = given::Shown { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
+            given::show(ui, shown, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
-            let ViewState { learns, front_by, .. } = &self.view_state;
-            let found = match learns {
+            let found = match self.view_state.arrangement.learns {
                 true => studio::Facts::learned(&queries, &self.session),
-                false => studio::Facts::weighed(&queries, &self.session, *front_by),
+                false => studio::Facts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
         }
-        if contrast.is_none() && self.view_state.side.shown && !designs {
+        if contrast.is_none() && self.view_state.arrangement.now().side.shown && !designs {
             if let Some(thing) = self.view_state.revealed.take() {
                 place::open(ui.ctx(), thing, &self.session);
             }
             if let Some(path) = self.view_state.looked_up.take() {
                 side::look_up(ui.ctx(), &path);
             }
-            self.view_state.side.width = side::show(ui, &self.session, &facts, &self.view_state, &mut commands);
+            let width = side::show(ui, &self.session, &facts, &self.view_state, &mut commands);
+            self.view_state.arrangement.now_mut().side.width = width;
         }
-        self.view_state.lit = place::lit(ui.ctx());
-        self.view_state.lit_links = place::lit_links(ui.ctx());
-        if self.view_state.plots.shown && !designs {
+        self.view_state.pointed.lit = place::lit(ui.ctx());
+        self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
+        if self.view_state.arrangement.now().plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
             if std::mem::take(&mut self.looks) {
                 plots::focus(ui.ctx());
             }
             let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
             let what = plots::Shown { session, queries: &queries, signals, comparison: beside, view_state };
-            self.view_state.plots.width = plots::show(ui, &what, &mut commands);
+            let width = plots::show(ui, &what, &mut commands);
+            self.view_state.arrangement.now_mut().plots.width = width;
         }
         let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
-        let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
+        let scene = viewport::show(
+            ui,
+            &self.session,
+            (&self.views, self.base_exaggeration()),
+            both,
+            &mut self.view_state,
+            &mut commands,
+        );
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
@@ -107,9 +121,7 @@ impl AppState {
             .iter()
             .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
         {
-            self.view_state.message = None;
-            self.view_state.left_branch = false;
-            self.view_state.refused = None;
+            self.view_state.said = Said::default();
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();
@@ -117,7 +129,7 @@ impl AppState {
         for command in commands {
             let seen = self.intro.is_some().then(|| command.clone());
             self.carry_out(command);
-            let held = self.view_state.grabbed.is_some();
+            let held = self.view_state.gesture.grabbed.is_some();
             if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
                 intro.sees(&command, &self.session, held);
             }
@@ -139,9 +151,9 @@ impl AppState {
             ctx.add_plugin(order::Order::default());
             self.fonts = true;
         }
-        if self.dressed != Some(self.view_state.theme) {
-            theme::apply(ctx, self.view_state.theme);
-            self.dressed = Some(self.view_state.theme);
+        if self.dressed != Some(self.view_state.arrangement.theme) {
+            theme::apply(ctx, self.view_state.arrangement.theme);
+            self.dressed = Some(self.view_state.arrangement.theme);
         }
     }
 }

@@ -36,7 +36,6 @@ impl AppState {
         } else {
             self.pace.rest();
         }
-        self.adjust();
     }
 
     /// What the last [`pass`](Self::pass) has taken, s, from who reads a clock: steps that take long are done in smaller
@@ -62,6 +61,6 @@ impl AppState {
     }
 
     pub(super) fn loops(&self) -> bool {
-        self.view_state.loops && self.session.is_playing() && self.view_state.grabbed.is_none()
+        self.view_state.loops && self.session.is_playing() && self.view_state.gesture.grabbed.is_none()
     }
 }

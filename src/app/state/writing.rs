@@ -4,17 +4,13 @@ use std::path::{Path, PathBuf};
 
 use super::AppState;
 use super::beside::fault;
-use crate::app::background::{Background, Slot, ended};
-use crate::app::{PlotFile, plots};
+use crate::app::{Activity, PlotFile, plots};
 use crate::exchange::cut::Cut;
 use crate::exchange::form::Form;
 use crate::query::Ticket;
 
 /// What a file is to hold, made beside the window.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
-
-/// A slot for what writes a file, with what is to be known of it then; it comes to what there is to say.
-type Writing<K> = Slot<K, Result<String, String>>;
 
 impl AppState {
     /// Whether a file is replaced where it is there; it may not be without the person's word for that.
@@ -26,29 +22,36 @@ impl AppState {
         }
     }
 
-    /// Starts to write a file, if it is free or may be replaced, and nothing else is being written in that slot. What is
+    /// Starts to write a file, if it is free or may be replaced, and nothing else of its kind is being written. What is
     /// done at once says at once how it went, with the dialog still open where it failed.
-    fn write<K, W>(
+    fn write<W>(
         &mut self,
         path: &Path,
-        (slot, busy): (fn(&mut Background) -> &mut Writing<K>, &str),
-        of: K,
+        (activity, busy): (Activity, &str),
+        of: Option<(u64, PathBuf)>,
         work: impl FnOnce(&Self) -> Result<W, String>,
     ) -> Result<(), String>
     where
         W: FnOnce(&Ticket, &Path, bool) -> Result<String, String> + Send + 'static,
     {
         let replaces = self.may_replace(path)?;
-        if slot(&mut self.background).is_some() {
+        if self.background.runs(activity) {
             return Err(busy.into());
         }
         let (work, path) = (work(self)?, path.to_owned());
-        let job = self.background.start(move |ticket| work(ticket, &path, replaces));
-        *slot(&mut self.background) = Some((of, job));
+        let work = move |ticket: &Ticket| work(ticket, &path, replaces);
+        self.background.run(activity, work, move |app_state, said: Option<Result<String, String>>| {
+            let said = said.unwrap_or_else(|| Err(fault(activity.words())));
+            if let (Ok(_), Some((changes, file))) = (&said, of) {
+                app_state.saving.saved = changes;
+                app_state.saving.uses(&file);
+            }
+            app_state.tell(said.map(Some));
+        });
         self.collect();
-        let failed = matches!(self.view_state.message, Some((_, true)));
-        if slot(&mut self.background).is_some() || !failed {
-            self.view_state.dialog = None;
+        let failed = matches!(self.view_state.said.message, Some((_, true)));
+        if self.background.runs(activity) || !failed {
+            self.view_state.open.dialog = None;
         }
         Ok(())
     }
@@ -61,7 +64,7 @@ impl AppState {
         of: Option<(u64, PathBuf)>,
         content: impl FnOnce(&Self) -> Result<Content, String>,
     ) -> Result<(), String> {
-        self.write(path, (|background| &mut background.saving, busy), of, |app_state| {
+        self.write(path, (Activity::Saving, busy), of, |app_state| {
             let content = content(app_state)?;
             Ok(move |_: &Ticket, path: &Path, replaces: bool| {
                 crate::files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
@@ -107,7 +110,7 @@ impl AppState {
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
         let busy = "one recording is under way: want it to end first";
-        self.write(path, (|background| &mut background.recording, busy), (), |app_state| {
+        self.write(path, (Activity::Recording, busy), None, |app_state| {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
@@ -126,26 +129,6 @@ impl AppState {
     #[cfg(not(feature = "record"))]
     pub(super) fn record(&mut self, _path: &Path) -> Result<(), String> {
         Err("this build cannot record: build it with the feature `record`".into())
-    }
-
-    /// Takes what has been written; whether anything has.
-    pub(super) fn collect_written(&mut self) -> bool {
-        let mut any = false;
-        if let Some(((), said)) = ended(&mut self.background.recording) {
-            let said = said.unwrap_or_else(|| Err(fault("the recording")));
-            self.tell(said.map(Some));
-            any = true;
-        }
-        if let Some((session, said)) = ended(&mut self.background.saving) {
-            let said = said.unwrap_or_else(|| Err(fault("saving")));
-            if let (Ok(_), Some((changes, file))) = (&said, session) {
-                self.saving.saved = changes;
-                self.saving.uses(&file);
-            }
-            self.tell(said.map(Some));
-            any = true;
-        }
-        any
     }
 }
 

@@ -178,7 +178,7 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
 }
 
 /// A bound that may be left out, shown in a unit that is so much of the setting's own.
-fn bounded(
+pub(super) fn bounded(
     ui: &mut Ui,
     p: &Palette,
     (row, path, scale): (&Row<'_>, &str, f64),
@@ -206,7 +206,7 @@ fn bounded(
 }
 
 /// The switch of a setting that may be left out: with its usual value, or none.
-fn optional(
+pub(super) fn optional(
     ui: &mut Ui,
     (label, tip): (&str, &str),
     is_set: bool,

@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
 
 /// The link in hand, under the pointer or spoken of, by its number.
 pub(super) fn hot_link(view_state: &ViewState, session: &Session) -> Option<usize> {
-    let hot = view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit);
+    let hot = view_state.gesture.grabbed.map(|pick| pick.handle).or(view_state.pointed.hot).or(view_state.pointed.lit);
     hot.and_then(|handle| link_of(handle, session))
 }
 

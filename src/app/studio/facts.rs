@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::lengths::Sought;
 use super::lesson::Lesson;
 use crate::mechanics::balance::{Breakdown, Condition};
 use crate::mechanics::counterweights::{Front, FrontSearch, NoWeights, Placed, Residual, over_payloads};
@@ -13,6 +14,8 @@ use crate::session::Session;
 use crate::session::design::Brief;
 use crate::settings::number::subscript;
 use crate::study::front_point::FrontMeasure;
+use crate::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
+use crate::study::lengths::Seeking;
 use crate::study::measures::Measures;
 
 /// How many machines the front has.
@@ -31,6 +34,10 @@ pub struct Facts {
     pub(super) payloads: Option<Arc<Vec<Residual>>>,
     /// What less inertia costs in mass; none while the equations are on display.
     front: Option<Asked<Points>>,
+    /// A search for lengths of this machine, if there is one.
+    pub(super) sought: Option<Sought>,
+    /// Fronts of other machines; none while the equations are on display.
+    beside: Option<Asked<Vec<MachineFront>>>,
     /// What tells the machines of the front apart, of each of them.
     pub(super) told: Option<Arc<Told>>,
     /// Its equations; none while the front is on display.
@@ -185,9 +192,14 @@ impl Term {
 const NOTHING: f64 = 1e-9;
 
 impl Facts {
-    /// Of the machine on display, with its front.
-    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>) -> Self {
+    /// Of the machine on display, with its front, and with those of others beside it.
+    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontOf]) -> Self {
         let mut facts = Self::of(queries, session);
+        facts.beside = (!others.is_empty()).then(|| {
+            let machines = others.to_vec();
+            let request = FrontsRequest { machines, count: POINTS, motion: None, workspace: false };
+            queries.ask_beside::<Fronts>(&request)
+        });
         let Some(bare) = &facts.sums.bare else { return facts };
         let front = queries.ask_beside::<FrontSearch>(&asked(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
@@ -221,6 +233,8 @@ impl Facts {
             payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
+            sought: queries.newest::<Seeking>(),
+            beside: None,
             told: None,
             lesson: None,
         }
@@ -242,6 +256,19 @@ impl Facts {
             Some(Ok(points)) => Ok(points),
             Some(Err(why)) => Err(why),
             None => Ok(&[]),
+        }
+    }
+
+    /// The fronts of other machines, as far as they are known.
+    pub(super) fn beside(&self) -> &[MachineFront] {
+        self.beside.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
+    }
+
+    /// How much of them is found, while that is under way.
+    pub(super) fn beside_under_way(&self) -> Option<f64> {
+        match self.beside.as_ref()?.state {
+            State::UnderWay(share) => Some(share),
+            _ => None,
         }
     }
 

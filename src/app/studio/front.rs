@@ -3,6 +3,7 @@
 use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
+use super::beside;
 use super::facts::{Facts, Point};
 use crate::app::plots::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{bold, colour, plain};
@@ -44,7 +45,8 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
     // Taken counterweights are shown among the others, where they are within reach of them.
     let shown = mass > NOTHING;
-    let of = |i: usize| all.iter().map(move |at| at[i]);
+    let everything: Vec<[f64; 2]> = all.iter().copied().chain(beside::places(facts)).collect();
+    let of = |i: usize| everything.iter().map(move |at| at[i]);
     let ends = |i: usize, now: f64| {
         let (low, high) = of(i).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         let (low, high) = if shown { (low.min(now), high.max(now)) } else { (low, high) };
@@ -74,6 +76,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
                 plot.hline(HLine::new("now D", inertia).color(tone).width(1.0).style(dashed).allow_hover(false));
                 plot.vline(VLine::new("now kg", mass).color(tone).width(1.0).style(dashed).allow_hover(false));
             }
+            beside::draw(plot, facts, p);
             let line = Line::new("front", PlotPoints::from(all.clone())).width(1.8).color(colour(p.zero));
             plot.line(line.allow_hover(false));
             for (i, at) in all.iter().enumerate() {
@@ -119,6 +122,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
     say(ui, points, (near, told.as_ref()), view_state, facts, commands);
+    beside::list(ui, facts, p, commands);
 }
 
 /// Digits that tell the marks of an axis of a length apart.

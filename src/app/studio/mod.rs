@@ -3,9 +3,11 @@
 
 mod asked;
 mod bars;
+mod beside;
 mod equations;
 mod facts;
 mod front;
+mod lengths;
 mod lesson;
 mod measures;
 mod payload;
@@ -35,21 +37,22 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     let p = view_state.palette();
     let balance = (ui.available_width() - TABLE - SCENE).clamp(LEAST, BALANCE);
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 12, bottom: 8 });
-    let (one, other) = match view_state.swapped {
+    let (one, other) = match view_state.arrangement.swapped {
         true => (Panel::right("links"), Panel::left("balance")),
         false => (Panel::left("links"), Panel::right("balance")),
     };
-    if view_state.side.shown {
+    if view_state.arrangement.now().side.shown {
         one.exact_size(TABLE).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 asked::show(ui, session.scenario(), is_balanced, &p, commands);
+                lengths::show(ui, session.scenario(), facts.sought.as_ref(), &p, commands);
                 measures::show(ui, session, facts, &p);
             });
         });
     }
-    if view_state.plots.shown {
+    if view_state.arrangement.now().plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
             tabs::show(ui, view_state, commands);
             if let Some(lesson) = &facts.lesson {

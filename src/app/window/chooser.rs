@@ -37,7 +37,7 @@ impl Chooser {
     /// when a file is asked for once more while a dialog of the system hides somewhere.
     pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
         let Some((dialog, job)) = self.asked.take() else {
-            if let Some(dialog) = app_state.view_state().dialog.clone().filter(|_| !self.none) {
+            if let Some(dialog) = app_state.view_state().open.dialog.clone().filter(|_| !self.none) {
                 app_state.carry_out(ViewChange::Dialog(None));
                 let last = app_state.recent().first().and_then(|file| file.parent());
                 let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
@@ -78,7 +78,8 @@ impl Chooser {
 /// How names of such files end, the usual one first.
 fn endings(purpose: &Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open | Purpose::Save => vec!["toml"],
+        Purpose::Open => vec!["toml", "urdf", "xml", "csv"],
+        Purpose::Save => vec!["toml"],
         Purpose::Record => vec!["rrd"],
         Purpose::Plot(_, PlotFile::Csv) => vec!["csv"],
         Purpose::Plot(_, PlotFile::Svg) => vec!["svg"],
@@ -102,7 +103,8 @@ type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
     let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
-        Purpose::Open | Purpose::Save => "Sessions",
+        Purpose::Open => "Sessions, machines, models and tables",
+        Purpose::Save => "Sessions",
         Purpose::Record => "Recordings",
         Purpose::Plot(..) => "Plots",
         Purpose::Machine => "Models, drawings and lists",

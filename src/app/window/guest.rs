@@ -125,7 +125,7 @@ impl App {
         self.app_state.ui(ui);
         let now = Instant::now();
         self.times.end(now);
-        if self.app_state.view_state().times {
+        if self.app_state.view_state().open.times {
             self.times.show(ui.ctx(), &self.app_state.view_state().palette(), now);
         }
         if let Some((chooser, window)) = self.chooser.as_mut().zip(self.window.as_deref()) {

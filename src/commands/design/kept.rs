@@ -1,13 +1,11 @@
 //! `stillbase design --keep`
 
 use clap::Args;
-use serde::Serialize;
-use stillbase::mechanics::balance::{Adjusted, Keep, NotKept, Quantity, keep};
-use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::mechanics::balance::{Keep, NotKept};
+use stillbase::mechanics::machine::Machine;
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, significant};
-use stillbase::study::balance_constants::BalanceConstants;
-use stillbase::study::measures::Measures;
+use stillbase::study::centres::{KeptChange, KeptReport, kept};
 
 use super::super::check::balance_tables;
 use super::super::failure::Failure;
@@ -41,26 +39,10 @@ impl KeepArguments {
         machine: &Machine,
         motion: Option<&Motion>,
         penalty: &[f64],
-    ) -> Result<(Machine, Answer), Failure> {
+    ) -> Result<(Machine, KeptReport), Failure> {
         let mut asked = Keep::coms(machine, penalty);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        let kept = keep(machine, &asked).map_err(unkept)?;
-        let change = |(one, value): (&Adjusted, &f64)| Change {
-            key: one.parameter.key(machine),
-            from: one.parameter.value(machine.spec()).unwrap_or_default(),
-            to: *value,
-            penalty: one.penalty,
-            unit: if one.parameter.quantity == Quantity::Mass { "kg" } else { "m" },
-        };
-        let changes = asked.parameters.iter().zip(&kept.values).map(change).collect();
-        let answer = Answer {
-            changes,
-            cost: kept.cost,
-            certified: kept.certified,
-            measures: Measures::of(machine, &kept.machine, motion),
-            balance: BalanceConstants::of(&Inertia::of(&kept.machine)),
-        };
-        Ok((kept.machine, answer))
+        kept(machine, &asked, motion).map_err(unkept)
     }
 }
 
@@ -72,47 +54,21 @@ fn unkept(why: NotKept) -> Failure {
     }
 }
 
-/// What has changed, and what it achieves.
-#[derive(Serialize)]
-pub struct Answer {
-    changes: Vec<Change>,
-    /// Σ (p Δ)² over the changes.
-    cost: f64,
-    /// Whether nothing else within the limits has less.
-    certified: bool,
-    #[serde(flatten)]
-    measures: Measures,
-    #[serde(flatten)]
-    balance: BalanceConstants,
-}
-
-#[derive(Serialize)]
-struct Change {
-    key: String,
-    from: f64,
-    to: f64,
-    /// p, 1/m or 1/kg.
-    penalty: f64,
-    unit: &'static str,
-}
-
-impl Answer {
-    /// As a person reads it.
-    pub fn text(&self, machine: &Machine, by: &str) -> String {
-        let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
-        for Change { key, from, to, penalty, unit } in &self.changes {
-            let [was, is, change, p] = [*from, *to, to - from, *penalty].map(|x| fixed(x, 9));
-            table.row([key.clone(), was, is, change, (*unit).into(), p]);
-        }
-        let (name, cost) = (machine.name(), significant(self.cost));
-        let sure = match self.certified {
-            true => "",
-            false => "not certified, the best of several searches: a mass and a place of one body may both change\n",
-        };
-        format!(
-            "{name} · the least change, {by} · Σ (p Δ)² {cost}\n{sure}\n{table}\n{}\n{}",
-            measures::text(&self.measures),
-            balance_tables(&self.balance, machine)
-        )
+/// As a person reads it.
+pub fn text(report: &KeptReport, machine: &Machine, by: &str) -> String {
+    let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
+    for KeptChange { key, from, to, penalty, unit } in &report.changes {
+        let [was, is, change, p] = [*from, *to, to - from, *penalty].map(|x| fixed(x, 9));
+        table.row([key.clone(), was, is, change, (*unit).into(), p]);
     }
+    let (name, cost) = (machine.name(), significant(report.cost));
+    let sure = match report.certified {
+        true => "",
+        false => "not certified, the best of several searches: a mass and a place of one body may both change\n",
+    };
+    format!(
+        "{name} · the least change, {by} · Σ (p Δ)² {cost}\n{sure}\n{table}\n{}\n{}",
+        measures::text(&report.measures),
+        balance_tables(&report.balance, machine)
+    )
 }

@@ -1,5 +1,6 @@
 //! `stillbase design`
 
+mod fronts;
 mod kept;
 mod measures;
 mod weighed;
@@ -8,24 +9,21 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValue;
-use serde::Serialize;
 use stillbase::files::write_new;
-use stillbase::mechanics::balance::{self, Preset};
-use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
-
-use stillbase::study::balance_constants::BalanceConstants;
-use stillbase::study::measures::Measures;
+use stillbase::mechanics::balance::Preset;
+use stillbase::mechanics::machine::{Machine, to_toml};
+use stillbase::study::centres::designed;
 
 use super::check::balance_tables;
 use super::exit::say;
 use super::failure::Failure;
-use super::input::{MachineArgument, Settings, scenario};
+use super::input::{MachineArgument, Settings, choice, scenario};
 use super::output::{Format, Table, check_output};
 use kept::KeepArguments;
 use stillbase::planning::Motion;
 use stillbase::session::{Run, settled};
 use stillbase::settings::number::{counted, fixed};
+use stillbase::settings::word::Choice;
 use weighed::WeighArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -38,6 +36,9 @@ use weighed::WeighArguments;
 ///
 /// With --counterweights the links stay as they are, and discs on them do it: the lightest, or those of the least
 /// inertia, as a cone program proves. "gap" is the most by which the best may lie below what was found.
+///
+/// With --counterweights --front and several machines the front of each stands beside those of the others, under the same
+/// bounds; a machine that nothing balances within them says why in its place.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -49,6 +50,7 @@ Examples:
   stillbase design nine-link --counterweights --objective torque --task case-3
   stillbase design two-drive --counterweights --objective inertia --thickness 0.02
   stillbase design nine-link-bare --counterweights --objective mass=1,inertia=5 --max-mass 1=8 --front 9
+  stillbase design nine-link-bare two-drive my.toml --counterweights --front 9
   stillbase design nine-link-bare --counterweights --clearance 0.01 --max-radius 0.12
   stillbase design nine-link-bare --counterweights --payload 0,0.2
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
@@ -56,13 +58,15 @@ Examples:
 pub struct Design {
     #[command(flatten)]
     machine: MachineArgument,
+    /// More machines, for their fronts beside that of the first: the same bounds and settings are for all
+    #[arg(value_name = "MACHINE", requires = "front", conflicts_with_all = ["objective", "length", "output"])]
+    beside: Vec<String>,
     /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
     #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
-    /// Penalties by name. table-1: those that give Table I (the default for nine links); as-printed: those printed
-    /// beside Eq. (10); minimum-norm: 1 for every link (the default otherwise)
-    #[arg(long, value_enum, conflicts_with = "penalty")]
-    preset: Option<PresetName>,
+    /// Penalties by name; without, table-1 for nine links, minimum-norm for others
+    #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
+    preset: Option<Preset>,
     #[command(flatten)]
     kept: KeepArguments,
     #[command(flatten)]
@@ -87,36 +91,14 @@ fn penalty(text: &str) -> Result<f64, String> {
     within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
 }
 
-#[derive(Clone, Copy)]
-struct PresetName(Preset);
-
-impl clap::ValueEnum for PresetName {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self(Preset::ALL[0].0), Self(Preset::ALL[1].0), Self(Preset::ALL[2].0)]
-    }
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(name_of(self.0)))
-    }
-}
-
-fn name_of(preset: Preset) -> &'static str {
-    Preset::ALL.iter().find(|(p, _)| *p == preset).map_or("", |(_, name)| name)
-}
-
-#[derive(Serialize)]
-struct Answer {
-    com: Vec<f64>,
-    #[serde(flatten)]
-    measures: Measures,
-    #[serde(flatten)]
-    balance: BalanceConstants,
-}
-
 impl Design {
     /// Prints the new centres of mass and what they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
+        if !self.beside.is_empty() {
+            return self.fronts();
+        }
         let machine = self.machine.load()?;
-        let task = self.task(&machine)?;
+        let task = self.task(&[&machine])?;
         let motion = task.as_ref().map(|run| &*run.plan().motion);
         if self.weighing.counterweights {
             return self.weigh(&machine, motion);
@@ -128,12 +110,7 @@ impl Design {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let designed = balance::design(&machine, &penalty)?;
-        let answer = Answer {
-            com: designed.links().iter().map(|l| l.com).collect(),
-            measures: Measures::of(&machine, &designed, motion),
-            balance: BalanceConstants::of(&Inertia::of(&designed)),
-        };
+        let (designed, answer) = designed(&machine, &penalty, motion)?;
         if let Some(file) = &self.output {
             save(&designed, file, self.force, format!("{}, balanced with {by}", machine.name()))?;
         }
@@ -156,19 +133,22 @@ impl Design {
         if let Some(file) = &self.output {
             save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
         }
-        self.format.print(&answer, |answer| answer.text(machine, by))
+        self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
-    /// The task whose motion counts.
-    fn task(&self, machine: &Machine) -> Result<Option<Run>, Failure> {
+    /// The task whose motion counts, if one of the machines has as many drives as it moves.
+    fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
         let Some(name) = &self.task else { return Ok(None) };
         let run = Run::new(&settled(&scenario(name, &Settings::default())?)?.0)?;
-        let (has, want) = (run.scenario().machine.drives(), machine.drives());
-        match has == want {
+        let has = run.scenario().machine.drives();
+        let mut want: Vec<String> = machines.iter().map(|machine| machine.drives().to_string()).collect();
+        want.dedup();
+        match machines.iter().any(|machine| machine.drives() == has) {
             true => Ok(Some(run)),
             false => Err(Failure::wrong_input(format!(
-                "--task {name}: its machine has {}: want one of {want}",
-                counted(has, "drive")
+                "--task {name}: its machine has {}: want one of {}",
+                counted(has, "drive"),
+                want.join(" or ")
             ))),
         }
     }
@@ -190,8 +170,8 @@ impl Design {
             return Ok((self.penalty.clone(), "the given penalties".into()));
         }
         let usual = if links == 9 { Preset::Table1 } else { Preset::MinimumNorm };
-        let preset = self.preset.map_or(usual, |p| p.0);
-        Ok((preset.penalty(links)?, format!("preset {}", name_of(preset))))
+        let preset = self.preset.unwrap_or(usual);
+        Ok((preset.penalty(links)?, format!("preset {}", preset.name())))
     }
 }
 

@@ -10,6 +10,7 @@ use stillbase::settings::number::{fixed, nine_digits, significant};
 use stillbase::study::counterweights::{
     CounterweightReport, CounterweightRequest, NoCounterweights, SoughtLengths, balanced, taken_off,
 };
+use stillbase::study::front_point::FrontPoint;
 use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths};
 use stillbase::study::measures::greatest_accelerations;
 
@@ -133,6 +134,11 @@ impl WeighArguments {
         })
     }
 
+    /// In how many machines a front is asked for; two where none is.
+    pub fn front_count(&self) -> usize {
+        self.front.map_or(2, usize::from)
+    }
+
     fn rotors(&self, machine: &Machine) -> Result<Vec<FreeRotor>, Failure> {
         let drives = &machine.spec().drives;
         let find = |name: &str| {
@@ -179,16 +185,7 @@ impl WeighArguments {
     /// Finds them, and what they come to.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
         let weighing = self.asked(machine, motion)?;
-        let taken_off = taken_off(machine);
-        if !taken_off.is_empty() {
-            let each = taken_off.iter().map(|weight| {
-                format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
-            });
-            say(format!(
-                "taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
-                each.collect::<Vec<_>>().join("; ")
-            ));
-        }
+        tell_taken_off(machine, "");
         let lengths = self.lengths(&weighing);
         let within = match self.seconds.filter(|_| lengths.is_some()) {
             Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
@@ -209,6 +206,21 @@ impl WeighArguments {
     }
 }
 
+/// Says which counterweights of a machine are taken off, after words that say of which.
+pub fn tell_taken_off(machine: &Machine, of: &str) {
+    let taken_off = taken_off(machine);
+    if taken_off.is_empty() {
+        return;
+    }
+    let each = taken_off.iter().map(|weight| {
+        format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
+    });
+    say(format!(
+        "{of}taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
+        each.collect::<Vec<_>>().join("; ")
+    ));
+}
+
 /// What is asked for is wrong, or has no answer.
 fn unsought(why: NoLengths) -> Failure {
     match why {
@@ -219,7 +231,7 @@ fn unsought(why: NoLengths) -> Failure {
 }
 
 /// What is asked for is wrong, or has no answer.
-fn unweighed(why: NoWeights) -> Failure {
+pub fn unweighed(why: NoWeights) -> Failure {
     match why {
         NoWeights::OutOfRange { .. } | NoWeights::Twice(_) | NoWeights::RotorTwice(_) | NoWeights::NoRotor(_) => {
             Failure::wrong_input(why)
@@ -263,6 +275,16 @@ fn objective(text: &str) -> Result<Objective, String> {
         true => Ok(objective),
         false => Err(want()),
     }
+}
+
+/// What is told of each machine of a front.
+pub const FRONT: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"];
+
+/// The same of one of them.
+pub fn front_cells(point: &FrontPoint) -> [String; 5] {
+    let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
+    let FrontPoint { added_mass, inertia, torque, workspace, off_by } = *point;
+    [fixed(added_mass, 6), fixed(inertia, 6), or_none(torque), or_none(workspace), fixed(off_by, 6)]
 }
 
 /// As a person reads it.
@@ -318,12 +340,8 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
     }
     if !report.front_points.is_empty() {
-        let mut table = Table::new(["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"]);
-        let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
-        for point in &report.front_points {
-            let known = [fixed(point.added_mass, 6), fixed(point.inertia, 6), or_none(point.torque)];
-            table.row(known.into_iter().chain([or_none(point.workspace), fixed(point.off_by, 6)]));
-        }
+        let mut table = Table::new(FRONT);
+        report.front_points.iter().for_each(|point| table.row(front_cells(point)));
         text.push_str(&format!("\n{table}"));
     }
     text

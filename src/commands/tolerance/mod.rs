@@ -11,9 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use stillbase::files::shards::{Head, ShardError, StudyId, Writer, merge};
 use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase::session::{Run, settled};
-use stillbase::study::tolerance::{
-    AgainstTracking, Agreement, Bands, Distributions, Ensemble, Mode, Outcome, Shares, ToleranceError, Yields, simulate,
-};
+use stillbase::study::tolerance::{Distributions, Ensemble, Mode, Outcome, Part, PartReport, ToleranceError, Yields};
 
 use self::report::{Answer, Merged};
 use crate::commands::exit::say;
@@ -194,8 +192,7 @@ impl Tolerance {
         let section = self.section(&scenario);
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
-        let end = |i: u64| (u128::from(samples) * u128::from(i) / u128::from(n)) as u64;
-        let range = end(i - 1)..end(i);
+        let range = stillbase::study::tolerance::shard(samples, (i, n));
         if range.end - range.start > MOST_AT_ONCE {
             let why = format!("{} machines at once: want at most {MOST_AT_ONCE}, in shards", range.end - range.start);
             return Err(Failure::wrong_input(why));
@@ -214,36 +211,22 @@ impl Tolerance {
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
         let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
-        let Some(distributions) = Distributions::of(&outcomes) else {
-            return Err(Failure::no_answer("no machine was drawn"));
-        };
-        let bands = Bands::of(&ensemble, samples);
-        // By the same way as the machines beside it: the same base, control and friction, or perfect tracking for all.
-        let nominal = match self.simulate {
-            true => simulate(&run, &plant).map_err(|e| Failure::from(e).of(&scenario.name))?,
-            false => ensemble.nominal_outcome(),
-        };
-        let answer = Answer {
-            scenario: scenario.name.clone(),
-            simulated: self.simulate,
+        let part = Part {
+            run: &run,
+            ensemble: &ensemble,
             samples,
-            shard: [range.start, range.end],
-            seed,
-            motion_time: motion.duration(),
-            parameters: ensemble.parameters().to_vec(),
-            nominal,
-            distributions,
-            yields: Yields::of(&outcomes, section.moment_limit, section.force_limit),
-            shares: Shares::of(&ensemble),
-            agreement: Agreement::of(&bands),
-            bands,
-            against_tracking: AgainstTracking::of(&outcomes, &tracking),
-            file: self.output.as_ref().map(|file| file.display().to_string()),
+            first: range.start,
+            outcomes: &outcomes,
+            tracking: &tracking,
+            simulated: self.simulate,
         };
+        let report = PartReport::of(&part, &section).map_err(|e| Failure::from(e).of(&scenario.name))?;
+        let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
+        let answer = Answer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         if let Some(file) = &answer.file {
             say(format!("wrote {file}"));
         }
-        self.format.print(&answer, |answer| answer.text())
+        self.format.print(&answer, |answer| report::text(&answer.report))
     }
 
     /// Evaluates the machines of a range and writes them if asked; outcomes, and those of perfect tracking where the

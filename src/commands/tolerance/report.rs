@@ -2,9 +2,7 @@
 
 use serde::Serialize;
 use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::tolerance::{
-    AgainstTracking, Agreement, Bands, Distribution, Distributions, Kept, Outcome, Parameter, Share, Shares, Yields,
-};
+use stillbase::study::tolerance::{Distribution, Distributions, Kept, Outcome, PartReport, Share, Yields};
 
 use crate::commands::output::Table;
 
@@ -73,37 +71,9 @@ impl Merged {
 /// What a study comes to.
 #[derive(Serialize)]
 pub struct Answer {
-    /// Its name.
-    pub scenario: String,
-    /// Whether machines were simulated; else they track perfectly.
-    pub simulated: bool,
-    /// Machines of the whole study.
-    pub samples: u64,
-    /// First sample of this shard, and the one after its last.
-    pub shard: [u64; 2],
-    /// Which random machines.
-    pub seed: u64,
-    /// s.
-    pub motion_time: f64,
-    /// What varies.
-    pub parameters: Vec<Parameter>,
-    /// The machine without deviations, by perfect tracking or simulated, as the machines are.
-    pub nominal: Outcome,
-    /// Peaks and root mean squares.
+    /// Of its machines.
     #[serde(flatten)]
-    pub distributions: Distributions,
-    /// How many keep within limits.
-    #[serde(rename = "yield")]
-    pub yields: Yields,
-    /// Which tolerance matters.
-    pub shares: Shares,
-    /// n_B and |f_B| over time.
-    pub bands: Bands,
-    /// Of first order with all orders.
-    pub agreement: Agreement,
-    /// Of perfect tracking with the simulation.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub against_tracking: Option<AgainstTracking>,
+    pub report: PartReport,
     /// The file that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
@@ -115,105 +85,103 @@ const FEW: u64 = 100;
 /// Rows of the table of shares; the rest is one row.
 const SHOWN: usize = 12;
 
-impl Answer {
-    /// As text.
-    pub fn text(&self) -> String {
-        let [from, to] = self.shard;
-        let mode = if self.simulated { "each simulated" } else { "perfect tracking" };
-        let which = match to - from == self.samples {
-            true => counted(self.samples, "machine"),
-            false => format!("machines {from} to {} of {}", to - 1, self.samples),
-        };
-        let (seed, instants, time) = (self.seed, self.bands.time.len(), fixed(self.motion_time, 3));
-        let mut text = format!(
-            "{} · {which}, {mode}, seed {seed}, varied in {}, {instants} instants in {time} s\n\n{}",
-            self.scenario,
-            counted(self.parameters.len(), "number"),
-            distributions_table(&self.distributions, Some(&self.nominal)),
-        );
-        if let Some(yields) = yields_table(&self.yields) {
-            text += &format!("\n{yields}");
-        }
-        text += &format!("\n{}\n{}", self.shares_table(), self.orders());
-        for drawn in self.parameters.iter().filter(|d| d.cut > 0.0) {
-            let share = shown(100.0 * drawn.cut, 3);
-            text += &format!("{}: {share} % of its distribution lies below 0 and is never drawn\n", drawn.key);
-        }
-        if let Some(c) = &self.against_tracking {
-            let percent = |ratio: f64| format!("{:+.2} %", 100.0 * (ratio - 1.0));
-            text += &format!(
-                "Simulated at every step against perfect tracking at the instants: mean peak |n_B| {}, differing by at most \
+/// As text.
+pub fn text(report: &PartReport) -> String {
+    let [from, to] = report.shard;
+    let mode = if report.simulated { "each simulated" } else { "perfect tracking" };
+    let which = match to - from == report.samples {
+        true => counted(report.samples, "machine"),
+        false => format!("machines {from} to {} of {}", to - 1, report.samples),
+    };
+    let (seed, instants, time) = (report.seed, report.bands.time.len(), fixed(report.motion_time, 3));
+    let mut text = format!(
+        "{} · {which}, {mode}, seed {seed}, varied in {}, {instants} instants in {time} s\n\n{}",
+        report.scenario,
+        counted(report.parameters.len(), "number"),
+        distributions_table(&report.distributions, Some(&report.nominal)),
+    );
+    if let Some(yields) = yields_table(&report.yields) {
+        text += &format!("\n{yields}");
+    }
+    text += &format!("\n{}\n{}", shares_table(report), orders(report));
+    for drawn in report.parameters.iter().filter(|d| d.cut > 0.0) {
+        let share = shown(100.0 * drawn.cut, 3);
+        text += &format!("{}: {share} % of its distribution lies below 0 and is never drawn\n", drawn.key);
+    }
+    if let Some(c) = &report.against_tracking {
+        let percent = |ratio: f64| format!("{:+.2} %", 100.0 * (ratio - 1.0));
+        text += &format!(
+            "Simulated at every step against perfect tracking at the instants: mean peak |n_B| {}, differing by at most \
                  {} N m; mean peak |f_B| {}, by at most {} N\n",
-                percent(c.peak_moment_ratio),
-                fixed(c.peak_moment_difference, 6),
-                percent(c.peak_force_ratio),
-                fixed(c.peak_force_difference, 6),
-            );
-        }
-        text
-    }
-
-    /// The parameters that bring in the most variance, by the larger of their two shares.
-    fn shares_table(&self) -> Table {
-        let mut shares: Vec<_> = self.shares.parameters.iter().collect();
-        let rank = |s: &Share| s.moment_share.max(s.force_share);
-        shares.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
-        let mut table = Table::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"])
-            .with_words(2);
-        let percent = |x: f64| fixed(100.0 * x, 2);
-        for s in shares.iter().take(SHOWN) {
-            table.row([
-                s.key.clone(),
-                shown(s.deviation, 6),
-                s.unit.to_owned(),
-                fixed(s.moment_slope * s.deviation, 6),
-                percent(s.moment_share),
-                fixed(s.force_slope * s.deviation, 6),
-                percent(s.force_share),
-            ]);
-        }
-        if let Some(rest) = shares.get(SHOWN..).filter(|rest| !rest.is_empty()) {
-            let sum = |f: fn(&Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
-            let [moment, force] = [sum(|s| s.moment_share), sum(|s| s.force_share)];
-            let empty = String::new;
-            table.row([counted(rest.len(), "other"), empty(), empty(), empty(), moment, empty(), force]);
-        }
-        table
-    }
-
-    /// Where first order holds, and where it does not.
-    fn orders(&self) -> String {
-        let a = &self.agreement;
-        let mut table =
-            Table::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
-        let rows = [
-            ("mean of n_B: nominal, exact", &a.moment_mean, a.tolerance),
-            ("deviation of n_B: first order, exact", &a.moment_deviation, a.tolerance),
-            ("RMS of |f_B|: first order, exact", &a.force_rms, a.tolerance),
-            ("mean of |f_B|: nominal, sampled", &a.force_mean, a.sampled_tolerance),
-            ("deviation of |f_B|: first order, sampled", &a.force_deviation, a.sampled_tolerance),
-        ];
-        for (name, gap, tolerance) in rows {
-            let verdict = match gap.worst <= tolerance {
-                _ if name.ends_with("sampled") && self.bands.samples < FEW => "too few samples".into(),
-                true => "agree".to_owned(),
-                false => format!("part, by more than {} σ", fixed(tolerance, 2)),
-            };
-            let numbers = [fixed(gap.worst, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
-            table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict]));
-        }
-        let explained = |x: f64| fixed(100.0 * x, 2);
-        let mut text = format!(
-            "{table}\nFirst order explains {} % of the variance of n_B and {} % of that of f_B; the shares above are of that \
-             part.\n",
-            explained(self.shares.moment_first_order),
-            explained(self.shares.force_first_order),
+            percent(c.peak_moment_ratio),
+            fixed(c.peak_moment_difference, 6),
+            percent(c.peak_force_ratio),
+            fixed(c.peak_force_difference, 6),
         );
-        let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.worst > a.sampled_tolerance);
-        if parts && self.bands.samples >= FEW {
-            text += "|f_B| is a norm: near a balanced machine its mean and deviation are not of first order, so read its \
-                     percentiles and RMS.\n";
-        }
-        text
     }
+    text
+}
+
+/// The parameters that bring in the most variance, by the larger of their two shares.
+fn shares_table(report: &PartReport) -> Table {
+    let mut shares: Vec<_> = report.shares.parameters.iter().collect();
+    let rank = |s: &Share| s.moment_share.max(s.force_share);
+    shares.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    let mut table =
+        Table::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"]).with_words(2);
+    let percent = |x: f64| fixed(100.0 * x, 2);
+    for s in shares.iter().take(SHOWN) {
+        table.row([
+            s.key.clone(),
+            shown(s.deviation, 6),
+            s.unit.to_owned(),
+            fixed(s.moment_slope * s.deviation, 6),
+            percent(s.moment_share),
+            fixed(s.force_slope * s.deviation, 6),
+            percent(s.force_share),
+        ]);
+    }
+    if let Some(rest) = shares.get(SHOWN..).filter(|rest| !rest.is_empty()) {
+        let sum = |f: fn(&Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
+        let [moment, force] = [sum(|s| s.moment_share), sum(|s| s.force_share)];
+        let empty = String::new;
+        table.row([counted(rest.len(), "other"), empty(), empty(), empty(), moment, empty(), force]);
+    }
+    table
+}
+
+/// Where first order holds, and where it does not.
+fn orders(report: &PartReport) -> String {
+    let a = &report.agreement;
+    let mut table =
+        Table::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
+    let rows = [
+        ("mean of n_B: nominal, exact", &a.moment_mean, a.tolerance),
+        ("deviation of n_B: first order, exact", &a.moment_deviation, a.tolerance),
+        ("RMS of |f_B|: first order, exact", &a.force_rms, a.tolerance),
+        ("mean of |f_B|: nominal, sampled", &a.force_mean, a.sampled_tolerance),
+        ("deviation of |f_B|: first order, sampled", &a.force_deviation, a.sampled_tolerance),
+    ];
+    for (name, gap, tolerance) in rows {
+        let verdict = match gap.worst <= tolerance {
+            _ if name.ends_with("sampled") && report.bands.samples < FEW => "too few samples".into(),
+            true => "agree".to_owned(),
+            false => format!("part, by more than {} σ", fixed(tolerance, 2)),
+        };
+        let numbers = [fixed(gap.worst, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
+        table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict]));
+    }
+    let explained = |x: f64| fixed(100.0 * x, 2);
+    let mut text = format!(
+        "{table}\nFirst order explains {} % of the variance of n_B and {} % of that of f_B; the shares above are of that \
+             part.\n",
+        explained(report.shares.moment_first_order),
+        explained(report.shares.force_first_order),
+    );
+    let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.worst > a.sampled_tolerance);
+    if parts && report.bands.samples >= FEW {
+        text += "|f_B| is a norm: near a balanced machine its mean and deviation are not of first order, so read its \
+                     percentiles and RMS.\n";
+    }
+    text
 }

@@ -42,13 +42,9 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
         ]);
     }
     text.push_str(&table.to_string());
-    for group in &report.untold {
-        text.push_str(&match group.as_slice() {
-            [one] => format!("The data say nothing of {one}: it is taken from the machine's file.\n"),
-            several => {
-                format!("The data cannot tell {} apart: they are taken from the machine's file.\n", several.join(", "))
-            }
-        });
+    for words in report.untold_words() {
+        text.push_str(&words);
+        text.push('\n');
     }
     text.push('\n');
     text.push_str(&change_text(report));
@@ -57,27 +53,10 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
 }
 
 fn change_text(report: &TrimReport) -> String {
-    let changed: Vec<&Change> = report.changes.iter().filter(|c| c.to != c.from).collect();
-    let worth = report.worth.as_ref().map(|gain| {
-        let worth = gain.worth;
-        let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
-        let share = |x: f64| shown(100.0 * x, 1);
-        format!(
-            "force {} rms and moment {}, the mean square of both by {} ± {} %",
-            pair(worth.force, "N"),
-            pair(worth.moment, "N m"),
-            share(worth.gain),
-            share(worth.half_width)
-        )
-    });
+    let changed: Vec<&Change> = report.changed().collect();
+    let worth = report.worth.as_ref().map(|gain| gain.worth.words());
     if changed.is_empty() {
-        let off = report.numbers.iter().any(|number| number.balance && number.off);
-        return match worth.filter(|_| off) {
-            Some(worth) => {
-                format!("No change is shown to help. What is off could be mended so over these motions: {worth}.\n\n")
-            }
-            None => "Nothing to change: no line of (7) and (8) is shown to be off that a change could mend.\n\n".into(),
-        };
+        return format!("{}\n\n", report.why_no_change());
     }
     let mut table = Table::new(["change", "before", "now", "by", "unit"]);
     for Change { key, from, to, unit, .. } in changed {
@@ -90,17 +69,8 @@ fn change_text(report: &TrimReport) -> String {
 }
 
 fn suggestion_text(next: &Suggestion) -> String {
-    let Some(best) = next.candidates.first() else { return String::new() };
-    let time = fixed(next.duration, 2);
-    let now = match next.half_width {
-        Some(half) => format!("Least known is {}, ± {} {}", next.worst, shown(half, 6), next.unit),
-        None => format!("Nothing is known of {} yet", next.worst),
-    };
-    let then = match best.candidate.half_width {
-        half if half.is_finite() => format!("would make that ± {} {}", shown(half, 6), next.unit),
-        _ => "would not tell it either".into(),
-    };
-    let mut text = format!("{now}; {time} s of {} {then}.\n\n", best.motion);
+    let Some(words) = next.words() else { return String::new() };
+    let (time, mut text) = (fixed(next.duration, 2), format!("{words}\n\n"));
     let mut table = Table::new([
         format!("{time} s more of"),
         "amplitude rad".into(),

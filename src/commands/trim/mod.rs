@@ -7,13 +7,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use stillbase::files::table::motions;
 use stillbase::files::{finish_all, made};
-use stillbase::mechanics::balance::{Body, Hold, Keep, Parameter, Quantity};
+use stillbase::mechanics::balance::Keep;
 use stillbase::mechanics::counterweights::{Disc, Objective, Weighing};
 use stillbase::mechanics::machine::{Machine, to_toml};
 use stillbase::mechanics::planar::Vector;
 use stillbase::query::{Shared, answered};
 use stillbase::settings::number::counted;
-use stillbase::study::trim::{NoTrim, Recording, Trim as Found, TrimRequest, Trimming, Way, identified, trimmed};
+use stillbase::study::trim::{
+    NoTrim, Recording, Trim as Found, TrimRequest, Trimming, Way, free_weights, identified, trimmed,
+};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -178,10 +180,7 @@ impl Trim {
             }
             _ => Keep::default(),
         };
-        let movable = |i: &usize| !machine.spec().counterweights[*i].fixed;
-        for (i, quantity) in (0..weights).filter(movable).flat_map(|i| [(i, Quantity::Mass), (i, Quantity::Along)]) {
-            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), Hold::Free);
-        }
+        free_weights(&mut asked, machine, |weight| !weight.fixed);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
         Ok(Way::Change(asked))
     }

@@ -33,6 +33,16 @@ impl TableError {
     }
 }
 
+/// Where, and why.
+impl From<TableError> for Advice {
+    fn from(TableError { file, line, why }: TableError) -> Self {
+        why.after(match line {
+            Some(line) => format!("{file}:{line}: "),
+            None => format!("{file}: "),
+        })
+    }
+}
+
 impl Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {

@@ -19,32 +19,26 @@ use super::condition::Condition;
 use super::plane::{Equation, Plane};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::settings::number::counted;
+use crate::settings::word::{Choice, words};
 
-/// Penalties by name, for machines of nine links.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preset {
-    /// W^(−1/2): reproduces Table I to its last digit.
-    Table1,
-    /// W as printed beside (10): off from Table I by up to 0.17 m.
-    AsPrinted,
-    /// Every penalty 1.
-    MinimumNorm,
+words! {
+    /// Penalties by name, for machines of nine links.
+    pub enum Preset {
+        /// Their W^(−1/2).
+        Table1 = "table-1", "those of Table I", "Those that give Table I to its last digit";
+        /// They leave it by up to 0.17 m.
+        AsPrinted = "as-printed", "as printed", "Those printed beside (10), W";
+        MinimumNorm = "minimum-norm", "all alike", "1 for every link";
+    }
 }
 
 /// The weights printed beside (10).
 const W: [f64; 9] = [1.0, 0.2, 1.0, 1.2, 1.0, 1.0, 1.0, 1.2, 1.0];
 
 impl Preset {
-    /// Every preset, with its name on the command line.
-    pub const ALL: [(Self, &str); 3] =
-        [(Self::Table1, "table-1"), (Self::AsPrinted, "as-printed"), (Self::MinimumNorm, "minimum-norm")];
-
-    /// Their names.
-    pub const NAMES: [&str; 3] = [Self::ALL[0].1, Self::ALL[1].1, Self::ALL[2].1];
-
     /// Its name.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(preset, _)| *preset == self).map_or("", |(_, name)| *name)
+        self.words().file
     }
 
     /// The penalty on each of `links` links.

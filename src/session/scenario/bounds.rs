@@ -11,17 +11,11 @@ pub const MAX_STEPS: u64 = 4_000_000;
 /// What a step may be.
 pub const STEP: Range = Range::new(1e-5, 0.01, "s");
 
-/// The step where none is given, s.
-pub(super) const USUAL_STEP: f64 = 0.001;
-
 /// How long a run may be told to take.
 pub(super) const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
 
 /// Where a bound on |b̈| may lie.
 pub(super) const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");
-
-/// The bound on |b̈| where none is given, rad/s².
-pub(super) const USUAL_POSE_ACCELERATION: f64 = 2.0;
 
 /// 1st, 2nd, 3rd, 4th …
 pub(crate) fn ordinal(n: usize) -> String {

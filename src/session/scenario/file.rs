@@ -4,11 +4,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
 use super::design::{Brief, is_default};
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
+use super::own::Own;
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
@@ -55,12 +55,12 @@ struct File {
     branches: Vec<StatedBranch>,
 }
 
-const fn usual_step() -> f64 {
-    USUAL_STEP
+fn usual_step() -> f64 {
+    Own::default().step
 }
 
-const fn usual_pose_acceleration() -> f64 {
-    USUAL_POSE_ACCELERATION
+fn usual_pose_acceleration() -> f64 {
+    Own::default().pose_acceleration
 }
 
 #[derive(Serialize, Deserialize)]

@@ -2,42 +2,27 @@
 
 use toml::{Table, Value};
 
-use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
-use super::task::{POSE_CONSTANT, Task};
-use super::{design, tolerance};
-use crate::mechanics::machine::ranges;
+use super::design::{self, Brief};
+use super::own::Own;
+use super::task::Task;
+use super::tolerance;
+use crate::mechanics::machine;
 use crate::settings::change;
 use crate::settings::key::{Effect, Key};
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
-
-/// The keys that stand alone.
-pub(super) const OWN: [Key; 4] = [
-    Key::number("step", STEP, "0.001", "Fixed step of the simulation.").reaching(Effect::Plan),
-    Key::number(
-        "duration",
-        DURATION,
-        Key::NONE,
-        "Time that a recording and every command that runs to the end covers.",
-    )
-    .instead("that of the planned motion")
-    .reaching(Effect::Aside),
-    Key::number("pose_acceleration", POSE_ACCELERATION, "2", "Bound on |b̈| while b is slid by hand."),
-    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with.")
-        .instead("there is no second one")
-        .reaching(Effect::Picture),
-];
 
 // What is planned from, and what no frame depends on: all keys of these parts.
 const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS);
 const BASE: [Key; Base::KEYS.len()] = Key::all_reaching(Effect::Plan, Base::KEYS);
 const WHEEL: [Key; Wheel::KEYS.len()] = Key::all_reaching(Effect::Plan, Wheel::KEYS);
 const TOLERANCE: [Key; tolerance::KEYS.len()] = Key::all_reaching(Effect::Aside, &tolerance::KEYS);
-const DESIGN: [Key; design::KEYS.len()] = Key::all_reaching(Effect::Aside, &design::KEYS);
+const DESIGN: [Key; Brief::KEYS.len()] = Key::all_reaching(Effect::Aside, Brief::KEYS);
+const HELD: [Key; design::HELD.len()] = Key::all_reaching(Effect::Aside, &design::HELD);
 
 /// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance, design.
 pub const KEYS: [(&str, &[&[Key]]); 9] = [
-    ("The scenario itself", &[&OWN]),
+    ("The scenario itself", &[Own::KEYS]),
     ("Task", &[&TASK]),
     ("Control", &[Control::KEYS]),
     (
@@ -46,9 +31,9 @@ pub const KEYS: [(&str, &[&[Key]]); 9] = [
     ),
     ("Base", &[&BASE]),
     ("Reaction wheel", &[&WHEEL]),
-    ("Machine", &[&ranges::KEYS]),
+    ("Machine", &[&machine::KEYS]),
     ("Tolerances", &[&TOLERANCE]),
-    ("Design: what is asked of a machine that is changed by hand", &[&DESIGN]),
+    ("Design: what is asked of a machine that is changed by hand", &[&DESIGN, &HELD]),
 ];
 
 /// Every key.

@@ -12,6 +12,7 @@ mod error;
 mod file;
 mod kept;
 mod keys;
+mod own;
 mod points;
 mod settings;
 mod task;

@@ -4,17 +4,18 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::bounds::{DURATION, POSE_ACCELERATION, STEP, USUAL_POSE_ACCELERATION, USUAL_STEP};
+use super::bounds::STEP;
 use super::choices::TaskKind;
 use super::definition::Scenario;
-use super::keys::{OWN, TABLES, key_of, keys};
-use super::task::{POSE_CONSTANT, Task};
+use super::keys::{TABLES, key_of, keys};
+use super::own::Own;
+use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, PARTS, is_of_machine};
 use crate::planning::curves::Samples;
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Effect, Holds, Key};
-use crate::settings::range::{Check, Range, clipped};
+use crate::settings::range::{Check, clipped};
 
 /// Why settings cannot be laid over a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -44,7 +45,7 @@ pub enum SettingError {
     #[error(transparent)]
     Machine(#[from] machine::MachineError),
     /// No such part.
-    #[error("there is no setting {key}: want one of {}, {}", OWN.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
+    #[error("there is no setting {key}: want one of {}, {}", Own::KEYS.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
     Unknown {
         /// The key.
         key: String,
@@ -95,16 +96,35 @@ impl Scenario {
                 }
                 ("design", _) => self.design = laid(&self.design, value).map_err(wrong)?,
                 ("tolerance", _) => self.tolerance = laid(&self.tolerance, value).map_err(wrong)?,
-                ("step", _) => self.step_by(number(value, STEP).map_err(wrong)?.unwrap_or(USUAL_STEP)),
-                ("duration", _) => self.duration = number(value, DURATION).map_err(wrong)?,
-                ("pose_acceleration", _) => {
-                    let given = number(value, POSE_ACCELERATION).map_err(wrong)?;
-                    self.pose_acceleration = given.unwrap_or(USUAL_POSE_ACCELERATION);
+                _ => {
+                    let unknown = || SettingError::Unknown { key: clipped(part) };
+                    let key = Own::KEYS.iter().find(|key| key.path == part).ok_or_else(unknown)?;
+                    let given = number(value, key).map_err(wrong)?;
+                    self.lay_own(part, given).map_err(wrong)?;
                 }
-                ("compare_b", _) => self.compare_b = number(value, POSE_CONSTANT).map_err(wrong)?,
-                _ => return Err(SettingError::Unknown { key: clipped(part) }),
             }
         }
+        Ok(())
+    }
+
+    /// What it has beside its parts.
+    fn own(&self) -> Own {
+        let Self { step, duration, pose_acceleration, compare_b, .. } = *self;
+        Own { step, duration, pose_acceleration, compare_b }
+    }
+
+    /// One of these numbers, or its default.
+    fn lay_own(&mut self, part: &str, given: Option<f64>) -> Result<(), String> {
+        let mut stated = Table::try_from(self.own()).map_err(|why| why.to_string())?;
+        match given {
+            Some(x) => drop(stated.insert(part.to_owned(), x.into())),
+            None => drop(stated.remove(part)),
+        }
+        let Own { step, duration, pose_acceleration, compare_b } = change::read(&stated)?;
+        if part == "step" {
+            self.step_by(step);
+        }
+        (self.duration, self.pose_acceleration, self.compare_b) = (duration, pose_acceleration, compare_b);
         Ok(())
     }
 
@@ -124,7 +144,7 @@ impl Scenario {
     /// there.
     pub fn only(&self, change: &Table) -> Option<Table> {
         let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
-        let known = |part: &String| TABLES.contains(&part.as_str()) || OWN.iter().any(|key| key.path == part);
+        let known = |part: &String| TABLES.contains(&part.as_str()) || Own::KEYS.iter().any(|key| key.path == part);
         if !own.keys().all(known) {
             return None;
         }
@@ -160,13 +180,7 @@ impl Scenario {
         ];
         let mut all: Table =
             parts.into_iter().filter_map(|(part, table)| Some((part.to_owned(), Value::Table(table.ok()?)))).collect();
-        let own = [
-            ("step", Some(self.step)),
-            ("duration", self.duration),
-            ("pose_acceleration", Some(self.pose_acceleration)),
-            ("compare_b", self.compare_b),
-        ];
-        all.extend(own.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?.into()))));
+        all.extend(Table::try_from(self.own()).unwrap_or_default());
         all
     }
 
@@ -209,6 +223,7 @@ impl Scenario {
                 }
                 "length" | "plant.length" => spec.lengths.keys().cloned().collect(),
                 "limits" => spec.angles.iter().map(|angle| angle.name.clone()).collect(),
+                "design.length" => spec.own_lengths().map(|(name, _)| name.to_owned()).collect(),
                 "drive" | "design.ratio" => spec.drives.iter().map(|drive| drive.name.clone()).collect(),
                 _ => vec!["*".into()],
             }
@@ -230,7 +245,7 @@ impl Scenario {
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
-            Some(("design", key)) => self.design.uses(key, &self.machine),
+            Some(("design", key)) => self.design.serves(key, &self.machine),
             Some(("payload", _)) => self.machine.uses(path, self.is_pushed()),
             _ => true,
         };
@@ -337,11 +352,11 @@ fn blame(part: &str, value: &Value) -> Option<SettingError> {
 }
 
 /// A number of the scenario's own; none for the word `default`.
-fn number(value: &Value, range: Range) -> Result<Option<f64>, String> {
+fn number(value: &Value, key: &Key) -> Result<Option<f64>, String> {
     match value {
         Value::String(word) if word == DEFAULT => Ok(None),
         _ => change::number(value)
             .map(Some)
-            .ok_or_else(|| format!("it is {}: want a number, {range}", clipped(&change::typed(value)))),
+            .ok_or_else(|| format!("it is {}: want a number, {}", clipped(&change::typed(value)), key.holds)),
     }
 }

@@ -6,9 +6,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::machine::{Link, Machine};
+use crate::mechanics::machine::{Machine, MachineSpec};
 use crate::settings::change;
 use crate::settings::key::{Holds, Key};
+use crate::settings::keyed::ANY;
 use crate::settings::range::{Range, clipped};
 
 /// The most samples of one study.
@@ -41,34 +42,119 @@ pub struct Tolerance {
     pub spreads: BTreeMap<String, Spread>,
 }
 
-/// Every key of `[tolerance]`; in a file a key of a spread is one word in quotes, such as `"link.*.com"`.
-pub const KEYS: [Key; 11] = [
-    Key::new("tolerance.seed", Holds::Whole(Range::new(0.0, i64::MAX as f64, "")), Key::NONE, "Which random machines.")
-        .instead("1"),
-    Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines.")
-        .instead("100000, or 1000 that are simulated"),
-    Key::number("tolerance.moment_limit", LIMIT_MOMENT, Key::NONE, "The greatest |n_B| that will do.")
-        .instead("no yield is counted by it"),
-    Key::number("tolerance.force_limit", LIMIT_FORCE, Key::NONE, "The greatest dynamic |f_B| that will do.")
-        .instead("no yield is counted by it"),
-    spread("tolerance.link.*.com", "m", "How a link's centre of mass varies along the link.")
-        .instead("normal:0.0005 if no spread is given at all"),
-    spread("tolerance.link.*.com_normal", "m", "How a link's centre of mass varies across the link.")
-        .instead("normal:0.0005 if no spread is given at all"),
-    spread("tolerance.link.*.mass", "kg", "How a link's mass varies.")
-        .instead("normal:0.5% if no spread is given at all"),
-    spread("tolerance.link.*.inertia", "kg m²", "How a link's inertia varies.")
-        .instead("normal:2% if no spread is given at all"),
-    spread("tolerance.length.*", "m", "How a named length varies, in all bars that share it.")
-        .instead("normal:0.00005 if no spread is given at all"),
-    spread("tolerance.payload.mass", "kg", "How the payload's mass varies.").instead("it does not"),
-    spread("tolerance.payload.inertia", "kg m²", "How the payload's inertia varies.").instead("it does not"),
+/// A key of one number of the study, and where it stands.
+struct Row {
+    key: Key,
+    at: At,
+}
+
+/// Where a number stands.
+enum At {
+    Whole(fn(&Tolerance) -> Option<u64>, fn(&mut Tolerance) -> &mut Option<u64>),
+    Number(fn(&Tolerance) -> Option<f64>, fn(&mut Tolerance) -> &mut Option<f64>),
+}
+
+/// What is read and written in one place.
+macro_rules! at {
+    ($kind:ident, $field:ident) => {
+        At::$kind(|tolerance| tolerance.$field, |tolerance| &mut tolerance.$field)
+    };
+}
+
+/// All such keys.
+const ROWS: [Row; 4] = [
+    Row {
+        key: Key::new("tolerance.seed", Holds::Whole(SEED), Key::NONE, "Which random machines.").instead("1"),
+        at: at!(Whole, seed),
+    },
+    Row {
+        key: Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines.")
+            .instead("100000, or 1000 that are simulated"),
+        at: at!(Whole, samples),
+    },
+    Row {
+        key: Key::number("tolerance.moment_limit", LIMIT_MOMENT, Key::NONE, "The greatest |n_B| that will do.")
+            .instead("no yield is counted by it"),
+        at: at!(Number, moment_limit),
+    },
+    Row {
+        key: Key::number("tolerance.force_limit", LIMIT_FORCE, Key::NONE, "The greatest dynamic |f_B| that will do.")
+            .instead("no yield is counted by it"),
+        at: at!(Number, force_limit),
+    },
 ];
+
+/// A key of a spread, and what is taken where no spread at all is given.
+struct Varies {
+    key: Key,
+    /// A spread as it is typed, if it varies then.
+    usual: Option<&'static str>,
+    /// Whether a machine has any of what varies.
+    has: fn(&MachineSpec) -> bool,
+}
+
+/// Path, unit and meaning of a key; the spread that is usual for a machine that has what varies.
+macro_rules! varies {
+    ($path:literal, $unit:literal, $words:literal) => {
+        Varies { key: spread($path, $unit, $words).instead("it does not"), usual: None, has: |_| true }
+    };
+    ($path:literal, $unit:literal, $words:literal, $usual:literal, $has:expr) => {
+        Varies {
+            key: spread($path, $unit, $words).instead(concat!($usual, " if no spread is given at all")),
+            usual: Some($usual),
+            has: $has,
+        }
+    };
+}
+
+/// All keys of spreads.
+const SPREADS: [Varies; 7] = [
+    varies!("tolerance.link.*.com", "m", "How a link's centre of mass varies along the link.", "normal:0.0005", |_| {
+        true
+    }),
+    varies!(
+        "tolerance.link.*.com_normal",
+        "m",
+        "How a link's centre of mass varies across the link.",
+        "normal:0.0005",
+        |_| true
+    ),
+    varies!("tolerance.link.*.mass", "kg", "How a link's mass varies.", "normal:0.5%", |spec| {
+        spec.links.iter().any(|link| link.mass != 0.0)
+    }),
+    varies!("tolerance.link.*.inertia", "kg m²", "How a link's inertia varies.", "normal:2%", |spec| {
+        spec.links.iter().any(|link| link.inertia != 0.0)
+    }),
+    varies!(
+        "tolerance.length.*",
+        "m",
+        "How a named length varies, in all bars that share it.",
+        "normal:0.00005",
+        |spec| !spec.lengths.is_empty()
+    ),
+    varies!("tolerance.payload.mass", "kg", "How the payload's mass varies."),
+    varies!("tolerance.payload.inertia", "kg m²", "How the payload's inertia varies."),
+];
+
+/// What stands before every key of the table.
+const PART: &str = "tolerance.";
+
+/// Every key of `[tolerance]`; in a file a key of a spread is one word in quotes, such as `"link.*.com"`.
+pub(super) const KEYS: [Key; ROWS.len() + SPREADS.len()] = {
+    let mut all = [ROWS[0].key; ROWS.len() + SPREADS.len()];
+    let mut i = 0;
+    while i < all.len() {
+        all[i] = if i < ROWS.len() { ROWS[i].key } else { SPREADS[i - ROWS.len()].key };
+        i += 1;
+    }
+    all
+};
 
 const fn spread(path: &'static str, unit: &'static str, words: &'static str) -> Key {
     Key::new(path, Holds::Spread(unit), Key::NONE, words)
 }
 
+const SEED: Range = Range::new(0.0, i64::MAX as f64, "");
 const SAMPLES: Range = Range::new(1.0, MAX_SAMPLES as f64, "");
 const LIMIT_MOMENT: Range = Range::new(1e-12, 1e12, "N m");
 const LIMIT_FORCE: Range = Range::new(1e-12, 1e12, "N");
@@ -104,17 +190,11 @@ impl Tolerance {
 /// masses to 0.5 %, inertias to 2 %, lengths with a name to 0.05 mm; all normal, standard deviations. What a machine
 /// has none of does not vary.
 pub fn default_spreads(machine: &Machine) -> BTreeMap<String, Spread> {
-    let spec = machine.spec();
-    let has = |of: fn(&Link) -> f64| spec.links.iter().any(|link| of(link) != 0.0);
-    let rows = [
-        ("link.*.com", Amount::Absolute(5e-4), true),
-        ("link.*.com_normal", Amount::Absolute(5e-4), true),
-        ("link.*.mass", Amount::Percent(0.5), has(|link| link.mass)),
-        ("link.*.inertia", Amount::Percent(2.0), has(|link| link.inertia)),
-        ("length.*", Amount::Absolute(5e-5), !spec.lengths.is_empty()),
-    ];
-    let rows = rows.into_iter().filter(|(.., varies)| *varies);
-    rows.map(|(key, amount, _)| (key.into(), Spread::Normal(amount))).collect()
+    let usual = |Varies { key, usual, has }: &Varies| {
+        let typed = usual.filter(|_| has(machine.spec()))?;
+        Some((key.path.trim_start_matches(PART).to_owned(), typed.parse().ok()?))
+    };
+    SPREADS.iter().filter_map(usual).collect()
 }
 
 /// How a parameter lies about its nominal value.
@@ -219,20 +299,24 @@ impl fmt::Display for Amount {
 
 type Section = BTreeMap<String, toml::Value>;
 
+/// The row of a key as a file has it.
+fn row(name: &str) -> Option<&'static Row> {
+    ROWS.iter().find(|row| row.key.path.strip_prefix(PART) == Some(name))
+}
+
 impl TryFrom<Section> for Tolerance {
     type Error = String;
 
     fn try_from(section: Section) -> Result<Self, String> {
         let mut tolerance = Self::default();
         for (key, value) in section {
-            match key.as_str() {
-                "seed" => tolerance.seed = Some(whole(&key, &value, 0)?),
-                "samples" => tolerance.samples = Some(whole(&key, &value, 1)?),
-                "moment_limit" => tolerance.moment_limit = Some(within(&key, &value, LIMIT_MOMENT)?),
-                "force_limit" => tolerance.force_limit = Some(within(&key, &value, LIMIT_FORCE)?),
-                _ => {
+            match row(&key) {
+                Some(Row { key, at: At::Whole(_, of) }) => *of(&mut tolerance) = Some(whole(key, &value)?),
+                Some(Row { key, at: At::Number(_, of) }) => *of(&mut tolerance) = Some(number(key, &value)?),
+                None => {
                     let spread = in_words(&value).and_then(|text| text.parse().ok()).ok_or_else(|| {
-                        format!("tolerance.{} is {}: {SECTION}", clipped(&key), clipped(&change::typed(&value)))
+                        let known = ROWS.map(|row| row.key.path.trim_start_matches(PART)).join(", ");
+                        format!("tolerance.{} is {}: {SECTION} {known}", clipped(&key), clipped(&change::typed(&value)))
                     })?;
                     tolerance.spreads.insert(key, spread);
                 }
@@ -242,8 +326,8 @@ impl TryFrom<Section> for Tolerance {
     }
 }
 
-const SECTION: &str = "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; \
-                       or seed, samples, moment_limit, force_limit";
+const SECTION: &str =
+    "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; or";
 
 /// A spread of a file, as it is written on the command line: `normal:0.0005`.
 fn in_words(value: &toml::Value) -> Option<String> {
@@ -261,38 +345,36 @@ fn in_words(value: &toml::Value) -> Option<String> {
     Some(format!("{word}:{amount}"))
 }
 
-fn whole(key: &str, value: &toml::Value, least: u64) -> Result<u64, String> {
-    let whole = value.as_integer().and_then(|x| u64::try_from(x).ok());
-    let ok = whole.filter(|x| *x >= least && (key == "seed" || *x <= MAX_SAMPLES));
-    ok.ok_or_else(|| match key {
-        "seed" => format!("tolerance.{key} is {}: want a whole number, 0 or more", clipped(&change::typed(value))),
-        _ => {
-            let given = clipped(&change::typed(value));
-            format!("tolerance.{key} is {given}: want a whole number from {least} to {MAX_SAMPLES}")
-        }
-    })
+/// The number that a value is, if it lies in the range of its key.
+fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
+    let range = key.range().unwrap_or(ANY);
+    let whole = value.as_integer().and_then(|x| u64::try_from(x).ok()).filter(|x| range.contains(*x as f64));
+    let ends = || match range.high() < i64::MAX as f64 {
+        true => format!(" from {} to {}", range.low(), range.high()),
+        false => format!(", {} or more", range.low()),
+    };
+    whole.ok_or_else(|| format!("{} is {}: want a whole number{}", key.path, clipped(&change::typed(value)), ends()))
 }
 
-fn within(key: &str, value: &toml::Value, range: Range) -> Result<f64, String> {
+/// The same of a number that need not be whole.
+fn number(key: &Key, value: &toml::Value) -> Result<f64, String> {
+    let range = key.range().unwrap_or(ANY);
     change::number(value)
         .filter(|x| range.contains(*x))
-        .ok_or_else(|| format!("tolerance.{key} is {}: want a number, {range}", clipped(&change::typed(value))))
+        .ok_or_else(|| format!("{} is {}: want a number, {range}", key.path, clipped(&change::typed(value))))
 }
 
 impl From<Tolerance> for Section {
     fn from(tolerance: Tolerance) -> Self {
-        let Tolerance { seed, samples, moment_limit, force_limit, spreads } = tolerance;
-        let mut section = Section::new();
-        for (key, value) in [("seed", seed), ("samples", samples)] {
-            // A seed beyond what TOML can hold comes from the command line and is never saved.
-            section.extend(value.and_then(|x| i64::try_from(x).ok()).map(|x| (key.to_owned(), x.into())));
-        }
-        for (key, value) in [("moment_limit", moment_limit), ("force_limit", force_limit)] {
-            section.extend(value.map(|x| (key.to_owned(), x.into())));
-        }
-        for (key, spread) in spreads {
-            section.insert(key, spread.to_value());
-        }
-        section
+        let stated = |Row { key, at }: &Row| {
+            let value = match at {
+                // A seed beyond what TOML can hold comes from the command line and is never saved.
+                At::Whole(of, _) => i64::try_from(of(&tolerance)?).ok()?.into(),
+                At::Number(of, _) => of(&tolerance)?.into(),
+            };
+            Some((key.path.trim_start_matches(PART).to_owned(), value))
+        };
+        let spreads = tolerance.spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value()));
+        ROWS.iter().filter_map(stated).chain(spreads).collect()
     }
 }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
 use super::summary::{Column, column};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::planning::Motion;
@@ -122,6 +124,22 @@ impl Candidate {
         }
         let same = self.task.points() == first.task.points() && self.task.closed == first.task.closed;
         (!same).then_some("its task")
+    }
+}
+
+/// The figures that there are, and why others are not.
+impl Serialize for Design {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for column in DESIGN {
+            if let Some(value) = (column.value)(self) {
+                map.serialize_entry(column.key, &value)?;
+            }
+        }
+        if let Some(why) = &self.apart {
+            map.serialize_entry("apart", why)?;
+        }
+        map.end()
     }
 }
 

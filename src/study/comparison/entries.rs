@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Alternative, COLUMNS, Compared, DESIGN, Design, alternatives};
+use super::{Alternative, Beside, COLUMNS, Compared, DESIGN, Design, alternatives};
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
@@ -39,6 +39,7 @@ pub struct Comparison {
     task: Scenario,
     entries: Vec<Entry>,
     sort: Option<(usize, bool)>,
+    beside: Beside,
     /// The ways that it shows.
     ways: Option<Arc<<Ways as Query>::Answer>>,
 }
@@ -81,7 +82,7 @@ impl Query for Ways {
 impl Comparison {
     /// One without any run yet.
     pub fn empty(scenario: &Scenario) -> Self {
-        Self { task: scenario.clone(), entries: Vec::new(), sort: None, ways: None }
+        Self { task: scenario.clone(), entries: Vec::new(), sort: None, beside: Beside::default(), ways: None }
     }
 
     /// Puts the ways of a task in place of its own, if it does not show these; what was kept, shown and sorted stays so.
@@ -136,18 +137,15 @@ impl Comparison {
 
     /// Sets every machine beside that of the first run.
     fn set_beside(&mut self) {
-        let first = self.entries.iter().find_map(|e| e.outcome.as_ref().ok()).cloned();
+        self.beside = Beside::default();
         for entry in &mut self.entries {
-            let both = entry.outcome.as_ref().ok().zip(first.as_ref());
-            entry.design = both.map(|(run, first)| run.candidate.beside(&first.candidate));
+            entry.design = entry.outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
         }
     }
 
     /// Whether the machines of the runs differ, so that there are designs to compare.
     pub fn has_designs(&self) -> bool {
-        let mut all = self.entries.iter().filter_map(|e| e.outcome.as_ref().ok());
-        let first = all.next();
-        all.any(|run| first.is_some_and(|first| !run.candidate.is_alike(&first.candidate)))
+        self.beside.differ()
     }
 
     /// Takes a kept run away.

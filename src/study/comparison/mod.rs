@@ -4,12 +4,14 @@ mod alternative;
 mod design;
 mod difference;
 mod entries;
+mod row;
 mod summary;
 
 pub use alternative::{Alternative, SLOWER};
 pub use design::{Candidate, DESIGN, Design};
 pub use difference::Difference;
 pub use entries::{Comparison, Entry, Outcome, Ways};
+pub use row::{Beside, Row, Rows};
 pub use summary::{COLUMNS, Column, Summary};
 
 use crate::mechanics::machine::Machine;

@@ -14,6 +14,7 @@ mod planes;
 mod products;
 mod reactions;
 mod state;
+mod stated;
 mod symbol;
 mod written;
 
@@ -23,7 +24,8 @@ use crate::planning::pose_space::held;
 use crate::settings::number::Short;
 
 pub use equation::{Equation, Line, Origin, Term};
-pub use state::{State, When};
+pub use state::{NoInstant, State, When};
+pub use stated::{Stated, StatedEquation, StatedLine, StatedPart, StatedTerm};
 pub use symbol::{Level, pieces, plain};
 pub use written::{Cell, cells};
 

@@ -1,9 +1,13 @@
 //! [`State`]: the instant that the numbers are of.
 
+use thiserror::Error;
+
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::Reference;
-use crate::session::Run;
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Run, replay_while};
+use crate::settings::number::fixed;
 use crate::simulation::frame::Frame;
 
 /// How the drives stand and move, as seen from the base.
@@ -30,6 +34,20 @@ pub enum When {
     Plan(f64),
     /// A pose that was given.
     Given,
+}
+
+/// Why a scenario has no state at a time.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoInstant {
+    /// It cannot be run so far.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// Its run ends before.
+    #[error("want a time up to the end of the run, {} s", fixed(*end, 3))]
+    Later {
+        /// s.
+        end: f64,
+    },
 }
 
 /// Slower than this, rad/s and rad/s², is rest.
@@ -60,7 +78,26 @@ impl State {
         }
     }
 
-    /// The same; while the run rests, a quarter into its planned motion.
+    /// Of a scenario's run at a time, s, as edits leave it.
+    ///
+    /// # Errors
+    /// If it cannot be run so far, or ends before.
+    pub fn at(scenario: &Scenario, time: f64) -> Result<Self, NoInstant> {
+        let (mut found, mut end) = (None, 0.0);
+        let done = replay_while(scenario, |_, frame| {
+            end = frame.time;
+            let is_there = frame.time >= time - 0.5 * scenario.step;
+            found = is_there.then(|| Self::now(frame));
+            !is_there
+        });
+        match (found, done) {
+            (Some(state), _) => Ok(state),
+            (None, Err(why)) if why != Refusal::Stopped => Err(why.into()),
+            _ => Err(NoInstant::Later { end }),
+        }
+    }
+
+    /// Of an instant of a run; while it rests, a quarter into its planned motion.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let rests = frame.qd.max_abs().max(frame.qdd.max_abs()) < REST;
         match run.motion().filter(|_| rests) {

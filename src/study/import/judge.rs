@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::given::GivenMotion;
-use crate::mechanics::dynamics::{Surroundings, angular_momentum};
+use crate::mechanics::dynamics::{Surroundings, angular_momentum, inverse_with_wrench};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::planning::Motion;
@@ -52,6 +52,9 @@ pub struct Account {
     pub angular_momentum_end: f64,
     /// Largest |q̇_k| at the end, rad/s.
     pub speed_end: f64,
+    /// n_B over time, to be drawn: s, N m.
+    #[serde(skip)]
+    pub moment: Vec<[f64; 2]>,
 }
 
 /// A motion that is proposed, simulated.
@@ -79,6 +82,9 @@ pub struct Proposal {
     /// Whether the simulated motion leaves the base alone.
     pub reactionless: bool,
 }
+
+/// In so many parts n_B over time is drawn.
+const DRAWN: usize = 240;
 
 /// A motion that might be proposed.
 pub(super) struct Candidate {
@@ -119,6 +125,17 @@ impl Judge {
         }
     }
 
+    /// n_B at instants that are enough to draw it, s, N m.
+    fn moment(&self, motion: &Motion) -> Vec<[f64; 2]> {
+        let at = |i: usize| {
+            let t = motion.duration() * i as f64 / DRAWN as f64;
+            let r = motion.at(t);
+            let (_, wrench) = inverse_with_wrench(&self.model, &r.q.units(), &r.qd, &r.qdd, &self.around);
+            [t, wrench.total().moment + 0.0]
+        };
+        (0..=DRAWN).map(at).collect()
+    }
+
     fn past_limits(&self, motion: &Motion) -> f64 {
         let past = |i: usize| {
             let q = motion.path.at(i as f64 / self.instants as f64).q;
@@ -154,6 +171,7 @@ impl Judge {
             angular_momentum_start: start,
             angular_momentum_end: end,
             speed_end: ends[1].qd.max_abs(),
+            moment: self.moment(motion),
         }
     }
 }

@@ -20,7 +20,7 @@
 //! | all of it for a run, as a window shows it | [`Study`] |
 //! | some machines after another, tracking perfectly or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
-//! | what all machines come to | [`Distributions`], [`Yields`], [`AgainstTracking`] |
+//! | what all machines come to, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`AgainstTracking`] |
 
 mod bands;
 mod batch;
@@ -30,6 +30,7 @@ mod ensemble;
 mod error;
 mod moments;
 mod parameter;
+mod part;
 mod report;
 mod shares;
 mod simulate;
@@ -42,6 +43,7 @@ pub use deviate::{CHUNK, inverse_normal};
 pub use ensemble::{Ensemble, Outcome, Sampler};
 pub use error::ToleranceError;
 pub use parameter::Parameter;
+pub use part::{Part, PartReport, shard};
 pub use report::{AgainstTracking, Distribution, Distributions, Kept, Yields};
 pub use shares::{Share, Shares};
 pub use simulate::simulate;

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use super::{Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, ToleranceError, Yield};
 use crate::query::{Portion, Query, Watch};
+use crate::session::Run;
 use crate::session::scenario::{Scenario, Spread, Tolerance};
-use crate::session::{Run, felt};
 use crate::simulation::control::Control;
 use crate::simulation::plant::PlantDifferences;
+use crate::study::base_spectrum::{Axes, BaseSpectrum};
 use crate::study::spectrum::{Spectrum, Window};
 
 /// Instants at which a motion is looked at.
@@ -216,13 +217,8 @@ pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
 
 /// Of the whole run, at every step; none where it cannot be run, fails an audit or is too short.
 fn spectra(run: &Run) -> Option<[Spectrum; 3]> {
-    let scenario = run.scenario();
+    let found = BaseSpectrum::of(run.scenario(), Window::Hann).ok()?;
     // What no audit vouches for is not shown.
-    let (course, fault) = felt(scenario).ok()?;
-    if fault.is_some() {
-        return None;
-    }
-    let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, Window::Hann).ok();
-    let [x, y, n] = &course;
-    Some([of(x)?, of(y)?, of(n)?])
+    let Axes { force_x, force_y, moment } = found.fault.is_none().then_some(found.spectra)?;
+    Some([force_x, force_y, moment])
 }

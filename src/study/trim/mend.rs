@@ -4,21 +4,13 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::taken::Taken;
+use super::way::Way;
 use crate::mechanics::balance::{
     Body, Condition, Hold, Keep, NotKept, Parameter, Quantity, keep_with, unreachable_by_changes,
 };
-use crate::mechanics::counterweights::{NoWeights, Weighing, place_with, unreachable_by_weights};
+use crate::mechanics::counterweights::{NoWeights, place_with, unreachable_by_weights};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
-
-/// What may change.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Way {
-    /// Numbers that the machine has.
-    Change(Keep),
-    /// New counterweights.
-    Add(Weighing),
-}
 
 /// One number that changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]

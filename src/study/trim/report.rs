@@ -10,6 +10,7 @@ use super::taken::Taken;
 use super::worth::Worth;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
+use crate::settings::number::{fixed, shown};
 
 /// What a measurement says of a machine, what mends it, and what to measure next.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,6 +102,22 @@ pub struct Suggestion {
     pub candidates: Vec<Tried>,
 }
 
+impl Suggestion {
+    /// What is least known, and what the best motion would make of that; none if there is no motion.
+    pub fn words(&self) -> Option<String> {
+        let best = self.candidates.first()?;
+        let now = match self.half_width {
+            Some(half) => format!("Least known is {}, ± {} {}", self.worst, shown(half, 6), self.unit),
+            None => format!("Nothing is known of {} yet", self.worst),
+        };
+        let then = match best.candidate.half_width {
+            half if half.is_finite() => format!("would make that ± {} {}", shown(half, 6), self.unit),
+            _ => "would not tell it either".into(),
+        };
+        Some(format!("{now}; {} s of {} {then}.", fixed(self.duration, 2), best.motion))
+    }
+}
+
 /// A motion that could be driven.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
@@ -112,6 +129,33 @@ pub struct Tried {
 }
 
 impl TrimReport {
+    /// The numbers that change.
+    pub fn changed(&self) -> impl Iterator<Item = &Change> {
+        self.changes.iter().filter(|change| change.to != change.from)
+    }
+
+    /// Why nothing changes, in words, where nothing does.
+    pub fn why_no_change(&self) -> String {
+        let off = self.numbers.iter().any(|number| number.balance && number.off);
+        match self.worth.filter(|_| off) {
+            Some(gain) => {
+                let worth = gain.worth.words();
+                format!("No change is shown to help. What is off could be mended so over these motions: {worth}.")
+            }
+            None => "Nothing to change: no line of (7) and (8) is shown to be off that a change could mend.".into(),
+        }
+    }
+
+    /// What the data cannot tell, a sentence for each group of numbers.
+    pub fn untold_words(&self) -> impl Iterator<Item = String> {
+        self.untold.iter().map(|group| match group.as_slice() {
+            [one] => format!("The data say nothing of {one}: it is taken from the machine's file."),
+            several => {
+                format!("The data cannot tell {} apart: they are taken from the machine's file.", several.join(", "))
+            }
+        })
+    }
+
     /// Of what was found, and of what mends it and is worth it, if anything does.
     pub(super) fn of(
         machine: &Machine,

@@ -20,6 +20,7 @@ use super::mend::Mended;
 use super::rows::Rows;
 use super::taken::Taken;
 use crate::mechanics::machine::{Inertia, Machine};
+use crate::settings::number::shown;
 
 /// What a change is worth over the motions that were measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,6 +36,19 @@ pub struct Worth {
 }
 
 impl Worth {
+    /// In words.
+    pub fn words(&self) -> String {
+        let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
+        let share = |x: f64| shown(100.0 * x, 1);
+        format!(
+            "force {} rms and moment {}, the mean square of both by {} ± {} %",
+            pair(self.force, "N"),
+            pair(self.moment, "N m"),
+            share(self.gain),
+            share(self.half_width)
+        )
+    }
+
     /// Whether the interval of the gain lies above 0.
     pub fn helps(&self) -> bool {
         self.gain > self.half_width

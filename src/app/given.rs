@@ -1,0 +1,172 @@
+//! The panel at the bottom for a table of numbers that was opened: a motion of a person's own and the nearest one without
+//! reactions, or a measured machine and what mends it.
+
+pub(super) mod assess;
+mod measured;
+mod motion;
+mod parts;
+
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
+
+use super::theme::{bold, colour, plain};
+use super::widgets::{Row, name, note, unit};
+use super::{Command, Switch, ViewChange, ViewState};
+use crate::picture::scene::palette::Palette;
+use crate::study::advice::Advice;
+use crate::study::import::Keep;
+use assess::{Assessed, Content};
+pub(super) use parts::Shown;
+use parts::{column, worded};
+
+const HEIGHT: f32 = 268.0;
+/// How wide the column is of what is asked, points.
+const ASKED: f32 = 250.0;
+
+/// What the table holds, in a line.
+fn summary(shown: &Shown<'_>) -> String {
+    let file = shown.given.file.file_name().unwrap_or_default().to_string_lossy();
+    let held = match shown.answer {
+        Some(Ok(Assessed::Motion { motion, .. })) => motion::summary(motion),
+        Some(Ok(Assessed::Measured(trimmed))) => measured::summary(trimmed),
+        Some(Err(_)) => String::new(),
+        None => "reading it …".into(),
+    };
+    [file.into_owned(), held].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("  ·  ")
+}
+
+/// Draws this panel.
+pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
+    let height = HEIGHT.min(0.45 * ui.available_height());
+    Panel::bottom("given").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            let title = if shown.content() == Content::Measurement { "Measured machine" } else { "Given motion" };
+            ui.label(RichText::new(title).font(bold(13.5)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
+                    commands.push(ViewChange::Switch(Switch::Given, false).into());
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
+                    ui.add(Label::new(words).truncate());
+                });
+            });
+        });
+        ui.add_space(2.0);
+        ui.horizontal_top(|ui| {
+            column(ui, "asked", ASKED, |ui| asked(ui, &p, &shown, commands));
+            let rest = ui.available_width();
+            match shown.answer {
+                None => {}
+                Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
+                Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
+                    motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+                }
+                Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
+            }
+        });
+    });
+}
+
+/// Why a table cannot be read.
+fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
+    let words = RichText::new(worded(why)).font(plain(12.5)).color(colour(p.reaction));
+    ui.add(Label::new(words).wrap());
+}
+
+/// How the table is read, and what is asked of it.
+fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+    let (options, content) = (&shown.given.options, shown.content());
+    let choices = [
+        (None, "as its columns say"),
+        (Some(Content::Drives), "a motion of the drives"),
+        (Some(Content::Tip), "a motion of the end effector"),
+        (Some(Content::Measurement), "a measurement of the base"),
+    ];
+    choice(ui, ("read", "What the table is taken for"), &choices, options.content, |to| {
+        shown.ask(commands, |options| options.content = to);
+    });
+    if content == Content::Measurement {
+        let tip = "Leaves measured rates and accelerations alone, and finds them from the angles";
+        switch(ui, ("from the angles alone", tip), options.angles_only, |on| {
+            shown.ask(commands, |options| options.angles_only = on);
+        });
+        let tip = "Takes the columns as they are, even where another sign, order or unit explains them far better";
+        switch(ui, ("columns as they are", tip), options.as_given, |on| {
+            shown.ask(commands, |options| options.as_given = on);
+        });
+        note(ui, p, "What may change is what the design view leaves free: its counterweights, or new ones.");
+        return;
+    }
+    if content == Content::Drives {
+        let keeps = [
+            (None, "what is nearest"),
+            (Some(Keep::Tip), "the end effector's motion"),
+            (Some(Keep::Joints), "the joint angles"),
+        ];
+        choice(ui, ("keep", "What the proposal keeps of the motion"), &keeps, options.keep, |to| {
+            shown.ask(commands, |options| options.keep = to);
+        });
+    }
+    let row = Row { tip: "The proposal stays on this plane", ..Row::of("on the plane b", "task.b").with(3, 0.002) };
+    optional(ui, p, &row, (options.b, 0.0), |to| shown.ask(commands, |options| options.b = to));
+    let tip = "Smooths the samples without delay: half of the amplitude is left at this frequency";
+    let row = Row { tip, unit: "Hz", range: 0.01..=1e5, slide: 0.01..=1e5, ..Row::of("smoothed at", "").with(1, 0.2) };
+    optional(ui, p, &row, (options.smoothing, 20.0), |to| shown.ask(commands, |options| options.smoothing = to));
+    let tip = "Lets the spline through the samples bridge gaps in time";
+    switch(ui, ("bridge gaps", tip), options.gaps, |on| shown.ask(commands, |options| options.gaps = on));
+}
+
+/// A label, and a list to choose from.
+fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    (label, tip): (&str, &str),
+    choices: &[(T, &str)],
+    now: T,
+    to: impl FnOnce(T),
+) {
+    let mut taken = None;
+    ui.horizontal(|ui| {
+        ui.label(label).on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let words = choices.iter().find(|(it, _)| *it == now).map_or("", |(_, words)| words);
+            let list = ComboBox::from_id_salt(label).selected_text(words).width(168.0).show_ui(ui, |ui| {
+                for (it, words) in choices {
+                    if ui.selectable_label(*it == now, *words).clicked() && *it != now {
+                        taken = Some(*it);
+                    }
+                }
+            });
+            name(&list.response.on_hover_text(tip), label);
+        });
+    });
+    if let Some(taken) = taken {
+        to(taken);
+    }
+}
+
+fn switch(ui: &mut Ui, (label, tip): (&str, &str), now: bool, to: impl FnOnce(bool)) {
+    let mut on = now;
+    if ui.checkbox(&mut on, label).on_hover_text(tip).changed() {
+        to(on);
+    }
+}
+
+/// A number that is left to the program unless it is ticked.
+fn optional(ui: &mut Ui, p: &Palette, row: &Row<'_>, (now, usual): (Option<f64>, f64), to: impl FnOnce(Option<f64>)) {
+    let (mut is_set, mut value) = (now.is_some(), now.unwrap_or(usual));
+    let mut changed = false;
+    ui.horizontal(|ui| {
+        changed = ui.checkbox(&mut is_set, row.label).on_hover_text(row.tip).changed();
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if is_set {
+                unit(ui, p, row.unit);
+                changed |= row.number(ui, &mut value).changed();
+            }
+        });
+    });
+    if changed {
+        to(is_set.then_some(value));
+    }
+}

@@ -1,0 +1,137 @@
+//! A machine that was measured, and what mends it.
+
+use egui::{Align, Grid, Label, Layout, RichText, Ui};
+
+use super::assess::Taking;
+use super::parts::{Shown, column, rows, take, title};
+use crate::app::Command;
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::note;
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::Palette;
+use crate::settings::number::{counted, shown as rounded};
+use crate::study::trim::{Change, NoTrim, Number, Trim, TrimReport, Trimmed};
+
+/// How wide the table of numbers is, points.
+const NUMBERS: f32 = 470.0;
+
+/// What was measured, and how large it is.
+pub(super) fn summary(trimmed: &Trimmed) -> String {
+    let Ok(Trim { report, .. }) = &trimmed.outcome else { return String::new() };
+    let [motions, rows] = [counted(report.motions, "motion"), counted(report.rows, "row")];
+    let part = |i: usize, unit: &str| {
+        format!("{} {unit} rms, not explained {}", rounded(report.size[i], 4), rounded(report.noise[i], 4))
+    };
+    format!("{motions}, {rows}  ·  force {}  ·  moment {}", part(0, "N"), part(1, "N m"))
+}
+
+/// Draws what is known of its balance, and what mends it.
+pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimmed, commands: &mut Vec<Command>) {
+    let found = match &trimmed.outcome {
+        Ok(found) => found,
+        Err(why) => {
+            let rest = ui.available_width();
+            return column(ui, "refused", rest, |ui| refused(ui, p, why, shown, commands));
+        }
+    };
+    column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, &found.report));
+    let rest = ui.available_width();
+    column(ui, "change", rest, |ui| {
+        change(ui, p, shown, found, commands);
+        if let Some(noise) = trimmed.angle_noise {
+            let share = 100.0 * noise;
+            note(
+                ui,
+                p,
+                &format!(
+                    "Noise of the angles is {share:.0} % of their accelerations: what is found may be off; faster motions or finer encoders help."
+                ),
+            );
+        }
+        if let Some(doubt) = &trimmed.doubt {
+            note(ui, p, &doubt.to_string());
+        }
+        for words in found.report.untold_words().chain(found.report.next.words()) {
+            note(ui, p, &words);
+        }
+    });
+}
+
+fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+    ui.add(Label::new(RichText::new(why.to_string()).font(plain(12.5)).color(colour(p.reaction))).wrap());
+    let is_doubted = matches!(why, NoTrim::Doubted(_));
+    let tip = "Takes the columns as they are: they are right";
+    if is_doubted && ui.button("Take the columns as they are").on_hover_text(tip).clicked() {
+        shown.ask(commands, |options| options.as_given = true);
+    }
+}
+
+fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
+    let dim = |text: &str| RichText::new(text.to_owned()).font(plain(11.5)).color(colour(p.dim));
+    let right = |ui: &mut Ui, text: RichText| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
+    };
+    rows(ui);
+    Grid::new("balance").num_columns(6).spacing([14.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
+        ui.label("");
+        for head in ["machine", "measured", "± 95 %", "after the change"] {
+            right(ui, dim(head));
+        }
+        ui.end_row();
+        for Number { name, unit, nominal, measured, half_width, off, left, .. } in &report.numbers {
+            let tone = colour(if *off { p.reaction } else { p.ink });
+            let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 5));
+            let text = |x: Option<f64>| RichText::new(number(x)).font(plain(12.5));
+            let what = if *off { format!("{name} is off") } else { name.clone() };
+            ui.label(RichText::new(what).font(plain(12.5)).color(tone));
+            right(ui, text(Some(*nominal)));
+            right(ui, text(*measured).color(tone));
+            right(ui, text(*half_width).color(colour(p.dim)));
+            right(ui, text(*left));
+            ui.label(dim(unit));
+            ui.end_row();
+        }
+    });
+}
+
+fn change(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, found: &Trim, commands: &mut Vec<Command>) {
+    let Trim { report, mended, .. } = found;
+    let ink = |ui: &mut Ui, words: &str, tone| {
+        ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(tone))).wrap());
+    };
+    let changes: Vec<&Change> = report.changed().collect();
+    let [head, rest] = match mended {
+        Err(_) => ["Nothing mends it", ""],
+        Ok(_) if changes.is_empty() => ["No change", ""],
+        Ok(_) => ["Least change", "to 0.1 g and 0.1 mm"],
+    };
+    title(ui, p, head, rest);
+    ui.horizontal_wrapped(|ui| {
+        if mended.is_ok() && !changes.is_empty() {
+            let tip = "Gives the machine of the session these counterweights and numbers: one step to undo";
+            take(ui, ("Take the change", tip), shown, Taking::Change, commands);
+        }
+        let tip = "Moves the centres of mass of the links so that the machine does what was measured";
+        take(ui, ("Take as measured", tip), shown, Taking::Measured, commands);
+    });
+    match mended {
+        Err(why) => ink(ui, &why.to_string(), p.reaction),
+        Ok(_) if changes.is_empty() => ink(ui, &report.why_no_change(), p.ink),
+        Ok(_) => {
+            rows(ui);
+            Grid::new("changes").num_columns(2).spacing([14.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
+                for Change { key, from, to, unit, .. } in &changes {
+                    let unit = if *unit == "kg" { "g" } else { "mm" };
+                    let [from, to] = [from, to].map(|x| signed(1e3 * x, 1));
+                    ui.label(RichText::new(key).font(plain(12.5)));
+                    ui.label(RichText::new(format!("{from} → {to} {unit}")).font(plain(12.5)));
+                    ui.end_row();
+                }
+            });
+            if let Some(gain) = &report.worth {
+                note(ui, p, &format!("Over these motions it lowers {}.", gain.worth.words()));
+            }
+        }
+    }
+    ui.add_space(4.0);
+}

@@ -1,0 +1,167 @@
+//! A motion of a person's own, and the nearest one without reactions.
+
+use std::f64::consts::TAU;
+
+use egui::{Align, Grid, Label, Layout, RichText, Ui};
+use egui_plot::{Line, LineStyle, PlotPoints};
+
+use super::assess::Taking;
+use super::parts::{GAP, Shown, column, rows, take, title, worded};
+use crate::app::plots::small_axes;
+use crate::app::study::bare;
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::{name as named, note};
+use crate::app::{Command, ComparisonCommand, Switch, ViewChange, WindowCommand};
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::Palette;
+use crate::planning::curves::Coordinates;
+use crate::session::scenario::Scenario;
+use crate::settings::number::{counted, fixed};
+use crate::study::import::{GivenMotion, ImportError, Imported, Proposal};
+
+/// How wide the table of numbers is, points.
+const NUMBERS: f32 = 360.0;
+/// How wide the plot of n_B over time is, points.
+const MOMENTS: f32 = 300.0;
+/// Smaller numbers are shown as nothing.
+const DECIMALS: usize = 6;
+
+/// What the samples are.
+pub(super) fn summary(motion: &GivenMotion) -> String {
+    let of = if motion.coordinates == Coordinates::Drives { "the drives" } else { "the end effector" };
+    let (samples, time) = (counted(motion.samples.count(), "sample"), fixed(motion.samples.duration(), 3));
+    format!("{samples} of {of} over {time} s")
+}
+
+/// Draws what it does beside what is proposed.
+pub(super) fn show(
+    ui: &mut Ui,
+    p: &Palette,
+    shown: &Shown<'_>,
+    (motion, unwrapped, imported): (&GivenMotion, &[usize], &Result<Imported, ImportError>),
+    commands: &mut Vec<Command>,
+) {
+    let imported = match imported {
+        Ok(imported) => imported,
+        Err(why) => {
+            let rest = ui.available_width();
+            let words = RichText::new(why.to_string()).font(plain(12.5)).color(colour(p.reaction));
+            return column(ui, "refused", rest, |ui| drop(ui.add(Label::new(words).wrap())));
+        }
+    };
+    column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, imported));
+    let rest = ui.available_width();
+    // What is told comes first where there is no room for both.
+    let plot = if rest > 2.0 * MOMENTS { MOMENTS } else { 0.0 };
+    let rest = if plot > 0.0 { rest - plot - GAP } else { rest };
+    column(ui, "proposal", rest, |ui| {
+        proposal(ui, p, shown, imported, commands);
+        let names = motion.names.iter();
+        for (name, turns) in names.clone().zip(unwrapped).filter(|(_, turns)| **turns > 0) {
+            let places = counted(*turns, "place");
+            note(ui, p, &format!("{name} was wrapped: a whole turn was taken out in {places}"));
+        }
+        for (name, lift) in names.zip(&motion.lifted).filter(|(_, lift)| **lift != 0.0) {
+            let turns = lift / TAU;
+            let why = "so that the relative angles begin within their limits";
+            note(ui, p, &format!("{name} was lifted by {turns:+.0} turns, {why}"));
+        }
+        for words in &imported.notes {
+            note(ui, p, &worded(words));
+        }
+    });
+    if plot > 0.0 {
+        column(ui, "moments", plot, |ui| moments(ui, p, imported));
+    }
+}
+
+/// n_B over time of both motions.
+fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
+    title(ui, p, "Base moment n_B", "N m; dashed as given");
+    let given = imported.given.as_ref().map(|given| &given.moment);
+    let proposed = imported.proposal.as_ref().map(|proposal| &proposal.account.moment);
+    small_axes(ui);
+    let height = ui.available_height().max(60.0);
+    let response = bare("moments", p, height).show_axes([true, true]).include_y(0.0).show(ui, |plot| {
+        if let Some(points) = given {
+            let line = Line::new("as given", PlotPoints::from(points.clone())).color(colour(p.reaction)).width(1.4);
+            plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
+        }
+        if let Some(points) = proposed {
+            let line = Line::new("proposed", PlotPoints::from(points.clone())).color(colour(p.zero)).width(1.6);
+            plot.line(line.allow_hover(false));
+        }
+    });
+    named(&response.response, "Base moment over time as given and as proposed, N m");
+}
+
+fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
+    let usual = if imported.content == "tip" { "minimum norm" } else { "as given" };
+    let dim = |text: &str| RichText::new(text.to_owned()).font(plain(11.5)).color(colour(p.dim));
+    let number = |ui: &mut Ui, x: Option<f64>, decimals: usize| {
+        let text = x.map_or_else(String::new, |x| signed(x, decimals.min(DECIMALS)));
+        let is_nought = text.chars().all(|c| matches!(c, '0' | '.' | '−'));
+        let text = RichText::new(text).font(plain(12.5)).color(colour(if is_nought { p.dim } else { p.ink }));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
+    };
+    rows(ui);
+    Grid::new("motions").num_columns(4).spacing([14.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
+        ui.label("");
+        for head in [usual, "proposed"] {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(dim(head)));
+        }
+        ui.end_row();
+        for line in imported.lines() {
+            ui.label(RichText::new(below(&line.name)).font(plain(12.5)));
+            number(ui, line.given, line.decimals);
+            number(ui, line.proposed, line.decimals);
+            ui.label(dim(line.unit));
+            ui.end_row();
+        }
+    });
+}
+
+/// The same with the number of a drive below, as plots have it.
+fn below(name: &str) -> String {
+    let digits = ["₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"];
+    let all = digits.iter().enumerate();
+    all.fold(name.to_owned(), |name, (i, digit)| name.replace(&format!("τ_{i}"), &format!("τ{digit}")))
+}
+
+fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
+    let ink = |ui: &mut Ui, words: &str, tone| {
+        ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(tone))).wrap());
+    };
+    match (&imported.proposal, &imported.reason) {
+        (Some(proposal), _) => {
+            let Proposal { b, why, .. } = proposal;
+            title(ui, p, "Proposed: no reactions", &format!("b = {} rad", signed(*b, 3)));
+            takes(ui, shown, imported, commands);
+            ink(ui, &format!("{}: {why}.", proposal.keeps()), p.ink);
+        }
+        (None, reason) => {
+            title(ui, p, "No proposal", "");
+            let why = reason.as_ref().map_or_else(|| "there is no motion near it without reactions".into(), worded);
+            ink(ui, &why, p.reaction);
+        }
+    }
+    ui.add_space(4.0);
+}
+
+/// What can be done with both motions.
+fn takes(ui: &mut Ui, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
+    let Some(both) = &imported.scenarios else { return };
+    ui.horizontal_wrapped(|ui| {
+        let tip = "Makes it the task of the session: one step to undo";
+        take(ui, ("Take the proposal", tip), shown, Taking::Proposal, commands);
+        let tip = "Makes the motion as it was given the task of the session, to see what it does to the base";
+        take(ui, ("Take as given", tip), shown, Taking::AsGiven, commands);
+        let tip = "Runs both, and adds them to the runs side by side";
+        if ui.button("Compare both").on_hover_text(tip).clicked() {
+            let add = |scenario: &Scenario| ComparisonCommand::Add(Box::new(scenario.clone()));
+            commands.push(ViewChange::Switch(Switch::Compare, true).into());
+            commands.extend(both.iter().map(|it| Command::Window(WindowCommand::Comparison(add(it)))));
+        }
+    });
+    ui.add_space(4.0);
+}

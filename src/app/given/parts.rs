@@ -1,0 +1,96 @@
+//! What the panel of a table is made of: what there is to show, its columns, and the buttons that take something.
+
+use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
+
+use super::assess::{Assessed, Content, Given, Options, Taking};
+use crate::app::theme::{bold, colour, plain};
+use crate::app::{Command, SessionCommand, WindowCommand};
+use crate::picture::scene::palette::Palette;
+use crate::planning::curves::Coordinates;
+use crate::study::advice::{Advice, Remedy};
+
+/// Between the columns, points.
+pub(super) const GAP: f32 = 14.0;
+
+/// What there is to show: the table, what it says, and whether that is of the session as it is.
+#[derive(Clone, Copy)]
+pub(in crate::app) struct Shown<'a> {
+    pub given: &'a Given,
+    pub answer: Option<&'a Result<Assessed, Advice>>,
+    pub is_known: bool,
+}
+
+impl Shown<'_> {
+    /// What the table is read as.
+    pub fn content(&self) -> Content {
+        match self.answer {
+            Some(Ok(Assessed::Measured(_))) => Content::Measurement,
+            Some(Ok(Assessed::Motion { motion, .. })) => match motion.coordinates {
+                Coordinates::Drives => Content::Drives,
+                Coordinates::EndEffector => Content::Tip,
+            },
+            _ => self.given.options.content.unwrap_or(Content::Drives),
+        }
+    }
+
+    /// Asks the same with another choice.
+    pub fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut Options)) {
+        let mut options = self.given.options.clone();
+        change(&mut options);
+        commands.push(WindowCommand::Ask(options).into());
+    }
+}
+
+/// One of the columns side by side; what does not fit is scrolled to.
+pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui)) {
+    let height = ui.available_height();
+    ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::LEFT), |ui| {
+        ui.set_width(width);
+        ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
+            // Clear of the bar.
+            ui.set_max_width(width - 10.0);
+            add(ui);
+        });
+    });
+    ui.add_space(GAP);
+}
+
+/// Rows of a table as high as their text.
+pub(super) fn rows(ui: &mut Ui) {
+    ui.spacing_mut().interact_size.y = 16.0;
+}
+
+/// A title within a column.
+pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
+    ui.horizontal(|ui| {
+        ui.set_height(18.0);
+        ui.label(RichText::new(title).font(bold(12.5)));
+        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
+    });
+}
+
+/// A sentence that names controls of the window for the ways out.
+pub(super) fn worded(advice: &Advice) -> String {
+    let control = |remedy| match remedy {
+        Remedy::Gaps => "“bridge gaps”",
+        Remedy::Smoothing | Remedy::CutOff => "“smoothed at”",
+        Remedy::PoseConstant => "“on the plane b”",
+        Remedy::Workspace => "the workspace in the scene",
+        Remedy::Design | Remedy::Check => "the design view (D)",
+    };
+    advice.worded(control).to_string()
+}
+
+/// A button that takes something of what a table says, where that is of the session as it is.
+pub(super) fn take(
+    ui: &mut Ui,
+    (words, tip): (&str, &str),
+    shown: &Shown<'_>,
+    taking: Taking,
+    commands: &mut Vec<Command>,
+) {
+    let button = ui.add_enabled(shown.is_known, Button::new(words)).on_hover_text(tip);
+    if button.on_disabled_hover_text("It is being found for the machine as it is now").clicked() {
+        commands.push(SessionCommand::TakeGiven(taking).into());
+    }
+}

@@ -1,0 +1,78 @@
+//! The table of numbers that was opened: what it says of the session, and what of that the session takes.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::AppState;
+use super::beside::fault;
+use crate::app::Below;
+use crate::app::change::Change;
+use crate::app::given::assess::{Assessed, Assessing, Given, Options, Table, Taking};
+use crate::query::{Asked, Shared, State};
+use crate::session::Edit;
+use crate::study::advice::Advice;
+use crate::study::trim::{Trim, as_measured};
+
+impl AppState {
+    /// Shows what a table says of the session on display.
+    pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
+        self.saving.uses(&file);
+        self.given = Some(Given { file, table: Shared(table.into()), options: Options::default() });
+        self.view_state.below = Some(Below::Given);
+        self.view_state.open.dialog = None;
+    }
+
+    /// Finds what the table on display says of the session's machine. Not during a drag.
+    pub(super) fn refresh_given(&mut self) {
+        let given = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Given));
+        match given.and_then(|given| given.asked(self.session.scenario())) {
+            None => self.queries().forget::<Assessing>(),
+            Some(_) if self.view_state.gesture.grabbed.is_some() => {}
+            Some(asked) => drop(self.queries().ask_beside::<Assessing>(&asked)),
+        }
+    }
+
+    /// What a table says, and whether that is of the session as it is.
+    pub(super) fn assessed(&self) -> Option<(Arc<Result<Assessed, Advice>>, bool)> {
+        let Asked { last, state } = self.queries().newest::<Assessing>()?;
+        match state {
+            State::Broken => Some((Arc::new(Err(fault("reading the table").into())), true)),
+            State::Stopped if last.is_none() => {
+                Some((Arc::new(Err("cancelled: another choice asks the table again".into())), true))
+            }
+            _ => last.map(|last| (last, state == State::Known)),
+        }
+    }
+
+    /// Takes something of what a table says.
+    ///
+    /// # Errors
+    /// If there is no such thing.
+    pub(super) fn take_given(&mut self, taking: Taking) -> Result<(), String> {
+        let found = self.assessed().filter(|(_, is_known)| *is_known).map(|(found, _)| found);
+        let scenario = self.session.scenario();
+        let edit = match found.as_deref() {
+            Some(Ok(Assessed::Motion { imported: Ok(imported), .. })) => imported.scenarios.as_ref().and_then(|both| {
+                let [proposal, as_given] = both;
+                let chosen = match taking {
+                    Taking::Proposal => proposal,
+                    Taking::AsGiven => as_given,
+                    Taking::Change | Taking::Measured => return None,
+                };
+                Some(Edit::of("task", chosen.task.whole()))
+            }),
+            Some(Ok(Assessed::Measured(trimmed))) => match (&trimmed.outcome, taking) {
+                (Ok(Trim { mended: Ok(mended), .. }), Taking::Change) => mended.edit(scenario),
+                (Ok(Trim { taken, .. }), Taking::Measured) => {
+                    as_measured(scenario, taken).map_err(|why| why.to_string())?.0
+                }
+                _ => None,
+            },
+            _ => None,
+        };
+        let edit = edit.ok_or("the table says nothing new of the session as it is")?;
+        self.change(Change::Edit(edit));
+        self.session.end_gesture();
+        Ok(())
+    }
+}

@@ -1,0 +1,78 @@
+//! Fronts of other machines beside that of the machine on display: kept ones, and built-in machines.
+
+use egui::{Align, Button, Layout, RichText, Ui};
+use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Text};
+
+use super::facts::Facts;
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::{name, note};
+use crate::app::{Command, FrontsCommand, WindowCommand};
+use crate::mechanics::machine::builtins;
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::{Palette, faded};
+use crate::study::fronts::MachineFront;
+
+/// The places of all machines of the fronts beside, added mass, kg, and Σ D_k, kg m².
+pub(super) fn places(facts: &Facts) -> impl Iterator<Item = [f64; 2]> {
+    facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|told| told.measures())
+}
+
+/// Draws their curves, each with its number.
+pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
+    for (i, MachineFront { name, outcome }) in facts.beside().iter().enumerate() {
+        let Ok(told) = outcome else { continue };
+        let places = told.measures();
+        let last = places.last().copied().unwrap_or_default();
+        let tone = colour(faded(p.ink, 0.6));
+        let line = Line::new(name.clone(), PlotPoints::from(places)).width(1.4).color(tone);
+        plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
+        let number = RichText::new(format!(" {}", i + 1)).font(plain(11.5));
+        let text = Text::new("number", PlotPoint::new(last[0], last[1]), number);
+        plot.text(text.color(colour(p.ink)).anchor(egui::Align2::LEFT_BOTTOM).allow_hover(false));
+    }
+}
+
+/// What they are, and what adds to them.
+pub(super) fn list(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let tip = "Keeps this curve, to see beside it what another machine or another material comes to";
+        if ui.button(RichText::new("keep this front").font(plain(12.0))).on_hover_text(tip).clicked() {
+            commands.push(WindowCommand::Fronts(FrontsCommand::Keep).into());
+        }
+        let add = egui::ComboBox::from_id_salt("add front").selected_text("add…").width(96.0).show_ui(ui, |ui| {
+            for machine in builtins() {
+                if ui.selectable_label(false, machine.name()).clicked() {
+                    commands.push(WindowCommand::Fronts(FrontsCommand::Add(machine.clone().into())).into());
+                }
+            }
+        });
+        name(&add.response.on_hover_text("The front of another machine, as this one is asked"), "Add a front");
+    });
+    for (i, MachineFront { name: called, outcome }) in facts.beside().iter().enumerate() {
+        ui.horizontal(|ui| {
+            let remove = ui.add(Button::new(RichText::new("×").font(plain(12.0))).frame(false));
+            name(&remove, &format!("Remove the front of {called}"));
+            if remove.on_hover_text("Take this front away").clicked() {
+                commands.push(WindowCommand::Fronts(FrontsCommand::Remove(i)).into());
+            }
+            let words = match outcome {
+                Ok(told) => {
+                    let least = |i: usize| told.measures().iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);
+                    format!("least {} kg, {} kg m²", signed(least(0), 2), signed(least(1), 3))
+                }
+                Err(_) => "has no front".into(),
+            };
+            ui.label(RichText::new(format!("{}  {called}", i + 1)).font(plain(12.0)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let label = ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
+                if let Err(why) = outcome {
+                    label.on_hover_text(why.to_string());
+                }
+            });
+        });
+    }
+    if let Some(share) = facts.beside_under_way() {
+        note(ui, p, &format!("looking for them: {:.0} %", 100.0 * share));
+    }
+}

@@ -1,0 +1,116 @@
+//! Lengths that are sought with the counterweights: between which ends, what the machine has to reach, and what was found.
+
+use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
+
+use super::asked::{bounded, optional};
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::{Row, note, send, tip_of, unit};
+use crate::app::{Command, SessionCommand, WindowCommand};
+use crate::mechanics::counterweights::Objective;
+use crate::mechanics::machine::ranges;
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::Palette;
+use crate::query::{Asked, State};
+use crate::session::Edit;
+use crate::session::scenario::Scenario;
+use crate::settings::number::counted;
+use crate::study::lengths::{Found, NoLengths};
+
+/// A search for lengths, and what it has come to.
+pub type Sought = Asked<Result<Found, NoLengths>>;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, scenario: &Scenario, sought: Option<&Sought>, p: &Palette, commands: &mut Vec<Command>) {
+    let title = RichText::new("Lengths").font(bold(13.5)).color(colour(p.ink));
+    ui.add_space(4.0);
+    let is_open = !scenario.design.length.is_empty();
+    CollapsingHeader::new(title).id_salt("lengths").default_open(is_open).show_unindented(ui, |ui| {
+        for (name, metres) in scenario.machine.spec().own_lengths() {
+            ends(ui, p, name, metres, scenario.design.length.get(name).copied(), commands);
+        }
+        let brief = &scenario.design;
+        if brief.length.is_empty() {
+            return note(ui, p, "Tick those that may change: they are sought with the counterweights.");
+        }
+        let row = Row::of("reach at least", "design.reach").with(3, 0.005);
+        bounded(ui, p, (&row, "design.reach", 1.0), brief.reach, scenario.machine.reach(), commands);
+        let row = Row::of("workspace at least", "design.workspace").with(3, 0.005);
+        bounded(ui, p, (&row, "design.workspace", 1.0), brief.workspace, 0.5, commands);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("seek").font(plain(12.5)));
+            let tip =
+                "Several searches over these lengths; the best of what they come across is shown, and nothing changes";
+            for (words, objective) in [("least mass", Objective::mass()), ("least inertia", Objective::inertia())] {
+                let button = ui.button(RichText::new(words).font(plain(12.0))).on_hover_text(tip);
+                crate::app::widgets::name(&button, &format!("Seek lengths with {words}"));
+                if button.clicked() {
+                    commands.push(WindowCommand::Seek(objective).into());
+                }
+            }
+        });
+        if let Some(sought) = sought {
+            found(ui, p, brief.length.keys(), sought, commands);
+        }
+    });
+}
+
+/// Whether a length is sought, and between which ends.
+fn ends(ui: &mut Ui, p: &Palette, name: &str, metres: f64, ends: Option<[f64; 2]>, commands: &mut Vec<Command>) {
+    let (path, tip) = (["design", "length", name], tip_of("design.length.*"));
+    ui.horizontal(|ui| {
+        let usual = || vec![0.6 * metres, 1.4 * metres].into();
+        optional(ui, (name, tip), ends.is_some(), |value| Edit::at(&path, value), usual, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, "m");
+            let Some([mut low, mut high]) = ends else {
+                ui.label(RichText::new(signed(metres, 3)).font(plain(12.0)).color(colour(p.dim)));
+                return;
+            };
+            let row = |words: &str, range: std::ops::RangeInclusive<f64>, value: &mut f64, ui: &mut Ui| {
+                let (label, slide) = (format!("{words} length {name}"), range.clone());
+                Row { label: &label, unit: "m", tip, decimals: 3, speed: 0.002, slide, range }.number(ui, value)
+            };
+            let both = [
+                row("greatest", low..=ranges::LENGTH.high(), &mut high, ui),
+                row("least", ranges::LENGTH.low()..=high, &mut low, ui),
+            ];
+            send(commands, &both, || Edit::at(&path, vec![low, high]));
+        });
+    });
+}
+
+/// What a search has come to.
+fn found<'a>(
+    ui: &mut Ui,
+    p: &Palette,
+    names: impl Iterator<Item = &'a String>,
+    sought: &Sought,
+    commands: &mut Vec<Command>,
+) {
+    let Some(outcome) = sought.known() else {
+        return note(ui, p, if sought.state == State::Stopped { "cancelled" } else { "seeking …" });
+    };
+    let found = match &**outcome {
+        Ok(found) => found,
+        Err(why) => {
+            ui.label(RichText::new(why.to_string()).font(plain(12.0)).color(colour(p.reaction)));
+            return;
+        }
+    };
+    let lengths: Vec<String> =
+        names.zip(&found.lengths).map(|(name, metres)| format!("{name} {} m", signed(*metres, 3))).collect();
+    let added = signed(found.placed.added_mass, 2);
+    ui.label(RichText::new(format!("{}: {added} kg added", lengths.join(", "))).font(plain(12.5)));
+    let [starts, alike] = found.starts;
+    let proof = format!(
+        "The best of {}; {alike} of {} ended there. Not certified, as its counterweights are.",
+        counted(found.machines, "machine"),
+        counted(starts, "start")
+    );
+    note(ui, p, &proof);
+    let tip = "Gives the machine these lengths and the counterweights that go with them: one step to undo";
+    if ui.button(RichText::new("take these lengths").font(plain(12.0))).on_hover_text(tip).clicked() {
+        commands.push(SessionCommand::TakeLengths.into());
+        commands.push(SessionCommand::EndGesture.into());
+    }
+}

@@ -1,0 +1,61 @@
+//! `stillbase design A B --counterweights --front N`: the fronts of several machines.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+use stillbase::query::answered;
+use stillbase::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
+
+use super::super::failure::Failure;
+use super::super::output::Table;
+use super::Design;
+use super::weighed::{FRONT, front_cells, tell_taken_off, unweighed};
+
+#[derive(Serialize)]
+struct Answer {
+    fronts: Vec<MachineFront>,
+}
+
+impl Design {
+    /// Prints the front of each machine, or why it has none.
+    pub fn fronts(&self) -> Result<(), Failure> {
+        let machines = self.machine.load_with(&self.beside)?;
+        let task = self.task(&machines.iter().map(|(_, machine)| machine).collect::<Vec<_>>())?;
+        let of = |(name, machine)| {
+            // A front is of mass and inertia, whatever is least in a motion.
+            let asked = self.weighing.asked(&machine, None).map_err(|why| why.of(&name))?;
+            tell_taken_off(&machine, &format!("{name}: "));
+            Ok(FrontOf { name, machine, asked })
+        };
+        let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
+        let motion = task.as_ref().and_then(|run| run.shared_motion());
+        let request = FrontsRequest { machines, count: self.weighing.front_count(), motion, workspace: true };
+        let answer = Answer { fronts: answered::<Fronts>(request) };
+        let mut refused = answer.fronts.iter().filter_map(|of| Some((of, of.outcome.as_ref().err()?)));
+        let mut refusals = refused.clone().map(|(of, why)| unweighed(why.clone()).of(&of.name));
+        if let Some(wrong) = refusals.find(|why| matches!(why, Failure::WrongInput(_))) {
+            return Err(wrong);
+        }
+        if let (true, Some((of, why))) = (answer.fronts.iter().all(|of| of.outcome.is_err()), refused.next()) {
+            return Err(Failure::no_answer(format!("none of these can be balanced: {}: {why}", of.name)));
+        }
+        self.format.print(&answer, text)
+    }
+}
+
+/// The machines of the fronts downwards, each front from light to quick; below them those that have none.
+fn text(answer: &Answer) -> String {
+    let mut table = Table::new(["machine"].into_iter().chain(FRONT));
+    let mut refused = String::new();
+    for MachineFront { name, outcome } in &answer.fronts {
+        match outcome {
+            Ok(told) => {
+                told.points.iter().for_each(|point| table.row([name.clone()].into_iter().chain(front_cells(point))));
+            }
+            Err(why) => {
+                let _ = writeln!(refused, "{name}: {why}");
+            }
+        }
+    }
+    format!("{table}{refused}")
+}

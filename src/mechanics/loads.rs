@@ -1,0 +1,43 @@
+//! [`Loads`]: what drives and base bear in a state of motion.
+
+use serde::Serialize;
+
+use super::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
+use super::machine::Inertia;
+use super::planar::{DriveAngles, PerDrive};
+
+/// What drives and base have to bear in a state of motion, Eqs (1) to (6).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Loads {
+    /// H_kl, kg m².
+    pub mass_matrix: Vec<Vec<f64>>,
+    /// Of each motor, N m.
+    pub torque: Vec<f64>,
+    /// What the manipulator transmits to its base, weight included, N.
+    pub base_force: [f64; 2],
+    /// The same about B, positive counter-clockwise, N m.
+    pub base_moment: f64,
+    /// Centre of mass, seen from B, m.
+    pub com: [f64; 2],
+    /// About B, kg m²/s.
+    pub angular_momentum_about_base: f64,
+}
+
+impl Loads {
+    /// Of a machine with angles q, rad, and their rates and accelerations, of as many drives as it has.
+    pub fn of(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Self {
+        let e = DriveAngles(*q).units();
+        let (h, _) = mass_matrix(inertia, &e, qd);
+        let (torque, wrench) = inverse_with_wrench(inertia, &e, qd, qdd, around);
+        let (total, com) = (wrench.total(), centre_of_mass(inertia, &e));
+        let n = inertia.drives();
+        Self {
+            mass_matrix: (0..n).map(|k| (0..n).map(|l| h.get(k, l)).collect()).collect(),
+            torque: inertia.motors().torques(&torque).to_vec(),
+            base_force: [total.force.re, total.force.im],
+            base_moment: total.moment,
+            com: [com.re, com.im],
+            angular_momentum_about_base: angular_momentum(inertia, &e, qd),
+        }
+    }
+}

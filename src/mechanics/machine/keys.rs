@@ -1,0 +1,284 @@
+//! [`ROWS`]: every key of a machine that can be set by itself, with all that is known of it and where it stands.
+
+use toml::Value;
+
+use super::error::{MachineError, Place, PlaceStep};
+use super::lengths::{length_at, link_length, set_length, set_link_length};
+use super::model::Machine;
+use super::ranges::{
+    ACCELERATION_LIMIT, ANGLE, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO, SPEED_LIMIT,
+    TORQUE_LIMIT, within,
+};
+use super::spec::MachineSpec;
+use crate::settings::change::DEFAULT;
+use crate::settings::key::{Holds, Key};
+
+/// A key, and where its value stands.
+pub(super) struct Row {
+    pub key: Key,
+    pub at: At,
+    /// Whether it has an effect on a machine, which may be pushed at its end effector; none: always.
+    pub uses: Option<fn(&MachineSpec, bool) -> bool>,
+}
+
+/// Where a value stands, of the body of so much in the list of its kind.
+pub(super) enum At {
+    Number(fn(&MachineSpec, usize) -> f64, fn(&mut MachineSpec, usize) -> &mut f64),
+    Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
+    Pair(fn(&MachineSpec, usize) -> [f64; 2], fn(&mut MachineSpec, usize) -> &mut [f64; 2]),
+    Switch(fn(&MachineSpec, usize) -> bool, fn(&mut MachineSpec, usize) -> &mut bool),
+    /// The least and the greatest value of an angle.
+    Ends(fn(&MachineSpec, usize) -> [Option<f64>; 2], fn(&mut MachineSpec, usize) -> [&mut Option<f64>; 2]),
+    /// m: several may share it.
+    Metres(fn(&Machine, usize) -> f64, fn(&mut MachineSpec, usize, f64) -> Result<(), MachineError>),
+}
+
+/// What is read and written in one place.
+macro_rules! at {
+    ($kind:ident, |$spec:ident, $i:tt| $place:expr) => {
+        At::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)
+    };
+}
+
+const fn row(key: Key, at: At) -> Row {
+    Row { key, at, uses: None }
+}
+
+const UNLIMITED: &str = "no limit";
+
+/// Every key of a machine that can be set by itself; its links, drives and angles go by their names, its
+/// counterweights by their numbers, from 1.
+pub(super) const ROWS: [Row; 23] = [
+    row(
+        Key::number(
+            "link.*.com",
+            PLACE,
+            Key::REQUIRED,
+            "Place l_c of a link's centre of mass along the link, from its root.",
+        ),
+        at!(Number, |spec, i| spec.links[i].com),
+    ),
+    row(
+        Key::number(
+            "link.*.com_normal",
+            PLACE,
+            "0",
+            "Place of a link's centre of mass off the link's axis, to the left of the direction root to tip.",
+        ),
+        at!(Number, |spec, i| spec.links[i].com_normal),
+    ),
+    row(Key::number("link.*.mass", MASS, Key::REQUIRED, "Mass of a link."), at!(Number, |spec, i| spec.links[i].mass)),
+    row(
+        Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass."),
+        at!(Number, |spec, i| spec.links[i].inertia),
+    ),
+    row(
+        Key::number("link.*.length", LENGTH, Key::REQUIRED, "Length of a link that shares it with no other."),
+        At::Metres(link_length, set_link_length),
+    ),
+    row(
+        Key::number(
+            "link.*.axial",
+            PLACE,
+            "0",
+            "Height of a link's centre of mass along the drives' axis; it decides which moments tilt the base.",
+        ),
+        at!(Number, |spec, i| spec.links[i].axial),
+    ),
+    row(
+        Key::number(
+            "counterweight.*.mass",
+            MASS,
+            Key::REQUIRED,
+            "Mass of a counterweight: 1 is the first that the machine has.",
+        ),
+        at!(Number, |spec, i| spec.counterweights[i].mass),
+    ),
+    row(
+        Key::number(
+            "counterweight.*.at",
+            PLACE,
+            Key::REQUIRED,
+            "Place of a counterweight along the link that carries it, from that link's root.",
+        ),
+        at!(Number, |spec, i| spec.counterweights[i].at),
+    ),
+    row(
+        Key::number("counterweight.*.radius", RADIUS, "0", "Radius of a counterweight, a disc; 0 for a point."),
+        at!(Number, |spec, i| spec.counterweights[i].radius),
+    ),
+    row(
+        Key::new(
+            "counterweight.*.fixed",
+            Holds::Switch,
+            "false",
+            "Whether a counterweight stays where it is, as a motor does, when others are sought or taken off.",
+        ),
+        at!(Switch, |spec, i| spec.counterweights[i].fixed),
+    ),
+    row(
+        Key::number("length.*", LENGTH, Key::REQUIRED, "A named length, of all bars that share it."),
+        At::Metres(length_at, set_length),
+    ),
+    row(
+        Key::number("payload.mass", LOAD, "0", "Mass held at the end effector, known to control."),
+        at!(Number, |spec, _| spec.payload.mass),
+    ),
+    row(
+        Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),
+        at!(Number, |spec, _| spec.payload.inertia),
+    ),
+    Row {
+        key: Key::new(
+            "payload.offset",
+            Holds::List(2, PLACE),
+            "0,0",
+            "Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.",
+        )
+        .when("payload.mass above 0"),
+        at: at!(Pair, |spec, _| spec.payload.offset),
+        uses: Some(|spec, _| spec.payload.mass > 0.0),
+    },
+    Row {
+        key: Key::number(
+            "payload.axial",
+            PLACE,
+            "0",
+            "Height of the payload's centre of mass, and of a force on the end effector, along the drives' axis.",
+        )
+        .when("payload.mass above 0, or a force on the end effector"),
+        at: at!(Number, |spec, _| spec.payload.axial),
+        uses: Some(|spec, pushed| spec.payload.mass > 0.0 || pushed),
+    },
+    row(
+        Key::new("gravity", Holds::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
+        at!(Pair, |spec, _| spec.gravity),
+    ),
+    row(
+        Key::new(
+            "limits.*",
+            Holds::List(2, ANGLE),
+            Key::NONE,
+            "Least and greatest value of a relative joint angle; without them it turns freely.",
+        )
+        .instead(UNLIMITED),
+        At::Ends(
+            |spec, i| [spec.angles[i].min, spec.angles[i].max],
+            |spec, i| {
+                let angle = &mut spec.angles[i];
+                [&mut angle.min, &mut angle.max]
+            },
+        ),
+    ),
+    row(
+        Key::number(
+            "drive.*.rotor.inertia",
+            INERTIA,
+            "0",
+            "Inertia of what turns in a drive's motor, about its own axis, before the gear.",
+        ),
+        At::Number(
+            |spec, i| spec.drives[i].rotor.unwrap_or_default().inertia,
+            |spec, i| &mut spec.drives[i].rotor.get_or_insert_default().inertia,
+        ),
+    ),
+    row(
+        Key::number(
+            "drive.*.rotor.ratio",
+            RATIO,
+            "1",
+            "Turns of the rotor for one turn of the drive, seen from the motor's stator; below 0 it turns the other way.",
+        ),
+        At::Number(
+            |spec, i| spec.drives[i].rotor.unwrap_or_default().ratio,
+            |spec, i| &mut spec.drives[i].rotor.get_or_insert_default().ratio,
+        ),
+    ),
+    row(
+        Key::number("drive.*.torque_limit", TORQUE_LIMIT, Key::NONE, "The greatest torque of a drive, either way.")
+            .instead(UNLIMITED),
+        at!(Limit, |spec, i| spec.drives[i].torque_limit),
+    ),
+    row(
+        Key::number("drive.*.speed_limit", SPEED_LIMIT, Key::NONE, "The greatest rate of a drive, either way.")
+            .instead(UNLIMITED),
+        at!(Limit, |spec, i| spec.drives[i].speed_limit),
+    ),
+    row(
+        Key::number(
+            "drive.*.acceleration_limit",
+            ACCELERATION_LIMIT,
+            Key::NONE,
+            "The greatest acceleration that is asked of a drive, either way.",
+        )
+        .instead(UNLIMITED),
+        at!(Limit, |spec, i| spec.drives[i].acceleration_limit),
+    ),
+    row(
+        Key::number(
+            "drive.*.jerk_limit",
+            JERK_LIMIT,
+            Key::NONE,
+            "The greatest jerk that is asked of a drive, either way, by time laws that keep jerk in bounds.",
+        )
+        .instead(UNLIMITED),
+        at!(Limit, |spec, i| spec.drives[i].jerk_limit),
+    ),
+];
+
+/// The keys of all rows.
+pub const KEYS: [Key; ROWS.len()] = {
+    let mut all = [ROWS[0].key; ROWS.len()];
+    let mut i = 0;
+    while i < all.len() {
+        all[i] = ROWS[i].key;
+        i += 1;
+    }
+    all
+};
+
+impl Row {
+    /// The row of a key.
+    pub fn of(path: &str) -> Option<&'static Self> {
+        ROWS.iter().find(|row| row.key.matches(path))
+    }
+
+    /// What stands there in a machine; the word `default` for nothing.
+    pub fn value(&self, machine: &Machine, i: usize) -> Value {
+        let spec = machine.spec();
+        let or_default = |value: Option<Value>| value.unwrap_or_else(|| DEFAULT.into());
+        match self.at {
+            At::Number(of, _) => of(spec, i).into(),
+            At::Limit(of, _) => or_default(of(spec, i).map(Value::from)),
+            At::Pair(of, _) => of(spec, i).to_vec().into(),
+            At::Switch(of, _) => of(spec, i).into(),
+            At::Ends(of, _) => {
+                let [low, high] = of(spec, i);
+                or_default(low.zip(high).map(|(low, high)| vec![low, high].into()))
+            }
+            At::Metres(of, _) => of(machine, i).into(),
+        }
+    }
+
+    /// Refuses a number that is none, or out of range. Lengths and the ends of angles stand elsewhere in a file.
+    pub fn check(&self, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
+        let Some(range) = self.key.range() else { return Ok(()) };
+        let place = |k: Option<usize>| {
+            let step = |part: &str| if part == "*" { PlaceStep::At(i) } else { PlaceStep::Key(part.into()) };
+            Place(self.key.path.split('.').map(step).chain(k.map(PlaceStep::At)).collect())
+        };
+        match self.at {
+            At::Number(of, _) => within(range, of(spec, i), || place(None)),
+            At::Limit(of, _) => of(spec, i).map_or(Ok(()), |value| within(range, value, || place(None))),
+            At::Pair(of, _) => {
+                of(spec, i).into_iter().enumerate().try_for_each(|(k, value)| within(range, value, || place(Some(k))))
+            }
+            At::Switch(..) | At::Ends(..) | At::Metres(..) => Ok(()),
+        }
+    }
+}
+
+/// Checks all numbers of a body: that of so much in the list of its kind, by the first word of its keys.
+pub(super) fn check_body(part: &str, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
+    ROWS.iter().filter(|row| row.key.part() == part).try_for_each(|row| row.check(spec, i))
+}

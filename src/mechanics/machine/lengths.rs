@@ -1,0 +1,62 @@
+//! Lengths by key: those with a name, and those of links, which may share one.
+
+use super::error::MachineError;
+use super::model::Machine;
+use super::spec::{Length, MachineSpec};
+use crate::settings::range::{clipped, shortened};
+
+impl MachineSpec {
+    /// Every length that a machine has, m: named ones, and under the names of links those of links that share none.
+    pub fn own_lengths(&self) -> impl Iterator<Item = (&str, f64)> {
+        let named = self.lengths.iter().map(|(name, length)| (name.as_str(), *length));
+        let alone = self.links.iter().filter_map(|link| match link.length {
+            Length::Metres(length) => Some((link.name.as_str(), length)),
+            Length::Named(_) => None,
+        });
+        named.chain(alone)
+    }
+}
+
+/// A named length, m.
+pub(super) fn length_at(machine: &Machine, i: usize) -> f64 {
+    machine.spec().lengths.values().nth(i).copied().unwrap_or_default()
+}
+
+/// Sets it for all that share it.
+pub(super) fn set_length(spec: &mut MachineSpec, i: usize, metres: f64) -> Result<(), MachineError> {
+    spec.lengths.values_mut().skip(i).take(1).for_each(|length| *length = metres);
+    Ok(())
+}
+
+/// The length of a link, m, whatever it shares.
+pub(super) fn link_length(machine: &Machine, j: usize) -> f64 {
+    machine.resolved_links()[j].length
+}
+
+/// A length may be set through its only bar; one that others share, or that a point is named by, may not.
+pub(super) fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), MachineError> {
+    let name = match &mut spec.links[j].length {
+        Length::Metres(l) => {
+            *l = metres;
+            return Ok(());
+        }
+        Length::Named(name) => name.clone(),
+    };
+    let others: Vec<&str> = spec
+        .links
+        .iter()
+        .enumerate()
+        .filter(|(i, l)| *i != j && l.length == Length::Named(name.clone()))
+        .map(|(_, l)| l.name.as_str())
+        .collect();
+    if !others.is_empty() {
+        let plural = if others.len() > 1 { "links" } else { "link" };
+        return Err(MachineError::SharedLength {
+            link: clipped(&spec.links[j].name),
+            length: clipped(&name),
+            sharers: format!("{plural} {}", shortened(&others.join(", "), 200)),
+        });
+    }
+    spec.lengths.insert(name, metres);
+    Ok(())
+}

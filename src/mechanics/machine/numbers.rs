@@ -1,0 +1,49 @@
+//! [`check_numbers`]: that every number of a description is one, and lies where it may.
+
+use super::error::{MachineError, Place};
+use super::keys::check_body;
+use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
+use super::spec::MachineSpec;
+use crate::settings::range::Want;
+
+/// Refuses the first number that is none, or out of the range of its key.
+pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
+    check_body("gravity", spec, 0)?;
+    for (name, &value) in &spec.lengths {
+        within(LENGTH, value, || Place::new(&[&"lengths", name]))?;
+    }
+    check_body("payload", spec, 0)?;
+    for (i, drive) in spec.drives.iter().enumerate() {
+        check_body("drive", spec, i)?;
+        if let Some(rotor) = drive.rotor.filter(|rotor| rotor.ratio.abs() < MIN_POSITIVE) {
+            let place = Place::new(&[&"drive", &i, &"rotor", &"ratio"]);
+            let want = Want::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
+            return Err(MachineError::OutOfRange { place, value: rotor.ratio, want });
+        }
+    }
+    for (i, link) in spec.links.iter().enumerate() {
+        check_body("link", spec, i)?;
+        if !matches!(link.direction, -1 | 1) {
+            let place = Place::new(&[&"link", &i, &"direction"]);
+            return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
+        }
+    }
+    (0..spec.counterweights.len()).try_for_each(|i| check_body("counterweight", spec, i))?;
+    for (i, angle) in spec.angles.iter().enumerate() {
+        for (key, value) in [("offset", Some(angle.offset)), ("min", angle.min), ("max", angle.max)] {
+            value.map_or(Ok(()), |value| within(ANGLE, value, || Place::new(&[&"angle", &i, &key])))?;
+        }
+        match (angle.min, angle.max) {
+            (Some(min), Some(max)) if min > max => {
+                let place = Place::new(&[&"angle", &i, &"max"]);
+                let want = Want::Words("a limit not below min");
+                return Err(MachineError::OutOfRange { place, value: max, want });
+            }
+            (Some(_), None) | (None, Some(_)) => {
+                return Err(MachineError::HalfLimited { angle: angle.name.clone() });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,23 @@
+//! [`Own`]: the keys of a scenario that stand alone.
+
+use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
+use super::task::POSE_CONSTANT;
+use crate::settings::key::{Effect, Key};
+use crate::settings::keyed::keyed;
+
+keyed! {
+    /// What a scenario has beside its parts.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Own {
+        /// Fixed step of the simulation.
+        step: f64 = "0.001", range: STEP, reaching: Effect::Plan, saved: always;
+        /// Time that a recording and every command that runs to the end covers.
+        duration: Option<f64> = Key::NONE, range: DURATION, instead: "that of the planned motion",
+            reaching: Effect::Aside;
+        /// Bound on |b̈| while b is slid by hand.
+        pose_acceleration: f64 = "2", range: POSE_ACCELERATION, saved: always;
+        /// Pose constant of a second workspace to compare with.
+        compare_b: Option<f64> = Key::NONE, range: POSE_CONSTANT, instead: "there is no second one",
+            reaching: Effect::Picture;
+    }
+}

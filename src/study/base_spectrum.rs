@@ -1,0 +1,172 @@
+//! [`BaseSpectrum`]: at which frequencies a run shakes its base, and how that stands against jitter limits.
+
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
+use thiserror::Error;
+
+use super::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, Window};
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, felt};
+use crate::settings::number::fixed;
+
+/// One value for each axis of what the base feels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axes<T> {
+    /// Of the dynamic f_Bx.
+    pub force_x: T,
+    /// Of the dynamic f_By.
+    pub force_y: T,
+    /// Of n_B, or what a reaction wheel leaves of it.
+    pub moment: T,
+}
+
+impl<T> Axes<T> {
+    /// The same of something else.
+    pub fn map<'a, U>(&'a self, f: impl Fn(&'a T) -> U) -> Axes<U> {
+        Axes { force_x: f(&self.force_x), force_y: f(&self.force_y), moment: f(&self.moment) }
+    }
+
+    /// Each with its symbol and unit.
+    pub fn named(&self) -> [(&'static str, &'static str, &T); 3] {
+        [("f_Bx", "N", &self.force_x), ("f_By", "N", &self.force_y), ("n_B", "N m", &self.moment)]
+    }
+}
+
+/// What the samples of an axis come to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// Of samples and of both root mean squares.
+    pub unit: &'static str,
+    /// Of the samples, all alike.
+    pub rms: f64,
+    /// As the window weighs the samples: where the cumulative RMS ends.
+    pub weighted_rms: f64,
+    /// Against its limit, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<JitterVerdict>,
+}
+
+/// At which frequencies a run shakes its base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseSpectrum {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// How samples were weighted.
+    pub window: Window,
+    /// How many there were.
+    pub samples: usize,
+    /// Time between two, s.
+    pub step: f64,
+    /// What each axis comes to.
+    pub axes: Axes<Axis>,
+    /// Frequencies and densities; all have the same lines.
+    pub spectra: Axes<Spectrum>,
+    /// The first audit that failed, in words.
+    pub fault: Option<String>,
+}
+
+/// Why there is none, or none against a limit.
+#[derive(Debug, Error)]
+pub enum NoBaseSpectrum {
+    /// The scenario cannot be run.
+    #[error(transparent)]
+    Run(#[from] Refusal),
+    /// Its samples have no spectrum.
+    #[error(transparent)]
+    Spectrum(#[from] SpectrumError),
+    /// A limit holds nowhere.
+    #[error(
+        "a limit from {} to {} Hz holds at no line of the spectrum, {} to {} Hz by {}: want one that does",
+        limit[0], limit[1], fixed(lines[0], 3), fixed(lines[1], 3), fixed(lines[0], 3)
+    )]
+    Beyond {
+        /// From, to, Hz.
+        limit: [f64; 2],
+        /// First line above 0 Hz, and last, Hz.
+        lines: [f64; 2],
+    },
+}
+
+impl BaseSpectrum {
+    /// Of a scenario, run from its start to its end.
+    ///
+    /// # Errors
+    /// If it cannot be run, or its samples have no spectrum.
+    pub fn of(scenario: &Scenario, window: Window) -> Result<Self, NoBaseSpectrum> {
+        let (course, fault) = felt(scenario)?;
+        let [force_x, force_y, moment] = &course;
+        let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, window);
+        let spectra = Axes { force_x: of(force_x)?, force_y: of(force_y)?, moment: of(moment)? };
+        // Of the run itself: a window weighs its middle.
+        let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
+        let axis = |unit, samples: &[f64], spectrum: &Spectrum| Axis {
+            unit,
+            rms: rms(samples),
+            weighted_rms: spectrum.rms(),
+            limit: None,
+        };
+        Ok(Self {
+            scenario: scenario.name.clone(),
+            window,
+            samples: moment.len(),
+            step: scenario.step,
+            axes: Axes {
+                force_x: axis("N", force_x, &spectra.force_x),
+                force_y: axis("N", force_y, &spectra.force_y),
+                moment: axis("N m", moment, &spectra.moment),
+            },
+            spectra,
+            fault: fault.map(|figure| figure.to_string()),
+        })
+    }
+
+    /// Sets it against limits on both forces, N/√Hz, and on the moment, N m/√Hz.
+    ///
+    /// # Errors
+    /// If a limit holds at no line.
+    pub fn judge(&mut self, force: Option<&JitterLimit>, moment: Option<&JitterLimit>) -> Result<(), NoBaseSpectrum> {
+        let Self { axes, spectra, .. } = self;
+        for (axis, spectrum, limit) in [
+            (&mut axes.force_x, &spectra.force_x, force),
+            (&mut axes.force_y, &spectra.force_y, force),
+            (&mut axes.moment, &spectra.moment, moment),
+        ] {
+            let verdict = limit.map(|limit| spectrum.against(limit).ok_or_else(|| beyond(limit, spectrum)));
+            axis.limit = verdict.transpose()?;
+        }
+        Ok(())
+    }
+
+    /// Frequencies of all lines, Hz.
+    pub fn frequency(&self) -> &[f64] {
+        &self.spectra.moment.frequency
+    }
+
+    /// How far lines lie apart, Hz.
+    pub fn resolution(&self) -> f64 {
+        self.frequency().get(1).copied().unwrap_or(0.0)
+    }
+}
+
+fn beyond(limit: &JitterLimit, spectrum: &Spectrum) -> NoBaseSpectrum {
+    NoBaseSpectrum::Beyond {
+        limit: [limit.points().first(), limit.points().last()].map(|point| point.map_or(0.0, |point| point.0)),
+        lines: [spectrum.frequency.get(1), spectrum.frequency.last()].map(|f| f.copied().unwrap_or(0.0)),
+    }
+}
+
+impl Serialize for BaseSpectrum {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut all = serializer.serialize_struct("BaseSpectrum", 9)?;
+        all.serialize_field("scenario", &self.scenario)?;
+        all.serialize_field("window", &self.window)?;
+        all.serialize_field("samples", &self.samples)?;
+        all.serialize_field("step", &self.step)?;
+        all.serialize_field("resolution", &self.resolution())?;
+        all.serialize_field("axes", &self.axes)?;
+        all.serialize_field("frequency", self.frequency())?;
+        all.serialize_field("density", &self.spectra.map(|spectrum| &spectrum.density))?;
+        all.serialize_field("cumulative_rms", &self.spectra.map(|spectrum| &spectrum.cumulative_rms))?;
+        all.end()
+    }
+}

@@ -1,0 +1,110 @@
+//! [`Rows`]: what runs come to side by side, without their frames.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::{COLUMNS, Candidate, Compared, Design, Summary};
+use crate::session::scenario::Scenario;
+
+/// What a run comes to, or why there is none.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Name of the scenario.
+    pub name: String,
+    /// In which way it does a task, where ways of one are compared.
+    pub way: Option<&'static str>,
+    /// What it comes to, or why there is nothing.
+    pub outcome: Result<Summary, String>,
+    /// Its machine beside that of the first run.
+    pub design: Option<Design>,
+}
+
+/// Runs side by side, in order.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    rows: Vec<Row>,
+    beside: Beside,
+}
+
+/// What sets machines beside the first of them.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    first: Option<Candidate>,
+    differ: bool,
+}
+
+impl Beside {
+    /// Sets the next machine beside the first; the first itself beside itself.
+    pub fn set(&mut self, next: &Candidate) -> Design {
+        let first = self.first.get_or_insert_with(|| next.clone());
+        self.differ |= !next.is_alike(first);
+        next.beside(first)
+    }
+
+    /// Whether one of the machines differs from the first, so that there are designs to compare.
+    pub fn differ(&self) -> bool {
+        self.differ
+    }
+}
+
+impl Rows {
+    /// Runs a scenario to its end, as one more row.
+    pub fn run(&mut self, way: Option<&'static str>, scenario: &Scenario) {
+        let outcome = Compared::of(scenario.clone()).map_err(|why| why.to_string());
+        let design = outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
+        let outcome = outcome.map(|run| run.summary);
+        self.rows.push(Row { name: scenario.name.clone(), way, outcome, design });
+    }
+
+    /// All of them.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Whether the machines of the runs differ.
+    pub fn have_designs(&self) -> bool {
+        self.beside.differ()
+    }
+}
+
+impl Row {
+    /// What it is called beside others: its way, where it is one of several.
+    pub fn title(&self) -> &str {
+        self.way.unwrap_or(&self.name)
+    }
+}
+
+impl Serialize for Rows {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.rows.serialize(serializer)
+    }
+}
+
+/// Only the columns that hold something.
+impl Serialize for Row {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("scenario", &self.name)?;
+        if let Some(way) = self.way {
+            map.serialize_entry("way", way)?;
+        }
+        match &self.outcome {
+            Ok(summary) => {
+                for column in COLUMNS {
+                    if let Some(value) = (column.value)(summary) {
+                        map.serialize_entry(column.key, &value)?;
+                    }
+                }
+                map.serialize_entry("reactionless", &summary.reactionless)?;
+                map.serialize_entry("verdict", &summary.verdict.sentence())?;
+                if let Some(design) = &self.design {
+                    map.serialize_entry("design", design)?;
+                }
+                if let Some(fault) = &summary.fault {
+                    map.serialize_entry("audit", fault)?;
+                }
+            }
+            Err(why) => map.serialize_entry("refused", why)?,
+        }
+        map.end()
+    }
+}

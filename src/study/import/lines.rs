@@ -1,0 +1,91 @@
+//! [`Line`]: what a given motion and the proposed one do, number by number.
+
+use super::imported::Imported;
+use super::judge::{Account, Proposal};
+
+/// A number of both motions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Of the motion as given; none where it has none.
+    pub given: Option<f64>,
+    /// Of the proposal; none where there is none.
+    pub proposed: Option<f64>,
+    /// To so many digits after the point a person wants it.
+    pub decimals: usize,
+    /// Whether it is said of each motion that there is.
+    pub of_both: bool,
+}
+
+impl Imported {
+    /// What both motions do to the base and ask of the drives.
+    pub fn lines(&self) -> Vec<Line> {
+        let (given, proposal) = (self.given.as_ref(), self.proposal.as_ref());
+        let both = |name: String, of: &dyn Fn(&Account) -> f64, decimals: usize, unit: &'static str| Line {
+            name,
+            unit,
+            given: given.map(of),
+            proposed: proposal.map(|p| of(&p.account)),
+            decimals,
+            of_both: true,
+        };
+        let mut lines = vec![
+            both("peak |n_B|".into(), &|a| a.peak_base_moment, 9, "N m"),
+            both("rms n_B".into(), &|a| a.rms_base_moment, 9, "N m"),
+            both("∫ |n_B| dt".into(), &|a| a.moment_impulse, 9, "N m s"),
+            both("peak |f_B|".into(), &|a| a.peak_base_force, 9, "N"),
+            both("rms f_B".into(), &|a| a.rms_base_force, 9, "N"),
+        ];
+        let drives = given.or(proposal.map(|p| &p.account)).map_or(0, |a| a.peak_torque.len());
+        lines.extend((0..drives).map(|k| both(format!("peak |τ_{}|", k + 1), &|a| a.peak_torque[k], 6, "N m")));
+        lines.push(both("least b on the way".into(), &|a| a.b_range[0], 6, "rad"));
+        lines.push(both("greatest b on the way".into(), &|a| a.b_range[1], 6, "rad"));
+        // The spline between the samples goes beyond them: both are said where they differ.
+        let range = given.map(|a| a.b_range);
+        if let Some(([low, high], [least, greatest])) = self.b_samples.zip(range)
+            && (low - least).max(greatest - high) > 5e-7
+        {
+            let of_samples = |name: &str, b: f64| {
+                let (name, given) = (name.to_owned(), Some(b));
+                Line { name, unit: "rad", given, proposed: None, decimals: 6, of_both: false }
+            };
+            lines.push(of_samples("least b of the samples", low));
+            lines.push(of_samples("greatest b of the samples", high));
+        }
+        lines.push(both("momentum at the end".into(), &|a| a.angular_momentum_end, 9, "kg m²/s"));
+        lines.extend(proposal.into_iter().flat_map(|proposal| proposal.lines(given.is_some())));
+        lines
+    }
+}
+
+impl Proposal {
+    /// What only the proposal has.
+    fn lines(&self, is_measured_from_given: bool) -> Vec<Line> {
+        let line = |name: String, value: f64, decimals: usize, unit: &'static str| {
+            let proposed = Some(value);
+            Line { name, unit, given: None, proposed, decimals, of_both: false }
+        };
+        let mut lines = Vec::new();
+        if is_measured_from_given {
+            lines.push(line("end effector off by up to".into(), self.tip_deviation, 9, "m"));
+            let joints = self.joint_deviation.iter().enumerate();
+            lines.extend(joints.map(|(k, off)| line(format!("drive {} off by up to", k + 1), *off, 6, "rad")));
+            lines.push(line("drives off, rms".into(), self.rms_deviation, 6, "rad"));
+        }
+        lines.push(line("simulated: peak |n_B|".into(), self.simulated_peak_base_moment, 9, "N m"));
+        lines
+    }
+
+    /// What it keeps of the motion as given, in words.
+    pub fn keeps(&self) -> &'static str {
+        match self.way {
+            "turned" => "the relative joint angles kept, the arm turned as a whole",
+            "same-tip" => "the end effector's motion kept",
+            "as-given" => "the motion as it is",
+            _ => "the end effector's motion on one plane",
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Tables of numbers that are opened: a motion of a person's own, and a machine that was measured.
+
+use std::fmt::Write as _;
+
+use egui::Key;
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::{Options, SessionCommand, Taking, WindowCommand};
+use stillbase::mechanics::machine::Inertia;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::replay;
+use stillbase::session::scenario::Scenario;
+use stillbase::settings::change::one;
+
+use super::{Window, session, window};
+use crate::Test;
+use crate::folder::Folder;
+
+pub const TESTS: &[Test] = tests![
+    a_motion_of_ones_own_becomes_one_without_reactions,
+    a_measured_machine_is_taken_as_it_is_and_mended,
+    a_table_that_cannot_be_read_says_why_and_a_choice_mends_it,
+    where_no_table_was_opened_one_is_asked_for,
+];
+
+/// Angles of the drives in a run of a scenario, and what its base feels, as a table.
+fn table(scenario: &Scenario, measures: bool) -> String {
+    let mut text =
+        String::from(if measures { "t,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,fx,fy,nz\n" } else { "t,q1,q2,q3\n" });
+    let mut row = |frame: &stillbase::simulation::frame::Frame| {
+        write!(text, "{}", frame.time).expect("text");
+        let rates: &[_] = if measures { &[frame.qd, frame.qdd] } else { &[] };
+        for k in 0..3 {
+            write!(text, ",{}", frame.q.0[k]).expect("text");
+        }
+        for (of, k) in rates.iter().flat_map(|of| (0..3).map(move |k| (of, k))) {
+            write!(text, ",{}", of[k]).expect("text");
+        }
+        if measures {
+            let wrench = frame.wrench.total();
+            write!(text, ",{},{},{}", wrench.force.re, wrench.force.im, wrench.moment).expect("text");
+        }
+        text.push('\n');
+    };
+    replay(scenario, |_, frame| row(frame)).expect("it runs");
+    text
+}
+
+fn open(h: &mut Window, file: &std::path::Path) {
+    h.state_mut().app_state_mut().carry_out(SessionCommand::OpenFile(file.to_owned()));
+    h.run_steps(4);
+}
+
+fn a_motion_of_ones_own_becomes_one_without_reactions() {
+    let (folder, case) = (Folder::new("given"), Scenario::builtin("case-1").expect("built in"));
+    let mut h = window("case-3", Theme::Dark);
+    let before = session(&h).scenario().clone();
+    open(&mut h, &folder.file("mine.csv", &table(&case, false)));
+    assert!(h.query_by_label("Given motion").is_some() && h.query_by_label("Proposed: no reactions").is_some());
+    assert_eq!(*session(&h).scenario(), before, "it changes nothing until it is taken");
+    for (button, is_clean) in [("Take as given", false), ("Take the proposal", true)] {
+        h.get_by_label(button).click();
+        h.run_steps(3);
+        let task = session(&h).scenario().task.clone();
+        assert_eq!(task.samples.as_ref().map(|samples| samples.count()), Some(1001), "{button}");
+        let run = replay(session(&h).scenario(), |_, _| {}).expect("it runs");
+        assert_eq!(run.frame().peaks.is_reactionless(), is_clean, "{button}");
+        assert!(h.query_by_label("Given motion").is_some(), "it stays on display");
+    }
+    for _ in 0..2 {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    }
+    h.run_steps(2);
+    assert_eq!(*session(&h).scenario(), before, "each is one step to undo");
+    // Both beside each other.
+    h.get_by_label("Compare both").click();
+    h.run_steps(8);
+    let rows = h.state().app_state().comparison().expect("side by side").entries().len();
+    assert!(rows >= 3 && h.query_by_label("Given motion").is_none(), "{rows} rows");
+    h.key_press(Key::W);
+    h.run_steps(3);
+    assert!(h.query_by_label("Given motion").is_some(), "the table is still there");
+    h.get_by_label("Close").click();
+    h.run_steps(2);
+    assert!(h.query_by_label("Given motion").is_none());
+}
+
+fn a_measured_machine_is_taken_as_it_is_and_mended() {
+    let folder = Folder::new("given");
+    let case = Scenario::builtin("case-1").expect("built in");
+    let built = case.with(&one("link.5.com", -0.02)).expect("a machine");
+    let file = folder.file("plate.csv", &table(&built, true));
+    let mut h = window("case-3", Theme::Dark);
+    open(&mut h, &file);
+    assert!(h.query_by_label("Measured machine").is_some() && h.query_by_label("g 2 along is off").is_some());
+    let residual = |h: &Window| Inertia::of(&session(h).scenario().machine).force_residual();
+    assert!(residual(&h) < 1e-12);
+    h.get_by_label("Take as measured").click();
+    h.run_steps(4);
+    let all = Inertia::of(&built.machine).force_residual();
+    assert!((residual(&h) - all).abs() < 1e-6, "{} of {all}", residual(&h));
+    // The machine as measured does what was measured, and what mends it is still offered.
+    assert!(h.query_by_label("g 2 along is off").is_none());
+    h.get_by_label("Take the change").click();
+    h.run_steps(4);
+    assert!(residual(&h) < 1e-4, "{}", residual(&h));
+    assert!(!session(&h).scenario().machine.spec().counterweights.is_empty());
+    for _ in 0..2 {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    }
+    h.run_steps(2);
+    assert!(residual(&h) < 1e-12 && session(&h).scenario().machine.spec().counterweights.is_empty());
+}
+
+fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
+    let (folder, case) = (Folder::new("given"), Scenario::builtin("case-1").expect("built in"));
+    let text = table(&case, false);
+    let gap: String =
+        text.lines().enumerate().filter(|(i, _)| !(400..440).contains(i)).fold(String::new(), |mut all, (_, line)| {
+            all += line;
+            all.push('\n');
+            all
+        });
+    let mut h = window("case-3", Theme::Dark);
+    let before = session(&h).scenario().clone();
+    for (name, text, words) in [
+        ("gap.csv", gap.as_str(), "a gap"),
+        ("none.csv", "a,b,c\n1,2,3\n", "no column"),
+        ("nan.csv", "t,q1,q2,q3\n0,1,2,NaN\n", "NaN"),
+        ("empty.csv", "", "want"),
+    ] {
+        open(&mut h, &folder.file(name, text));
+        assert!(h.query_by_label_contains(words).is_some(), "{name}");
+        assert!(h.query_by_label("Take the proposal").is_none(), "{name}");
+    }
+    assert_eq!(*session(&h).scenario(), before);
+    open(&mut h, &folder.path("gap.csv"));
+    h.get_by_label("bridge gaps").click();
+    h.run_steps(4);
+    assert!(h.query_by_label("Take the proposal").is_some(), "the spline bridges it");
+    // What the table does not say cannot be taken.
+    let app_state = h.state_mut().app_state_mut();
+    app_state.carry_out(SessionCommand::TakeGiven(Taking::Measured));
+    assert!(app_state.view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
+    app_state.carry_out(WindowCommand::Ask(Options { b: Some(9e5), ..Options::default() }));
+    h.run_steps(3);
+    assert!(h.query_by_label("Take the proposal").is_none());
+}
+
+fn where_no_table_was_opened_one_is_asked_for() {
+    let mut h = window("case-3", Theme::Light);
+    h.key_press(Key::W);
+    h.run_steps(2);
+    assert!(h.query_by_label("File name").is_some());
+}
