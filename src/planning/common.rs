@@ -26,7 +26,7 @@ const REFINED: usize = 3;
 const SECTIONS: usize = 40;
 
 /// By how much longer moves are tried than the least one, shares of it.
-const BEYOND: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
+const LONGER_BY: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
 
 /// The b that reach a point, single ones with their slack.
 fn set_of(space: &PoseSpace, p: Vector) -> Result<BSet, NoReach> {
@@ -202,7 +202,7 @@ fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Op
         let at = |(i, p): (usize, &Vector)| if i == mend.point { to } else { *p };
         points.iter().enumerate().map(at).all(|p| space.reaches(p, b))
     };
-    let exact = BEYOND.into_iter().find_map(|share| {
+    let exact = LONGER_BY.into_iter().find_map(|share| {
         let to = from + (1.0 + share) * (mend.to - from);
         let [low, high] = shared(to)?;
         [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))

@@ -38,21 +38,23 @@ pub struct Forecast {
     pub b_end: f64,
 }
 
-/// Instants at which a motion is looked at, at least; for each of many parts, and at most.
-const INSTANTS: usize = 2000;
-const A_PART: usize = 100;
-const MOST: usize = 100_000;
+/// Instants at which a motion is looked at, at least.
+const MIN_INSTANTS: usize = 2000;
+/// Those for each part of a path of many.
+const INSTANTS_PER_PART: usize = 100;
+/// Those at most.
+const MAX_INSTANTS: usize = 100_000;
 
 /// After so many instants it is told how much is done.
-const A_WORD: usize = 1024;
+const INSTANTS_PER_WORD: usize = 1024;
 
 /// A limit counts as passed from this factor on.
-const PASSED: f64 = 1.0 + 1e-6;
+const PASSED_FACTOR: f64 = 1.0 + 1e-6;
 
 impl Forecast {
     /// Of a motion of a model.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
-        let instants = (A_PART * motion.path.parts()).clamp(INSTANTS, MOST);
+        let instants = (INSTANTS_PER_PART * motion.path.parts()).clamp(MIN_INSTANTS, MAX_INSTANTS);
         Self::at(motion, model, around, limits, instants)
     }
 
@@ -90,7 +92,7 @@ impl Forecast {
         let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
         for i in 0..instants {
-            if i % A_WORD == 0 && !goes_on(i as f64 / instants as f64) {
+            if i % INSTANTS_PER_WORD == 0 && !goes_on(i as f64 / instants as f64) {
                 break;
             }
             let r = motion.at((i as f64 + 0.5) * dt);
@@ -110,7 +112,7 @@ impl Forecast {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;
                     // What rounding passes by is none.
-                    if factor > PASSED && sum.over.is_none_or(|(_, most)| factor > most) {
+                    if factor > PASSED_FACTOR && sum.over.is_none_or(|(_, most)| factor > most) {
                         sum.over = Some((DriveLimit { quantity, drive }, factor));
                     }
                 }

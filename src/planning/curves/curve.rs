@@ -68,14 +68,14 @@ pub enum CurveError {
 }
 
 /// Points nearer than this to each other are one, m or rad.
-const APART: f64 = 1e-9;
+const SAME_POINT: f64 = 1e-9;
 /// A corner sharper than this, rad, turns back: it cannot be blended.
 const TURNS_BACK: f64 = 3.05;
 
 impl Curve {
     /// A straight line.
     pub fn line(from: Vector, to: Vector) -> Self {
-        Self::of(vec![(line(from, to), (to - from).norm().max(APART))])
+        Self::of(vec![(line(from, to), (to - from).norm().max(SAME_POINT))])
     }
 
     /// The arc from the first point through the second to the third, or on to the first again.
@@ -154,7 +154,7 @@ impl Curve {
             let d = if i == last { 0.0 } else { room(i) };
             let direction = along(i - 1) / along(i - 1).norm();
             let end = corner - d * direction;
-            if (end - at).norm() > APART {
+            if (end - at).norm() > SAME_POINT {
                 pieces.push((line(at, end), (end - at).norm()));
             }
             at = end;
@@ -188,10 +188,10 @@ impl Curve {
         }
         let length: f64 = drawn.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
         // Evenly along the line, then smoothed, then every few of them.
-        let (even, spacing) = resampled(&drawn, length, 8 * HAND);
+        let (even, spacing) = resampled(&drawn, length, 8 * HAND_SPACES);
         let smooth = smoothed(&even, (0.012 / spacing).clamp(1.0, 24.0));
-        let mut knots: Vec<Vector> = Vec::with_capacity(HAND + 1);
-        for i in 0..=HAND {
+        let mut knots: Vec<Vector> = Vec::with_capacity(HAND_SPACES + 1);
+        for i in 0..=HAND_SPACES {
             // A hand that goes there and back comes by the same place.
             if knots.last().is_none_or(|last| (smooth[8 * i] - last).norm() > 1e-3 * spacing) {
                 knots.push(smooth[8 * i]);
@@ -221,7 +221,7 @@ impl Curve {
             Piece { from, to, shape }
         };
         let length: f64 = nodes.windows(2).map(|w| (w[1].p - w[0].p).norm()).sum();
-        Some(Self { pieces: (0..last).map(piece).collect(), length: length.max(APART) })
+        Some(Self { pieces: (0..last).map(piece).collect(), length: length.max(SAME_POINT) })
     }
 
     fn of(shapes: Vec<(Shape, f64)>) -> Self {
@@ -320,7 +320,7 @@ fn check(points: &[Vector], closed: bool) -> Result<(), CurveError> {
     if let Some(i) = points.iter().position(|p| !p.is_finite()) {
         return Err(CurveError::NotFinite(i));
     }
-    let close = |i: &usize| (points[(i + 1) % points.len()] - points[*i]).norm() <= APART;
+    let close = |i: &usize| (points[(i + 1) % points.len()] - points[*i]).norm() <= SAME_POINT;
     let neighbours = if closed { points.len() } else { points.len().saturating_sub(1) };
     (0..neighbours).find(close).map_or(Ok(()), |i| Err(CurveError::Coincident(i, (i + 1) % points.len())))
 }
@@ -410,7 +410,7 @@ fn tridiagonal(rows: &[[f64; 3]], sides: &[Vector]) -> Vec<Vector> {
 }
 
 /// Spaces between the knots of a curve drawn by hand.
-const HAND: usize = 24;
+const HAND_SPACES: usize = 24;
 
 /// `spaces` even spaces along a line of points, and how long each is.
 fn resampled(points: &[Vector], length: f64, spaces: usize) -> (Vec<Vector>, f64) {

@@ -78,7 +78,7 @@ impl Path {
 
     /// s at which q′ or q″ jumps: at joints of curves, where paths meet, and where a table jumps.
     pub fn kinks(&self) -> Vec<f64> {
-        const HAIR: f64 = 1e-9;
+        const SAME_PLACE: f64 = 1e-9;
         let joints: Vec<f64> = match self {
             Self::Chain(chain) => {
                 let inner = |(path, [from, to]): (&Self, [f64; 2])| {
@@ -88,11 +88,13 @@ impl Path {
             }
             Self::OnPlane { curve, .. } => curve.joints().collect(),
             // Where a table jumps two of its nodes stand side by side.
-            Self::Table(table) => table.stations().windows(2).filter(|w| w[1] - w[0] < HAIR).map(|w| w[0]).collect(),
+            Self::Table(table) => {
+                table.stations().windows(2).filter(|w| w[1] - w[0] < SAME_PLACE).map(|w| w[0]).collect()
+            }
             _ => Vec::new(),
         };
         let jumps = |s: &f64| {
-            let (a, b) = (self.at(s - HAIR), self.at(s + HAIR));
+            let (a, b) = (self.at(s - SAME_PLACE), self.at(s + SAME_PLACE));
             let jump = |a: &PerDrive, b: &PerDrive| b.minus(a).max_abs();
             jump(&a.first, &b.first) + jump(&a.second, &b.second)
                 > 1e-5 * (a.first.max_abs() + a.second.max_abs() + b.second.max_abs())
@@ -104,7 +106,7 @@ impl Path {
     pub fn parts(&self) -> usize {
         match self {
             Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
-            Self::Table(table) => table.nodes().len().div_ceil(A_PART),
+            Self::Table(table) => table.nodes().len().div_ceil(NODES_PER_PATH),
             _ => 1,
         }
     }
@@ -221,7 +223,7 @@ impl Chained {
     }
 }
 /// Nodes of a table that count as one path.
-const A_PART: usize = 1024;
+const NODES_PER_PATH: usize = 1024;
 /// Difference quotients lose as much by rounding as by their length.
 const THIRD_OVER: f64 = 1e-5;
 

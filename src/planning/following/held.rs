@@ -23,15 +23,16 @@ pub struct Pull {
     pub at: Vector,
 }
 
-/// Shares of the bound on |ä| for changing the speed, and for turning with the curve at most.
-const ALONG: f64 = 0.65;
-const ACROSS: f64 = 0.7;
+/// Share of the bound on |ä| for changing the speed.
+const ALONG_SHARE: f64 = 0.65;
+/// Share of the bound on |ä| for turning with the curve, at most.
+const ACROSS_SHARE: f64 = 0.7;
 /// The speed that is wanted leaves the curve this share.
-const TURNING: f64 = 0.4;
+const TURNING_SHARE: f64 = 0.4;
 /// A pull from farther away than this share of the reach is as strong as from there.
-const FAR: f64 = 0.15;
+const FULL_PULL_SHARE: f64 = 0.15;
 /// A point that moves less than this share of the reach for a radian is pulled along less than it could be.
-const STIFF: f64 = 0.05;
+const STIFF_SHARE: f64 = 0.05;
 /// Slower and nearer than this it stands still, rad/s and rad.
 const STILL: f64 = 1e-8;
 /// The point is kept as near as this, a share of the reach.
@@ -203,7 +204,7 @@ impl Held {
         if !self.is_within(&next.a) {
             return false;
         }
-        let (speed, brake) = (norm(&next.v), ALONG * self.bound);
+        let (speed, brake) = (norm(&next.v), ALONG_SHARE * self.bound);
         if speed == 0.0 {
             return true;
         }
@@ -219,7 +220,7 @@ impl Held {
             let (j, v) = (there.tip(&a), next.v.scaled((1.0 - share).sqrt()));
             let Some(v) = there.tangent(&j, &v) else { return false };
             let turning = there.turning(&j, &j, &a, &v, Vector::default());
-            self.is_within(&a) && turning.is_some_and(|turning| norm(&turning) <= ACROSS * self.bound)
+            self.is_within(&a) && turning.is_some_and(|turning| norm(&turning) <= ACROSS_SHARE * self.bound)
         };
         [0.0, 0.5, 1.0].into_iter().all(fits)
     }
@@ -230,11 +231,11 @@ impl Held {
         let q = self.space.lift(&self.a, self.b);
         let pulled: Vector = (0..n + 1).map(|k| unit(q[k]) * self.pull.chain[k]).sum();
         let err = self.pull.at - pulled;
-        let err = err * (FAR * reach / err.norm().max(FAR * reach));
+        let err = err * (FULL_PULL_SHARE * reach / err.norm().max(FULL_PULL_SHARE * reach));
         let g = self.columns(&self.pull.chain, &self.a);
         let row = |of: fn(&Vector) -> f64| self.tangent(j, &PerDrive::from_fn(n, |i| of(&g[i])));
         let (x, y) = (row(|g| g.re)?, row(|g| g.im)?);
-        let stiff = (STIFF * reach).powi(2);
+        let stiff = (STIFF_SHARE * reach).powi(2);
         let (xx, xy, yy) = (x.dot(&x) + stiff, x.dot(&y), y.dot(&y) + stiff);
         let det = xx * yy - xy * xy;
         let way = x.scaled((yy * err.re - xy * err.im) / det).plus((xx * err.im - xy * err.re) / det, &y);
@@ -242,9 +243,9 @@ impl Held {
         if far == 0.0 {
             return Some(way);
         }
-        let brake = ALONG * self.bound;
+        let brake = ALONG_SHARE * self.bound;
         let turning = norm(&self.turning(j, j, &self.a, &way.scaled(1.0 / far), Vector::default())?);
-        let most = (TURNING * self.bound / turning.max(1e-9)).sqrt();
+        let most = (TURNING_SHARE * self.bound / turning.max(1e-9)).sqrt();
         let mut w = way.scaled(approach(far, brake).min(most) / far);
         // As fast as each angle can stop at its limit, by the least change.
         let passes = |w: &PerDrive, i: usize| {
@@ -268,7 +269,7 @@ impl Held {
 
     /// Chooses the accelerations of the coming step.
     fn steer(&mut self) {
-        let (n, brake) = (self.a.len(), ALONG * self.bound);
+        let (n, brake) = (self.a.len(), ALONG_SHARE * self.bound);
         let speed = norm(&self.v);
         let braking = self.v.scaled(if speed > 0.0 { -brake.min(speed / self.step) / speed } else { 0.0 });
         let j = self.tip(&self.a);

@@ -16,22 +16,22 @@ const EVERY_SECOND: usize = 2;
 /// infinitely fast.
 const MARGIN: f64 = 1e-3;
 /// Of that margin no more is kept than raises what is to be least by this part.
-const COST: f64 = 4e-3;
+const MARGIN_COST: f64 = 4e-3;
 /// Kept in any case, rad: rounding.
-const HAIR: f64 = 1e-8;
+const MIN_MARGIN: f64 = 1e-8;
 /// Where the start pose is nearer to an end than that, the margin grows over this part of the motion.
-const GROWING: f64 = 0.1;
+const GROWTH_SHARE: f64 = 0.1;
 /// How often the walls are drawn in where the course passes the corridor's end between stations.
 const ROUNDS: usize = 4;
 /// What a smooth course may add to the least peak, as a part of it.
-const SPARE: f64 = 1e-7;
+const SMOOTHING_COST: f64 = 1e-7;
 
 /// Between which b − b_0 the course must stay at each station, the even ones first.
 type Walls = Vec<[f64; 2]>;
 
 /// The course of least ∫ b″² du, or of least peak of |b″|, that stays within the corridor at every station and, to
 /// second order, between them; or a word on why there is none. The corridor has [`STATIONS`] stations for each of the
-/// spaces. `ease` is how many times [`COST`] the distance from the corridor's ends may cost.
+/// spaces. `ease` is how many times [`MARGIN_COST`] the distance from the corridor's ends may cost.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -43,8 +43,8 @@ pub(super) fn least_course(
     // What is to be least is convex in the share of the margin, so that a chord bounds what a share of it costs.
     let free = value(0.0)?;
     let mut shares = match value(1.0) {
-        Ok(wide) if wide - free <= ease * COST * free => vec![1.0],
-        Ok(wide) => vec![ease * COST * free / (wide - free)],
+        Ok(wide) if wide - free <= ease * MARGIN_COST * free => vec![1.0],
+        Ok(wide) => vec![ease * MARGIN_COST * free / (wide - free)],
         Err(_) => vec![0.3, 0.1, 0.03, 0.01],
     };
     shares.push(0.0);
@@ -113,7 +113,7 @@ fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
         if bend.is_finite() { bend } else { 0.0 }
     };
     let (here, beside) = (second(k), second(k.saturating_sub(2)).abs().max(second(k + 2).abs()));
-    let smooth = here.abs() <= 8.0 * beside + HAIR;
+    let smooth = here.abs() <= 8.0 * beside + MIN_MARGIN;
     smooth.then(|| ([1.0, -1.0][side] * here).max(0.0))
 }
 
@@ -122,7 +122,7 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
     let mut least = program(corridor, walls, end, spaces, 1, 0);
     if peak {
         // First the peak alone; then of all courses with that peak the smoothest.
-        let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SPARE);
+        let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SMOOTHING_COST);
         for i in 0..=spaces {
             least.at_most.push(Row::new([(3 * i + 2, 1.0)], bound));
             least.at_most.push(Row::new([(3 * i + 2, -1.0)], bound));
@@ -224,8 +224,8 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
     let wall = |station: &Station, bulges: [f64; 2]| {
         let tenth = 0.1 * (station.high - station.low);
         let inset = |side: usize, gap: [f64; 2]| {
-            let whole = share * MARGIN.min(tenth) + (bulges[side] + HAIR + extra).min(tenth);
-            let from = |gap: f64, u: f64| whole.min(gap.max(0.0) + whole * (u / GROWING).powi(3));
+            let whole = share * MARGIN.min(tenth) + (bulges[side] + MIN_MARGIN + extra).min(tenth);
+            let from = |gap: f64, u: f64| whole.min(gap.max(0.0) + whole * (u / GROWTH_SHARE).powi(3));
             from(gap[0], station.u).min(if end.is_some() { from(gap[1], 1.0 - station.u) } else { whole })
         };
         [

@@ -13,15 +13,15 @@ use crate::planning::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, betwee
 /// Points of a self-motion that tell its parts from each other.
 const SAMPLES: usize = 25;
 /// From one station to the next a pose may move by this much, rad; further away is another branch.
-const JUMP: f64 = 0.2;
+const MAX_POSE_MOVE: f64 = 0.2;
 /// Newton's iteration from a guess is trusted if it moves no further than this, rad.
-const NEAR: f64 = 0.05;
+const MAX_NEWTON_MOVE: f64 = 0.05;
 /// Steps of b below this are rounding, rad.
 const FLAT: f64 = 1e-11;
 /// An end of the corridor that moves so many times further between two stations than beside them jumps there.
-const SUDDEN: f64 = 4.0;
+const JUMP_FACTOR: f64 = 4.0;
 /// By no less than this, rad.
-const LEAP: f64 = 1e-6;
+const MIN_JUMP: f64 = 1e-6;
 /// How often the place of a jump is halved.
 const HALVINGS: usize = 24;
 /// Stations from a jump to the next even one, each twice as far from it as the one before.
@@ -129,7 +129,7 @@ impl Station {
         let guess = [0, 1].map(|i| from.a[i] + share * (to.a[i] - from.a[i]));
         if map.det(guess) * self.det > 0.0
             && let Some(a) = map.follow(self.point.p, on, guess)
-            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < NEAR
+            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < MAX_NEWTON_MOVE
         {
             return Some(PlanePoint { a, b });
         }
@@ -215,7 +215,7 @@ impl Corridor {
         let sudden = |&(k, side): &(usize, usize)| {
             let beside = [k.checked_sub(1), (k < last).then_some(k + 1)];
             let most = beside.into_iter().flatten().map(|k| step(k, side)).fold(0.0, f64::max);
-            step(k, side) > SUDDEN * most + LEAP
+            step(k, side) > JUMP_FACTOR * most + MIN_JUMP
         };
         (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(JUMPS).collect()
     }
@@ -314,7 +314,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
             let candidate = Station { u, point, low, high, line, det: own };
             let Some(at) = candidate.pose(map, near.b.clamp(low, high)) else { continue };
             let moved = (at.a[0] - near.a[0]).hypot(at.a[1] - near.a[1]);
-            if moved < JUMP && best.as_ref().is_none_or(|(least, _)| moved < *least) {
+            if moved < MAX_POSE_MOVE && best.as_ref().is_none_or(|(least, _)| moved < *least) {
                 best = Some((moved, candidate));
             }
         }

@@ -17,7 +17,7 @@ const MAX_ITERATIONS: usize = 30;
 /// What keeps the dual strictly concave, a share of Σ |c_i|² / w_i.
 const DAMPING: f64 = 1e-14;
 /// Equations are met when they miss by less than this share of what they ask for.
-const MET: f64 = 1e-13;
+const MET_SHARE: f64 = 1e-13;
 
 /// A box, and what a step within it is to be like.
 pub(super) struct Boxed<'a> {
@@ -43,7 +43,7 @@ impl Boxed<'_> {
             return (x, nu);
         }
         let gradient = |x: &PerDrive, nu: Vector| wanted - self.sum(x) - damping * nu;
-        let enough = MET * (wanted.norm() + self.sum(self.wish).norm());
+        let enough = MET_SHARE * (wanted.norm() + self.sum(self.wish).norm());
         for _ in 0..MAX_ITERATIONS {
             let missing = gradient(&x, nu);
             if missing.norm() <= enough {

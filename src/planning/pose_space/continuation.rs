@@ -47,8 +47,9 @@ pub(super) const THOROUGH: Effort = Effort { max_steps: 60, least_step: 1e-5, ma
 pub(super) const BRIEF: Effort = Effort { max_steps: 8, least_step: 0.05, max_vain: usize::MAX };
 /// Where most likely there is none.
 pub(super) const GLANCE: Effort = Effort { max_steps: 4, least_step: 0.2, max_vain: 2 };
-/// The longest way along a curvature, rad, and how often a shorter one is tried.
-const LEAP: f64 = 0.2;
+/// The longest way along a curvature, rad.
+const MAX_LEAP: f64 = 0.2;
+/// How often a shorter one is tried.
 const MAX_LEAPS: usize = 4;
 /// Gains and curvatures below this share of the largest are rounding.
 const GAIN_TOLERANCE: f64 = 1e-9;
@@ -221,7 +222,7 @@ impl PoseSpace {
         }
         let (way, bend) = leave.along?;
         for side in [1.0, -1.0] {
-            let mut rise = rise.abs().min(0.5 * bend * LEAP * LEAP);
+            let mut rise = rise.abs().min(0.5 * bend * MAX_LEAP * MAX_LEAP);
             for _ in 0..MAX_LEAPS {
                 let by = side * (2.0 * rise / bend).sqrt();
                 let beside = PerDrive::from_fn(a.len(), |i| (a[i] + by * way[i]).clamp(windows[i][0], windows[i][1]));

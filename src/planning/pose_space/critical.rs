@@ -126,10 +126,10 @@ const SAME_POSE: f64 = 0.1;
 const SAME_ANGLES: f64 = 1e-6;
 
 /// Poses of a curve may miss the limits by this much, rad: what a root that is found to 1e-11 makes of them.
-const BEYOND: f64 = 1e-6;
+const LIMIT_MISS: f64 = 1e-6;
 
 /// A step of Newton's iteration after which it is there.
-const ENOUGH: f64 = 1e-11;
+const LAST_NEWTON_STEP: f64 = 1e-11;
 
 impl PoseSpace {
     /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles. False where
@@ -178,7 +178,7 @@ impl PoseSpace {
                     joint.sense * (far - near) + c.shift[i] - TAU * f64::from(curve.turns[i])
                 }
             };
-            if a[i] < low - BEYOND || a[i] > high + BEYOND {
+            if a[i] < low - LIMIT_MISS || a[i] > high + LIMIT_MISS {
                 return None;
             }
         }
@@ -506,7 +506,7 @@ fn bracketed(f: &impl Fn(f64) -> (f64, f64), [mut a, mut b]: [f64; 2], [fa, fb]:
         x += step;
         last = step;
         // What is left of it is the square of this.
-        if step.abs() <= if newton { ENOUGH } else { 2.0 * f64::EPSILON } {
+        if step.abs() <= if newton { LAST_NEWTON_STEP } else { 2.0 * f64::EPSILON } {
             break;
         }
     }

@@ -8,9 +8,9 @@ use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// Whole turns of that drive either way from the middle of its range.
-const TURNS: i32 = 3;
+const MAX_TURNS: i32 = 3;
 /// Rounding of a limit, rad.
-const HAIR: f64 = 1e-9;
+const LIMIT_ROUNDING: f64 = 1e-9;
 
 impl PoseSpace {
     /// Poses of four drives and more within the limits that put the end effector on `p`, m, at `b`, rad, with a drive at
@@ -21,7 +21,7 @@ impl PoseSpace {
         let left = p - self.tip[drive] * unit(angle);
         let about = ((self.lift(&self.middle(), b)[drive] - angle) / TAU).round();
         let mut found: Vec<(f64, DriveAngles)> = Vec::new();
-        for turn in -TURNS..=TURNS {
+        for turn in -MAX_TURNS..=MAX_TURNS {
             let own = angle + TAU * (about + f64::from(turn));
             let wanted: Vec<f64> = (0..self.joints.len()).filter(|i| *i != joint).map(|i| near[i]).collect();
             for others in rest.poses(left, b - self.lambda[drive] * own, &wanted) {
@@ -31,7 +31,7 @@ impl PoseSpace {
                 });
                 let [low, high] = self.joints[joint].bounds();
                 let a = self.joints[joint].of(&q);
-                if a >= low - HAIR && a <= high + HAIR {
+                if a >= low - LIMIT_ROUNDING && a <= high + LIMIT_ROUNDING {
                     let far = self.angles(&q).iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum();
                     found.push((far, DriveAngles(q)));
                 }

@@ -9,10 +9,11 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::reactionless::{BSet, Decimal};
 
 /// A point that a pose misses by less than this share of the reach is reached.
-const REACHED: f64 = 1e-9;
-/// From how many poses the nearest one is sought, and by how much of the reach another has to be nearer.
-const STARTS: usize = 24;
-const CLEARLY: f64 = 1e-4;
+const REACHED_SHARE: f64 = 1e-9;
+/// From how many poses the nearest one is sought.
+const MAX_STARTS: usize = 24;
+/// By how much of the reach another has to be nearer.
+const NEARER_SHARE: f64 = 1e-4;
 /// Looks along the curve of two drives, and halvings between two of them.
 const LOOKS: usize = 240;
 const HALVINGS: usize = 60;
@@ -85,7 +86,7 @@ impl PoseSpace {
 }
 
 fn is_at(space: &PoseSpace, off: f64) -> bool {
-    off <= REACHED * space.farthest()
+    off <= REACHED_SHARE * space.farthest()
 }
 
 fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
@@ -120,9 +121,9 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
 /// The pose that is nearest to p, m, of those gone to from all over the limits; the one there is, unless another is clearly
 /// nearer.
 fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64)) -> (PerDrive, f64) {
-    let others = (0..STARTS).map(|i| space.toward(p, b, &space.spread(i)));
+    let others = (0..MAX_STARTS).map(|i| space.toward(p, b, &space.spread(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
-    best.filter(|(_, other)| *other < off - CLEARLY * space.farthest()).unwrap_or((a, off))
+    best.filter(|(_, other)| *other < off - NEARER_SHARE * space.farthest()).unwrap_or((a, off))
 }
 
 /// Two drives: the point of their curve that is nearest to p, and how far that is, m; where it turns

@@ -18,19 +18,22 @@ use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
 /// Of how many critical poses on either side of a gap, the nearest ones, ways lead into it: at first, and with all care.
 const NEAREST: [usize; 2] = [3, 24];
-/// How far into it, as a share of it, and of b's period at most.
-const INTO: f64 = 0.3;
-const AT_MOST: f64 = 0.02;
-/// How often all joints turn at most to come to a distance, and how little, as a share of the reach, is nothing.
+/// How far into it, as a share of it.
+const GAP_DEPTH_SHARE: f64 = 0.3;
+/// And at most, as a share of b's period.
+const MAX_GAP_DEPTH_SHARE: f64 = 0.02;
+/// How often all joints turn at most to come to a distance.
 const MAX_SWEEPS: usize = 200;
-const STANDS: f64 = 1e-12;
-/// Places all over the ranges from which poses at a distance are come to, at first and with all care, and how far inside a gap one is, as a share of it.
+/// Turns that bring less than this share of the reach are nothing.
+const NO_TURN_SHARE: f64 = 1e-12;
+/// Places all over the ranges from which poses at a distance are come to, at first and with all care.
 const SAMPLES: [usize; 2] = [32, 512];
-const INSIDE: f64 = 1e-3;
+/// How far inside a gap one of them is, as a share of it.
+const INSIDE_GAP_SHARE: f64 = 1e-3;
 /// From how near B poses lead onto it, as a share of the reach.
 const NEAR_BASE: f64 = 1e-2;
 /// Critical values that are one, to rounding, rad.
-const SAME: f64 = 1e-9;
+const SAME_CRITICAL: f64 = 1e-9;
 
 /// What lies between two critical values of b, rad.
 pub(super) struct Gap {
@@ -85,16 +88,16 @@ impl PoseSpace {
     /// Whether a way from a critical pose near a gap leads into it.
     fn is_climbed_into(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
         let (period, n) = (self.period(), criticals.len());
-        let into = (INTO * (gap.to - gap.from)).min(AT_MOST * period);
-        let past = |by: f64| (by + SAME).rem_euclid(period) - SAME;
-        let at_most = |by: &f64, free: f64| *by <= free + SAME;
-        let first = criticals.partition_point(|c| c.b <= gap.from + SAME);
+        let into = (GAP_DEPTH_SHARE * (gap.to - gap.from)).min(MAX_GAP_DEPTH_SHARE * period);
+        let past = |by: f64| (by + SAME_CRITICAL).rem_euclid(period) - SAME_CRITICAL;
+        let at_most = |by: &f64, free: f64| *by <= free + SAME_CRITICAL;
+        let first = criticals.partition_point(|c| c.b <= gap.from + SAME_CRITICAL);
         let mut below = (1..=n)
             .map(|k| &criticals[(first + n - k) % n])
             .map(|c| (c, past(gap.from - c.b)))
             .take_while(|(_, by)| at_most(by, gap.free[0]))
             .filter(|(c, _)| c.up);
-        let last = criticals.partition_point(|c| c.b < gap.to - SAME);
+        let last = criticals.partition_point(|c| c.b < gap.to - SAME_CRITICAL);
         let mut above = (0..n)
             .map(|k| &criticals[(last + k) % n])
             .map(|c| (c, past(c.b - gap.to)))
@@ -146,7 +149,7 @@ impl PoseSpace {
                 (0..SAMPLES[usize::from(looks.careful)]).filter_map(|i| self.comes_to(distance, self.spread(i))).map(b);
             looks.samples.extend(found.chain([f64::NAN]));
         }
-        let inside = INSIDE * (gap.to - gap.from);
+        let inside = INSIDE_GAP_SHARE * (gap.to - gap.from);
         looks.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
     }
 
@@ -239,7 +242,7 @@ impl PoseSpace {
                 a[i] = (own + sense * (best - apart)).clamp(low, high);
                 missing = (length(best) - distance).abs();
             }
-            if before - missing <= STANDS * far {
+            if before - missing <= NO_TURN_SHARE * far {
                 break;
             }
         }

@@ -12,16 +12,18 @@ use super::continuation::within;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// Steps at most, the longest, and when they are done, rad.
+/// Steps at most.
 const MAX_ITERATIONS: usize = 100;
-const LONGEST: f64 = 0.5;
-const DONE: f64 = 1e-11;
+/// The longest of them, rad.
+const MAX_STEP: f64 = 0.5;
+/// A step shorter than this is the last, rad.
+const LAST_STEP: f64 = 1e-11;
 /// How often a step is halved.
 const MAX_HALVINGS: usize = 12;
 /// What an angle without a weight weighs.
-const LIGHT: f64 = 1e-3;
+const UNWEIGHTED: f64 = 1e-3;
 /// Angles that are held at their limits count as there up to this, rad.
-const HELD: f64 = 1e-12;
+const HELD_SLACK: f64 = 1e-12;
 
 /// What relative angles are drawn to.
 pub(super) struct Wish {
@@ -57,7 +59,7 @@ impl PoseSpace {
     ) -> PerDrive {
         let n = self.joints.len();
         let far = |a: &PerDrive| (0..n).map(|i| 0.5 * wish.weight[i] * (a[i] - wish.angles[i]).powi(2)).sum::<f64>();
-        let weight = PerDrive::from_fn(n, |i| wish.weight[i] + LIGHT);
+        let weight = PerDrive::from_fn(n, |i| wish.weight[i] + UNWEIGHTED);
         let moved = |a: &PerDrive, share: f64, step: &PerDrive| {
             PerDrive::from_fn(n, |i| (a[i] + share * step[i]).clamp(windows[i][0], windows[i][1]))
         };
@@ -66,15 +68,15 @@ impl PoseSpace {
         for _ in 0..MAX_ITERATIONS {
             let (place, columns) = self.columns(&self.lift(&a, b));
             let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
-            let range = within(windows, &a, LONGEST);
+            let range = within(windows, &a, MAX_STEP);
             let (step, nu) = Boxed { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
-            if step.max_abs() < DONE {
+            if step.max_abs() < LAST_STEP {
                 break;
             }
-            let held = |i: usize| step[i].abs() < HELD && (range[i][0] > -HELD || range[i][1] < HELD);
+            let held = |i: usize| step[i].abs() < HELD_SLACK && (range[i][0] > -HELD_SLACK || range[i][1] < HELD_SLACK);
             let curved = self.curved((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
                 let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
-                step.max_abs() < LONGEST && (0..n).all(fits)
+                step.max_abs() < MAX_STEP && (0..n).all(fits)
             });
             let tries = curved.iter().map(|step| (step, 1.0));
             let shorter = (0..MAX_HALVINGS).map(|i| (&step, 0.5f64.powi(i as i32)));
@@ -86,7 +88,7 @@ impl PoseSpace {
             let Some((there, left)) = better else { break };
             let moved = there.minus(&a).max_abs();
             (a, now) = (there, left);
-            if moved < DONE {
+            if moved < LAST_STEP {
                 break;
             }
         }

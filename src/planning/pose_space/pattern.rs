@@ -22,10 +22,10 @@ fn slope_place(i: usize) -> f64 {
 }
 
 /// Turns are found to this, in t.
-const TURN: f64 = 1e-13;
+const TURN_TOLERANCE: f64 = 1e-13;
 
 /// Joints that miss their limits by this much are looked at, rad.
-const SPARE: f64 = 1e-6;
+const LOOKED_AT_MISS: f64 = 1e-6;
 
 /// What of a joint is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -221,7 +221,8 @@ impl Pattern {
                 let [least, greatest] =
                     [f[0].min(f[1]) - n[0].max(n[1]), f[0].max(f[1]) - n[0].min(n[1])].map(|d| joint.sense * side * d);
                 let shift = self.shift[i] - joint.sense * (self.lean[far] - self.lean[near]);
-                let [low, high] = [least.min(greatest) + shift - SPARE, least.max(greatest) + shift + SPARE];
+                let [low, high] =
+                    [least.min(greatest) + shift - LOOKED_AT_MISS, least.max(greatest) + shift + LOOKED_AT_MISS];
                 // The least of its values above the lower limit.
                 let first = high - TAU * ((high - joint.limits[0]) / TAU).floor();
                 first - (high - low) <= joint.limits[1]
@@ -286,7 +287,7 @@ impl Pattern {
                 other.1 *= 0.5;
             }
             kept = side;
-            if slope == 0.0 || step < TURN || (to.0 - from.0) < TURN {
+            if slope == 0.0 || step < TURN_TOLERANCE || (to.0 - from.0) < TURN_TOLERANCE {
                 return t;
             }
         }

@@ -6,14 +6,14 @@ use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// b of a pose of two drives may be off by this much, rad: what nine printed digits leave.
-const NEAR: f64 = 1e-6;
+const B_TOLERANCE: f64 = 1e-6;
 /// Poses of four drives and more to begin with, spread evenly over all ranges, and how many are gone on from.
 const SPREAD: usize = 32;
 const GONE_ON_FROM: usize = 12;
 /// Ways from critical poses at most, once a pose is found.
 const MAX_CLIMBS: usize = 32;
 /// Poses whose angles differ by less are one, rad.
-const SAME: f64 = 1e-6;
+const SAME_POSE: f64 = 1e-6;
 const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 
 impl PoseSpace {
@@ -38,7 +38,7 @@ impl PoseSpace {
         }
         let mut poses: Vec<PerDrive> = Vec::new();
         let mut take = |a: &PerDrive| {
-            let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME);
+            let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME_POSE);
             if is_new {
                 poses.push(*a);
             }
@@ -170,7 +170,7 @@ impl PoseSpace {
                 let a = PerDrive::from([angle.clamp(low, high)]);
                 // The point is on this set if the pose with this angle is there at this b.
                 let miss = (self.place(&self.lift(&a, b)) - p).norm();
-                if miss <= NEAR * self.farthest() && !take(&a) {
+                if miss <= B_TOLERANCE * self.farthest() && !take(&a) {
                     return;
                 }
                 angle += tau;

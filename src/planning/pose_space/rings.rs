@@ -9,9 +9,9 @@ use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, unit};
 
 /// Circles to begin with.
-const FIRST: usize = 128;
+const FIRST_CIRCLES: usize = 128;
 /// Of so many circles one is looked at without what is known of the one before.
-const AGAIN: usize = 16;
+const AFRESH_EVERY: usize = 16;
 /// Circles between which the boundary changes are found to be as near as this, as a share of the reach: more than twice as
 /// far as one is moved.
 const FOUND: f64 = 2e-8;
@@ -24,7 +24,7 @@ const JUMP: f64 = 0.02;
 /// Halvings of an edge between two circles.
 const MAX_DEPTH: usize = 24;
 /// Ends as near as this, as a share of the reach, have an edge between them that bends one way.
-const CLOSE: f64 = 5e-3;
+const CLOSE_ENDS_SHARE: f64 = 5e-3;
 /// A reach up to which chords are as near as they are asked for; beyond they grow with it, m.
 const LARGE: f64 = 5.0;
 /// A point of a curve may miss where a circle has its end by this, as a share of the reach.
@@ -135,7 +135,7 @@ impl PoseSpace {
     ) -> Option<Rings> {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
-        let at = |i: usize| near + span * if i == 0 { FOUND } else { i as f64 / FIRST as f64 };
+        let at = |i: usize| near + span * if i == 0 { FOUND } else { i as f64 / FIRST_CIRCLES as f64 };
         let chord = chord * (far / LARGE).max(1.0);
         let mut sweep = Sweep {
             space: self,
@@ -146,13 +146,13 @@ impl PoseSpace {
             done: Rings { rings: Vec::new(), steps: Vec::new(), beside: 0.0, chord, jumps: 0.0 },
         };
         sweep.work.looks.careful = careful;
-        let mut all: Vec<(f64, Covered)> = Vec::with_capacity(FIRST + 1);
-        for i in 0..=FIRST {
-            if !goes_on(0.5 * i as f64 / FIRST as f64) {
+        let mut all: Vec<(f64, Covered)> = Vec::with_capacity(FIRST_CIRCLES + 1);
+        for i in 0..=FIRST_CIRCLES {
+            if !goes_on(0.5 * i as f64 / FIRST_CIRCLES as f64) {
                 return None;
             }
-            let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
-            let knows = carries && i % AGAIN > 0;
+            let r = if i == FIRST_CIRCLES { far * (1.0 - FOUND) } else { at(i) };
+            let knows = carries && i % AFRESH_EVERY > 0;
             let last = all.last().map(|(_, covered)| covered).filter(|_| knows);
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
@@ -170,7 +170,7 @@ impl PoseSpace {
         let mut all = all.into_iter();
         let mut from = all.next().map(|covered| sweep.ringed(covered))?;
         for (i, to) in all.enumerate() {
-            if !goes_on(0.5 + 0.5 * i as f64 / FIRST as f64) {
+            if !goes_on(0.5 + 0.5 * i as f64 / FIRST_CIRCLES as f64) {
                 return None;
             }
             let to = sweep.ringed(to);
@@ -308,7 +308,7 @@ impl Sweep<'_> {
         let apart = (end - start).norm();
         // Between circles that lie close no chord is parted.
         let halves = [(q2 - start).norm(), (end - q2).norm()];
-        let near = apart <= CLOSE * self.space.farthest() && halves.iter().all(|d| *d <= 0.8 * apart);
+        let near = apart <= CLOSE_ENDS_SHARE * self.space.farthest() && halves.iter().all(|d| *d <= 0.8 * apart);
         if near && off(q2, [start, end]) <= self.done.chord {
             edge.beside += two * 4.0 / 3.0;
             return Some(());

@@ -15,22 +15,25 @@ use nalgebra::{SMatrix, SVector};
 /// Rows of C: two of the point, one of b, one a relative angle, and one of a drive that does not turn.
 const ROWS: usize = KEPT + 1;
 const KEPT: usize = 3 + MAX_DRIVES - 1;
-/// The most steps, and the longest, rad.
-const STEPS: usize = 80;
-const LONGEST: f64 = 0.3;
+/// The most steps.
+const MAX_STEPS: usize = 80;
+/// The longest of them, rad.
+const MAX_STEP: f64 = 0.3;
 /// Nearer to the point than this share of the reach is at it.
-const AT: f64 = 1e-13;
-/// μ to begin with and where it is given up, shares of the square of the reach.
-const FIRST: f64 = 1e-8;
-const LAST: f64 = 1e4;
+const AT_SHARE: f64 = 1e-13;
+/// μ to begin with, a share of the square of the reach.
+const FIRST_DAMPING: f64 = 1e-8;
+/// μ at which it is given up, a share of the square of the reach.
+const LAST_DAMPING: f64 = 1e4;
 /// A step that brings less than this share is the last.
-const LITTLE: f64 = 1e-12;
+const MIN_GAIN_SHARE: f64 = 1e-12;
 
-/// Steps of Newton's iteration at most, and the shortest, rad.
-const CURVED: usize = 60;
-const SHORTEST: f64 = 1e-10;
+/// Steps of Newton's iteration at most.
+const MAX_NEWTON_STEPS: usize = 60;
+/// The shortest of them, rad.
+const MIN_NEWTON_STEP: f64 = 1e-10;
 /// Nearer than this share of the reach, a point that was out of it may be in it.
-const ALMOST: f64 = 0.01;
+const ALMOST_SHARE: f64 = 0.01;
 
 type Rows = SMatrix<f64, ROWS, MAX_DRIVES>;
 /// Δq, and a multiplier for b and each relative angle.
@@ -41,7 +44,7 @@ impl PoseSpace {
     /// how far that is, m.
     pub fn toward(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let gone = self.gone(p, b, from, None);
-        if gone.1 <= AT * self.farthest() { gone } else { self.settled(p, b, gone) }
+        if gone.1 <= AT_SHARE * self.farthest() { gone } else { self.settled(p, b, gone) }
     }
 
     /// The same with the drive that is to [keep](Lead::Keep) its angle at that angle, or gone on to the
@@ -62,10 +65,10 @@ impl PoseSpace {
         let mut a = self.clamped(from);
         let mut q = self.lift(&a, b);
         let mut off = (self.place(&q) - p).norm();
-        let mut mu = FIRST;
+        let mut mu = FIRST_DAMPING;
         let mut locked = [false; MAX_DRIVES];
-        for _ in 0..STEPS {
-            if off <= AT * reach {
+        for _ in 0..MAX_STEPS {
+            if off <= AT_SHARE * reach {
                 break;
             }
             let Some(step) = self.step(p, &q, &locked, kept, mu) else { break };
@@ -82,12 +85,12 @@ impl PoseSpace {
                 let brought = off - left;
                 (a, q, off) = (next, there, left);
                 (mu, locked) = (0.2 * mu, [false; MAX_DRIVES]);
-                if brought < LITTLE * reach {
+                if brought < MIN_GAIN_SHARE * reach {
                     break;
                 }
             } else {
                 mu *= 8.0;
-                if mu > LAST {
+                if mu > LAST_DAMPING {
                     break;
                 }
             }
@@ -100,7 +103,7 @@ impl PoseSpace {
         let a = self.clamped(from);
         let off = (self.place(&self.lift(&a, b)) - p).norm();
         let settled = self.settled(p, b, (a, off));
-        if settled.1 > ALMOST * self.farthest() {
+        if settled.1 > ALMOST_SHARE * self.farthest() {
             return settled;
         }
         let gone = self.toward(p, b, from);
@@ -110,9 +113,9 @@ impl PoseSpace {
     /// The pose beside another one that is as near to p as can be, and how far that is, m.
     fn settled(&self, p: Vector, b: f64, (mut a, mut off): (PerDrive, f64)) -> (PerDrive, f64) {
         let mut q = self.lift(&a, b);
-        let mut mu = FIRST;
+        let mut mu = FIRST_DAMPING;
         let mut locked = [false; MAX_DRIVES];
-        for _ in 0..CURVED {
+        for _ in 0..MAX_NEWTON_STEPS {
             let step = self.curved_step(p, &q, &locked, mu);
             let size = step.map_or(f64::INFINITY, |step| step.max_abs());
             let next = step.map(|step| self.angles(&q.0.plus(1.0, &step)));
@@ -127,14 +130,14 @@ impl PoseSpace {
                 if left < off {
                     (a, q, off) = (next, there, left);
                     (mu, locked) = (0.1 * mu, [false; MAX_DRIVES]);
-                    if size < SHORTEST {
+                    if size < MIN_NEWTON_STEP {
                         break;
                     }
                     continue;
                 }
             }
             mu *= 8.0;
-            if size < SHORTEST || mu > LAST {
+            if size < MIN_NEWTON_STEP || mu > LAST_DAMPING {
                 break;
             }
         }
@@ -176,7 +179,7 @@ impl PoseSpace {
         }
         let step = square.lu().solve(&r)?;
         let size = step.rows(0, n).amax();
-        let short = if size > LONGEST { LONGEST / size } else { 1.0 };
+        let short = if size > MAX_STEP { MAX_STEP / size } else { 1.0 };
         size.is_finite().then(|| PerDrive::from_fn(n, |k| short * step[k]))
     }
 
@@ -226,7 +229,7 @@ impl PoseSpace {
         }
         let step = light * square.lu().solve(&r)?;
         let size = step.amax();
-        let short = if size > LONGEST { LONGEST / size } else { 1.0 };
+        let short = if size > MAX_STEP { MAX_STEP / size } else { 1.0 };
         size.is_finite().then(|| PerDrive::from_fn(n, |k| short * step[k]))
     }
 

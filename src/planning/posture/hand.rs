@@ -8,7 +8,7 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 use crate::planning::pose_space::PoseSpace;
 
 /// What a drive that turns nothing costs, as a share of all: a little keeps rates finite.
-const LIGHT: f64 = 1e-9;
+const IDLE_DRIVE_COST: f64 = 1e-9;
 
 /// Weights of a machine's drives.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl<'a> Postures<'a> {
         let mut torque = [[0.0; MAX_DRIVES]; MAX_DRIVES];
         for (k, row) in torque.iter_mut().enumerate().take(n) {
             (0..n).for_each(|l| row[l] = asked[k].dot(&asked[l]) / trace);
-            row[k] += LIGHT;
+            row[k] += IDLE_DRIVE_COST;
         }
         let turned: Vec<PerDrive> = (0..n).map(|k| space.angle_rates(&one(k))).collect();
         let half = |i: usize| half_range(space, i);

@@ -43,13 +43,13 @@ pub(super) struct Layers<'a> {
 }
 
 /// Poses nearer to another than this share of the distance are left out.
-const THIN: f64 = 0.5;
+const THINNING_SHARE: f64 = 0.5;
 /// Fewer poses than this that can be taken along are few.
-pub(super) const FEW: usize = 8;
+pub(super) const FEW_POSES: usize = 8;
 /// Directions that keep less than this share of the reach depend on each other.
 const NO_RANK: f64 = 1e-9;
 /// How far beyond its window an angle without limits is filled, rad.
-const BEYOND: f64 = std::f64::consts::PI;
+const FILLED_BEYOND: f64 = std::f64::consts::PI;
 
 impl<'a> Layers<'a> {
     /// Of poses at b, rad, within the limits.
@@ -82,7 +82,7 @@ impl<'a> Layers<'a> {
             angles.extend(next.iter().flatten());
             // Where few poses are left, steps along the path miss them: they are found from where they end.
             if let Some(to) = ats.get(i + 1)
-                && angles.len() < FEW
+                && angles.len() < FEW_POSES
             {
                 let all = space.sheets(stations.places[*to], b);
                 for (a, next) in angles_here.iter().zip(&mut next).filter(|(_, next)| next.is_none()) {
@@ -174,7 +174,7 @@ fn filled(
     windows: &[[f64; 2]; MAX_DRIVES],
     detail: Detail,
 ) -> Vec<PerDrive> {
-    let thin = THIN * detail.apart;
+    let thin = THINNING_SHARE * detail.apart;
     let mut poses: Vec<PerDrive> = Vec::new();
     let is_new = |poses: &[PerDrive], a: &PerDrive| !poses.iter().any(|other| near(other, a, thin * thin));
     for a in starts {
@@ -183,7 +183,9 @@ fn filled(
         }
     }
     let room: [[f64; 2]; MAX_DRIVES] = std::array::from_fn(|i| match space.joints().get(i) {
-        Some(joint) if windows[i][0].is_infinite() => [joint.limits()[0] - BEYOND, joint.limits()[1] + BEYOND],
+        Some(joint) if windows[i][0].is_infinite() => {
+            [joint.limits()[0] - FILLED_BEYOND, joint.limits()[1] + FILLED_BEYOND]
+        }
         Some(_) => windows[i],
         None => [0.0; 2],
     });

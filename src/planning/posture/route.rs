@@ -2,20 +2,21 @@
 
 use std::collections::HashSet;
 
-use super::layers::{FEW, Layer, Layers, bounds, near, nearest};
+use super::layers::{FEW_POSES, Layer, Layers, bounds, near, nearest};
 use super::rows::lifted;
 use super::stations::Stations;
 use crate::mechanics::planar::PerDrive;
 
 /// A pose goes on to those that are so near to where it is taken, as a multiple of the distance of poses.
-const NEAR: f64 = 1.25;
+const NEXT_POSE_FACTOR: f64 = 1.25;
 /// Routes that turn out to be none, before it is given up.
 const MAX_TRIES: usize = 40;
 /// Starts of closed paths that are tried at most.
 const MAX_STARTS: usize = 60;
-/// What a step of a path may be longer than its share of a step of the route, as a factor and by how much, rad.
-const LONGER: f64 = 4.0;
-const SPARE: f64 = 0.02;
+/// What a step of a path may be longer than its share of a step of the route, as a factor.
+const STRETCH_FACTOR: f64 = 4.0;
+/// And by how much beside that, rad.
+const STRETCH_SLACK: f64 = 0.02;
 
 /// What a step of a route costs, by the layer that it leaves: both poses.
 pub(super) type Cost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
@@ -55,7 +56,7 @@ impl Layers<'_> {
     }
 
     fn leaving(&self, i: usize, onto: &Layer, cost: Cost<'_>) -> Vec<Vec<(usize, f64)>> {
-        let (layer, square) = (&self.all[i], (NEAR * self.apart).powi(2));
+        let (layer, square) = (&self.all[i], (NEXT_POSE_FACTOR * self.apart).powi(2));
         let each = |(k, there): (usize, &Option<PerDrive>)| {
             let Some(there) = there else { return Vec::new() };
             let beside = onto.angles.iter().enumerate().filter(|(_, a)| near(a, there, square));
@@ -125,7 +126,7 @@ impl Layers<'_> {
             let (from, to) = (angles(i), angles(i + 1));
             let [first, end] = [self.all[i].at, self.all[i + 1].at];
             let step = to.minus(from);
-            let allowed = LONGER * step.max_abs() / (end - first) as f64 + SPARE;
+            let allowed = STRETCH_FACTOR * step.max_abs() / (end - first) as f64 + STRETCH_SLACK;
             for k in first + 1..=end {
                 let share = (k - first) as f64 / (end - first) as f64;
                 let guess = from.plus(share, &step);
@@ -135,7 +136,7 @@ impl Layers<'_> {
                 let a = match k == end {
                     true => Some(*to).filter(beside),
                     false => self.space.solved(p, self.b, &guess, &windows).filter(beside).or_else(|| {
-                        let few = self.all[i].poses.len() < FEW || self.all[i + 1].poses.len() < FEW;
+                        let few = self.all[i].poses.len() < FEW_POSES || self.all[i + 1].poses.len() < FEW_POSES;
                         few.then(|| nearest(&self.space.sheets(p, self.b), &guess, allowed)).flatten().filter(beside)
                     }),
                 };

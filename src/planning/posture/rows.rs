@@ -5,10 +5,12 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// Two rows of the point, b, and the last link's drive.
 const ROWS: usize = 4;
-/// Steps back onto the rows at most; how near counts as there, and what rounding may leave, shares of the reach.
+/// Steps back onto the rows at most.
 const MAX_STEPS: usize = 20;
-const THERE: f64 = 1e-14;
-const ROUNDED: f64 = 1e-11;
+/// How near counts as on the rows, a share of the reach.
+const ON_ROWS_SHARE: f64 = 1e-14;
+/// What rounding may leave, a share of the reach.
+const ROUNDING_SHARE: f64 = 1e-11;
 /// A row that is left with this share of its length by the rows before it adds nothing.
 const NO_RANK: f64 = 1e-7;
 
@@ -89,7 +91,7 @@ impl Held<'_> {
         for _ in 0..MAX_STEPS {
             let missing = self.missing(&q, p);
             let size = missing.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            if size <= THERE * reach || (size >= 0.5 * last && size <= ROUNDED * reach) {
+            if size <= ON_ROWS_SHARE * reach || (size >= 0.5 * last && size <= ROUNDING_SHARE * reach) {
                 return Some(q);
             }
             if size.is_nan() || size > 4.0 * last {

@@ -17,33 +17,38 @@ use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 
 /// How finely is looked, the next where the one before finds no way: layers, how far poses are apart beside what
-/// [`APART`] says, and how many there are.
+/// [`POSE_SPACING`] says, and how many there are.
 const DETAILS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 0.25, 1200)];
 /// How far poses are apart with one, two … freedoms, rad.
-const APART: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
+const POSE_SPACING: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
 /// Spaces between stations, at first and for the paths that are taken, and when steps of their refinement are done, rad.
 const ROUGH: (usize, f64) = (48, 1e-5);
 const FINE: (usize, f64) = (192, 1e-10);
 /// How often spaces are parted in which a fine path misses its curve, and how many stations there are at most.
 const MAX_PARTINGS: usize = 5;
 const MAX_STATIONS: usize = 2400;
-/// Rough paths are made fine if they cost at most so much more than the least, and how many at most.
-const DEARER: f64 = 0.15;
-const MADE_FINE: usize = 4;
-/// A path misses its curve by less than this share of the reach, a rough one by less than that, and limits by less than this, rad.
+/// Rough paths are made fine if they cost at most this share more than the least.
+const MAX_DEARER_SHARE: f64 = 0.15;
+/// And no more of them than this.
+const MAX_MADE_FINE: usize = 4;
+/// A path misses its curve by less than this share of the reach.
 const ON_CURVE: f64 = 1e-9;
+/// A rough one by less than this.
 const NEAR_CURVE: f64 = 1e-2;
+/// Limits are missed by less than this, rad.
 const KEPT: f64 = 1e-7;
 const MAX_MARGINS: usize = 5;
 /// What a limit may be passed by where there is no room to keep off it, rad.
 const AT_LIMIT: f64 = 8e-7;
 /// Nearness of paths that are one, rad.
-const SAME: f64 = 0.02;
+const SAME_PATH: f64 = 0.02;
 /// What rates count beside the middle of ranges, one after another.
 const BESIDE_MIDDLE: [f64; 3] = [1e-2, 1e-4, 1e-6];
-/// What smoothness counts beside torques, and what rates and light drives do.
-const SMOOTH: f64 = 120.0;
-const LIGHT: f64 = 1e-4;
+/// What smoothness counts beside torques.
+const SMOOTHNESS_WEIGHT: f64 = 120.0;
+/// What every drive's rate counts beside its torque, so that light drives count, too.
+const LIGHT_DRIVE_WEIGHT: f64 = 1e-4;
+/// What rates count beside torques.
 const BESIDE_TORQUE: f64 = 1e-6;
 /// Starts that are tried for paths that keep an orientation.
 const ORIENTATIONS: usize = 80;
@@ -241,11 +246,12 @@ impl<'a> Search<'a> {
         let all = even(n);
         let rates = goal(vec![Term::rates(&stations, all), Term::smooth(&stations, all, 1.0)]);
         let torque = weights.torque;
-        let slow: Weight = std::array::from_fn(|k| std::array::from_fn(|l| torque[k][l] + LIGHT * all[k][l]));
+        let slow: Weight =
+            std::array::from_fn(|k| std::array::from_fn(|l| torque[k][l] + LIGHT_DRIVE_WEIGHT * all[k][l]));
         let torques = goal(vec![
             Term::accelerations(&stations, torque),
             Term::rates(&stations, scaled(&all, BESIDE_TORQUE)),
-            Term::smooth(&stations, slow, SMOOTH),
+            Term::smooth(&stations, slow, SMOOTHNESS_WEIGHT),
         ]);
         let middle = BESIDE_MIDDLE.map(|beside| {
             let own = scaled(&all, beside);
@@ -265,7 +271,7 @@ impl<'a> Search<'a> {
 
     fn layers(&self, starts: &[PerDrive], (layers, finer, most): (usize, f64, usize)) -> Result<Layers<'a>, usize> {
         let freedoms = self.held().freedoms();
-        let apart = finer * APART[freedoms.clamp(1, APART.len()) - 1];
+        let apart = finer * POSE_SPACING[freedoms.clamp(1, POSE_SPACING.len()) - 1];
         Layers::of((self.asked.space, self.asked.b), &self.stations, starts, Detail { layers, apart, most })
     }
 
@@ -297,7 +303,7 @@ impl<'a> Search<'a> {
             for i in 0..GOALS.len() {
                 for from in 0..before {
                     let Some(best) = least(ways, i) else { return };
-                    if tried.contains(&(i, from)) || apart(&ways[best].q, &ways[from].q) < SAME {
+                    if tried.contains(&(i, from)) || apart(&ways[best].q, &ways[from].q) < SAME_PATH {
                         continue;
                     }
                     // Only what is the best of something is worth it, at first whatever there is.
@@ -325,10 +331,10 @@ impl<'a> Search<'a> {
         let (mut dearest, mut count) = (f64::INFINITY, 0);
         let mut before: Vec<&Way> = Vec::new();
         for way in order {
-            if way.values[goal] > dearest || count >= MADE_FINE {
+            if way.values[goal] > dearest || count >= MAX_MADE_FINE {
                 break;
             }
-            if before.iter().any(|other| apart(&other.q, &way.q) < SAME) {
+            if before.iter().any(|other| apart(&other.q, &way.q) < SAME_PATH) {
                 continue;
             }
             before.push(way);
@@ -336,7 +342,7 @@ impl<'a> Search<'a> {
             let Some(start) = self.placed(way, &held) else { continue };
             match self.refined(&if turned { held } else { self.held() }, goal, &start, way.closed) {
                 Ok(made) => {
-                    dearest = dearest.min((1.0 + DEARER) * way.values[goal]);
+                    dearest = dearest.min((1.0 + MAX_DEARER_SHARE) * way.values[goal]);
                     count += 1;
                     let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
                     best = if better { Some(made) } else { best };
@@ -484,7 +490,7 @@ impl<'a> Search<'a> {
         let ways = found.into_iter().filter_map(|(_, path)| {
             self.refined(&held(&path[0]), 0, &path, false).ok().filter(|way| self.is_kept(way))
         });
-        let mut ways: Vec<Way> = ways.take(2 * MADE_FINE).collect();
+        let mut ways: Vec<Way> = ways.take(2 * MAX_MADE_FINE).collect();
         ways.sort_by(|x, y| x.values[0].total_cmp(&y.values[0]));
         ways
     }

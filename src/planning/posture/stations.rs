@@ -5,10 +5,11 @@ use crate::planning::curves::{Curve, CurvePoint};
 use crate::planning::timing::{Profile, TimeLaw};
 
 /// On each of several curves there are at least so many spaces as on a whole path, a share.
-const LEAST: f64 = 1.0 / 3.0;
-/// Of these at least so many between two joints of a curve, but for curves with very many joints.
-const A_PIECE: f64 = 1.0 / 16.0;
-const MANY: usize = 100;
+const MIN_CURVE_SHARE: f64 = 1.0 / 3.0;
+/// Of these at least so many between two joints of a curve, a share.
+const MIN_PIECE_SHARE: f64 = 1.0 / 16.0;
+/// Curves with more joints than this have fewer.
+const MANY_JOINTS: usize = 100;
 /// Gauss's places and weights in a space of length 1.
 pub(super) const GAUSS: [[f64; 2]; 3] =
     [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
@@ -66,9 +67,9 @@ impl Stations {
     pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
         let shares = shares(curves);
         let grid = |(curve, share): (&Curve, &f64)| {
-            let own = (spaces as f64 * share.max(LEAST)).ceil();
+            let own = (spaces as f64 * share.max(MIN_CURVE_SHARE)).ceil();
             let joints: Vec<f64> = curve.joints().collect();
-            let least = if joints.len() > MANY { 1 } else { (A_PIECE * spaces as f64) as usize };
+            let least = if joints.len() > MANY_JOINTS { 1 } else { (MIN_PIECE_SHARE * spaces as f64) as usize };
             let mut s: Vec<f64> = Vec::new();
             for ends in joints.windows(2) {
                 let run = ends[1] - ends[0];

@@ -15,7 +15,7 @@ use crate::planning::timing::outcome::{Fastest, TimeError};
 use crate::planning::timing::profile::{Profile, Span, after};
 use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
-use crate::planning::timing::topp::{Grid, NoSpeed, PAST, Sweep, UNLIMITED};
+use crate::planning::timing::topp::{Grid, MENDED_FROM, NoSpeed, Sweep, UNLIMITED};
 use crate::planning::timing::usage::TimeShares;
 
 /// Spaces of the grid on a curve to begin with, unless the caller gives another number.
@@ -129,7 +129,7 @@ fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<T
             error => return (grid, error, None),
         };
         let glances = glanced(&timed.profile, &grid, &jumps, stretches);
-        let enough = 1.0 + PAST;
+        let enough = 1.0 + MENDED_FROM;
         let closer = |glance: &Glance| match glance.bound > enough {
             true => glance.closer(enough, stretches)[0],
             false => glance.seen,
@@ -145,8 +145,9 @@ fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<T
 
 /// A glance at each phase. What is limited is known at the stations, but for those where it may jump.
 fn glanced(profile: &Profile, grid: &Grid, jumps: &[f64], stretches: impl Fn(&Progress) -> Stretches) -> Vec<Glance> {
-    let may_jump =
-        |s: f64| jumps[jumps.partition_point(|jump| *jump < s - HAIR)..].first().is_some_and(|j| *j <= s + HAIR);
+    let may_jump = |s: f64| {
+        jumps[jumps.partition_point(|jump| *jump < s - AT_PLACE)..].first().is_some_and(|j| *j <= s + AT_PLACE)
+    };
     let has_stations = profile.phases().count() + 1 == grid.s.len();
     let glance = |(i, phase): (usize, (Progress, f64))| {
         if !has_stations || may_jump(grid.s[i]) || may_jump(grid.s[i + 1]) {
@@ -168,7 +169,7 @@ fn jumps(path: &Path) -> Vec<f64> {
 }
 
 /// So near to a place, s, is at it.
-const HAIR: f64 = 1e-9;
+const AT_PLACE: f64 = 1e-9;
 
 /// How often the grid is made finer where limits are passed between its stations.
 const MENDINGS: usize = 6;

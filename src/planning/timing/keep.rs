@@ -9,12 +9,12 @@ use crate::planning::timing::profile::{Profile, after};
 use crate::planning::timing::usage::Demand;
 
 /// Parts of a phase that is looked at closely.
-const CLOSE: usize = 16;
+const CLOSE_PARTS: usize = 16;
 /// How far from its ends, as a share of a phase: where a path's derivatives jump, rounding would decide which side is
 /// looked at.
-const INSIDE: f64 = 1e-6;
+const END_MARGIN_SHARE: f64 = 1e-6;
 /// What rounding may need.
-const SPARE: f64 = 1e-9;
+const ROUNDING: f64 = 1e-9;
 /// A motion may be slower than it has to be by this share of its time.
 const NEGLIGIBLE: f64 = 1e-7;
 
@@ -51,7 +51,7 @@ impl Glance {
             let greatest = own[0].max(own[1]).max(own[2]);
             let spread = greatest - own[0].min(own[1]).min(own[2]);
             glance.seen = glance.seen.max(greatest);
-            if spread > SPARE * greatest {
+            if spread > ROUNDING * greatest {
                 let bound = crest(own).max(greatest) + 0.25 * spread;
                 if bound > glance.bound {
                     (glance.others, glance.bound, glance.likeliest) = (glance.bound, bound, (k, own));
@@ -75,7 +75,8 @@ impl Glance {
         if bound <= enough {
             return [top, bound];
         }
-        let near: [[f64; N]; CLOSE + 1] = std::array::from_fn(|i| within(&self.phase, i as f64 / CLOSE as f64, &of));
+        let near: [[f64; N]; CLOSE_PARTS + 1] =
+            std::array::from_fn(|i| within(&self.phase, i as f64 / CLOSE_PARTS as f64, &of));
         let tops = |w: &[[f64; N]]| (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]])).fold(0.0, f64::max);
         let top = near.windows(3).map(tops).fold(self.seen, f64::max);
         [top, top]
@@ -84,7 +85,7 @@ impl Glance {
 
 /// The quantities at a part of a phase.
 fn within<const N: usize>((from, time): &(Progress, f64), u: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; N] {
-    of(&after(from, u.clamp(INSIDE, 1.0 - INSIDE) * time))
+    of(&after(from, u.clamp(END_MARGIN_SHARE, 1.0 - END_MARGIN_SHARE) * time))
 }
 
 /// The greatest of all quantities over all phases.
@@ -124,12 +125,12 @@ fn crest([a, b, c]: [f64; 3]) -> f64 {
 /// A profile slowed down by a factor on time with which every limit is kept. `None` if no time is enough.
 pub(super) fn kept(profile: &Profile, factor: f64) -> Option<Profile> {
     // Rounding is not worth another profile.
-    let needed = factor > 1.0 + SPARE;
-    factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + SPARE)) } else { profile.clone() })
+    let needed = factor > 1.0 + ROUNDING;
+    factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + ROUNDING)) } else { profile.clone() })
 }
 
 /// At least so many parts of a motion are looked at.
-const LOOKS: usize = 2000;
+const MIN_PARTS: usize = 2000;
 
 impl Motion {
     /// The motion as slow as the limits of the drives on torque, speed and acceleration want it. `None` if no time is
@@ -141,7 +142,7 @@ impl Motion {
         let limits = Limits { jerk: Limits::none(limits.jerk.len()).jerk, ..*limits };
         let count = self.profile.phases().count().max(1);
         // An even number, so that what changes in the middle of a phase changes between two parts.
-        let parts = 2 * LOOKS.div_ceil(2 * count);
+        let parts = 2 * MIN_PARTS.div_ceil(2 * count);
         let cut = |(from, time): (Progress, f64)| {
             let time = time / parts as f64;
             (0..parts).map(move |i| (after(&from, i as f64 * time), time))

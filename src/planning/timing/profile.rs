@@ -13,7 +13,7 @@ pub struct Profile {
 }
 
 /// The last instant of a running profile belongs to it, give or take this share of T.
-const EDGE: f64 = 1e-9;
+const END_SLACK_SHARE: f64 = 1e-9;
 
 /// Jumps of s̈ up to this share of its peak are too small for a step to end on.
 const SMALL_JUMP: f64 = 1e-3;
@@ -217,8 +217,8 @@ impl Profile {
         match &self.shape {
             Shape::Law(law) => law.at(t, self.duration),
             // Steps may add up to a hair beside either end.
-            Shape::Running if t < -EDGE * self.duration => Progress::still(0.0),
-            Shape::Running if t > (1.0 + EDGE) * self.duration => Progress::still(1.0),
+            Shape::Running if t < -END_SLACK_SHARE * self.duration => Progress::still(0.0),
+            Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => Progress::still(1.0),
             Shape::Running => {
                 let s = (t / self.duration).clamp(0.0, 1.0);
                 Progress { rate: 1.0 / self.duration, ..Progress::still(s) }
@@ -272,7 +272,7 @@ impl Profile {
         let whole = self.duration;
         match &self.shape {
             Shape::Law(law) => law.kinks().iter().map(|u| u * whole).collect(),
-            Shape::Running => vec![-EDGE * whole, (1.0 + EDGE) * whole],
+            Shape::Running => vec![-END_SLACK_SHARE * whole, (1.0 + END_SLACK_SHARE) * whole],
             Shape::Phases(Phases { starts, .. }) => {
                 let most = |f: fn(&Progress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
                 let end = |i: usize| after(&starts[i].at, starts.get(i + 1).map_or(whole, |p| p.t) - starts[i].t);

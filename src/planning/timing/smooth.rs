@@ -20,25 +20,30 @@ use crate::planning::timing::usage::{Demand, Usage};
 
 /// Instants for the account of what limits.
 const INSTANTS: usize = 2000;
-/// Spaces between nodes: over the time of the motion without limits on jerk, over θ, for each space of its grid, for
-/// each e-fold nearer to an end until very near, and at least between two joints of the path.
-const BY_TIME: f64 = 200.0;
-const BY_PLACE: f64 = 80.0;
-const BY_SPACE: f64 = 0.1;
-const BY_ENDS: f64 = 4.0;
-const NEAR: f64 = 0.003;
-const A_PIECE: usize = 12;
-/// How often nodes are added where a limit is passed by this much or more between the places where it is kept, as a
-/// factor on time, and how many there may be.
-const MENDINGS: usize = 3;
-const PAST: f64 = 2e-3;
+/// Spaces between nodes over the time of the motion without limits on jerk.
+const SPACES_BY_TIME: f64 = 200.0;
+/// Those over θ.
+const SPACES_BY_PLACE: f64 = 80.0;
+/// Those for each space of the grid of that motion.
+const SPACES_BY_GRID: f64 = 0.1;
+/// Those for each e-fold nearer to an end, until very near.
+const SPACES_BY_ENDS: f64 = 4.0;
+/// Nearer to an end than this is very near, of θ.
+const VERY_NEAR_END: f64 = 0.003;
+/// At least so many between two joints of the path.
+const MIN_SPACES_PER_PIECE: usize = 12;
+/// How often nodes are added where a limit is passed between the places where it is kept.
+const MAX_MENDINGS: usize = 3;
+/// From how much on, as a share of time.
+const MENDED_FROM: f64 = 2e-3;
 /// A limit passed by more wants more of them.
-const FAR_PAST: f64 = 0.03;
+const MENDED_MORE_FROM: f64 = 0.03;
+/// How many nodes there may be.
 const MOST_NODES: usize = 4000;
 /// Parts of a phase of a law that are checked.
-const PARTS: usize = 500;
+const CHECKED_PARTS: usize = 500;
 /// What rounding may need.
-const SPARE: f64 = 1e-9;
+const ROUNDING: f64 = 1e-9;
 /// The greatest θ̇, times 1/T of the motion without limits on jerk.
 const MOST_RATE: f64 = 60.0;
 
@@ -72,7 +77,7 @@ pub(super) fn smooth(
     };
     let stretches = |at: &Progress| Demand::of(path, model, around, limits, at).stretches(limits);
     let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
-    for _ in 0..=MENDINGS {
+    for _ in 0..=MAX_MENDINGS {
         let solved = JerkProgram::new(path, constraints, nodes, most).solve(fastest, timing.as_ref());
         let Some(found) = solved else { break };
         let profile = found.profile();
@@ -81,12 +86,12 @@ pub(super) fn smooth(
         drop(phases);
         let most = past.iter().copied().fold(0.0, f64::max);
         if most.is_finite() && most > 0.0 {
-            let slowed = profile.stretched(most * (1.0 + SPARE));
+            let slowed = profile.stretched(most * (1.0 + ROUNDING));
             if best.as_ref().is_none_or(|best| slowed.duration() < best.duration()) {
                 best = Some(slowed);
             }
         }
-        if most <= 1.0 + PAST || found.nodes.len() > MOST_NODES {
+        if most <= 1.0 + MENDED_FROM || found.nodes.len() > MOST_NODES {
             break;
         }
         nodes = mended(&found.nodes, &past);
@@ -104,12 +109,16 @@ pub(super) fn smooth(
 fn by_law<const N: usize>(stretches: impl Fn(&Progress) -> [f64; N]) -> Option<Profile> {
     let spans = s_curve(f64::INFINITY, f64::INFINITY, 32.0)?;
     let cut = |span: &Span| {
-        let (time, from) = (span.time / PARTS as f64, *span);
-        (0..PARTS).map(move |i| Span { time, acceleration: from.acceleration + i as f64 * time * from.jerk, ..from })
+        let (time, from) = (span.time / CHECKED_PARTS as f64, *span);
+        (0..CHECKED_PARTS).map(move |i| Span {
+            time,
+            acceleration: from.acceleration + i as f64 * time * from.jerk,
+            ..from
+        })
     };
     let law = Profile::of_spans(&spans.iter().flat_map(cut).collect::<Vec<_>>());
     let factor = greatest(law.phases(), stretches);
-    (factor > 0.0 && factor.is_finite()).then(|| law.stretched(factor * (1.0 + SPARE)))
+    (factor > 0.0 && factor.is_finite()).then(|| law.stretched(factor * (1.0 + ROUNDING)))
 }
 
 /// Nodes with more of them in and beside spaces in which a limit is passed.
@@ -118,9 +127,9 @@ fn mended(nodes: &[f64], past: &[f64]) -> Vec<f64> {
     for i in 0..past.len() {
         let worst = past[i.saturating_sub(1)..(i + 2).min(past.len())].iter().copied().fold(0.0, f64::max);
         let parts = match past[i] - 1.0 {
-            by if by > FAR_PAST => 5,
-            by if by > PAST => 3,
-            _ if worst > 1.0 + PAST => 2,
+            by if by > MENDED_MORE_FROM => 5,
+            by if by > MENDED_FROM => 3,
+            _ if worst > 1.0 + MENDED_FROM => 2,
             _ => 1,
         };
         fine.extend((0..parts).map(|k| nodes[i] + (nodes[i + 1] - nodes[i]) * k as f64 / parts as f64));
@@ -140,8 +149,10 @@ fn nodes(path: &Path, grid: &Grid, bound: Option<&Profile>) -> Vec<f64> {
     for i in 1..thetas.len() {
         let time = times.get(i - 1).copied().unwrap_or(0.0);
         let (from, to) = (thetas[i - 1], thetas[i]);
-        let ends = ((to + NEAR) * (1.0 - from + NEAR) / ((from + NEAR) * (1.0 - to + NEAR))).ln();
-        sum += BY_TIME * time + BY_PLACE * (to - from) + BY_SPACE + BY_ENDS * ends;
+        let ends = ((to + VERY_NEAR_END) * (1.0 - from + VERY_NEAR_END)
+            / ((from + VERY_NEAR_END) * (1.0 - to + VERY_NEAR_END)))
+            .ln();
+        sum += SPACES_BY_TIME * time + SPACES_BY_PLACE * (to - from) + SPACES_BY_GRID + SPACES_BY_ENDS * ends;
         worth.push(sum);
     }
     let mut nodes = vec![0.0];
@@ -154,7 +165,7 @@ fn nodes(path: &Path, grid: &Grid, bound: Option<&Profile>) -> Vec<f64> {
         (thetas[at] + share * (thetas[at + 1] - thetas[at]), at)
     };
     let joints = path.joints();
-    let least = if joints.len() > 40 { 4 } else { A_PIECE };
+    let least = if joints.len() > 40 { 4 } else { MIN_SPACES_PER_PIECE };
     for ends in joints.windows(2) {
         let worth_at = |s: f64| {
             let i = grid.s.partition_point(|station| *station <= s).clamp(1, worth.len() - 1) - 1;

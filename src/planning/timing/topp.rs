@@ -17,16 +17,17 @@ use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stre
 pub(super) const UNLIMITED: f64 = 1e20;
 
 /// How much of a limit what it limits may change over a space by the path's own doing, before the space is cut.
-const CHANGE: f64 = 0.04;
+const MAX_CHANGE_SHARE: f64 = 0.04;
 /// Into how many parts a space is cut at once, how often, how small, and how many there may be.
 const MOST_PARTS: usize = 8;
 const ROUNDS: usize = 8;
 const LEAST_SPACE: f64 = 1e-9;
 const MOST_SPACES: usize = 60_000;
 
-/// Into how many parts a space is cut in which a limit is passed, by this factor on time or more.
-const MENDING: usize = 4;
-pub(super) const PAST: f64 = 1e-4;
+/// Into how many parts a space is cut in which a limit is passed.
+const MENDING_PARTS: usize = 4;
+/// From how much on, as a share of time.
+pub(super) const MENDED_FROM: f64 = 1e-4;
 
 /// The constraints of a path at every station; at least two.
 pub(super) struct Grid {
@@ -126,7 +127,7 @@ impl Grid {
         let parts: Vec<usize> = (0..past.len())
             .map(|i| {
                 let wide = self.s[i + 1] - self.s[i] > LEAST_SPACE;
-                if past[i] > 1.0 + PAST && wide { MENDING } else { 1 }
+                if past[i] > 1.0 + MENDED_FROM && wide { MENDING_PARTS } else { 1 }
             })
             .collect();
         let grid = self.cut(path, constraints, &parts);
@@ -147,7 +148,7 @@ impl Grid {
             };
             let rows = here.iter().zip(there).map(change).fold(0.0, f64::max);
             let speed = (high / self.cap[i]).sqrt() - (high / self.cap[i + 1]).sqrt();
-            let parts = (rows.max(speed.abs()) / CHANGE).ceil();
+            let parts = (rows.max(speed.abs()) / MAX_CHANGE_SHARE).ceil();
             if way > LEAST_SPACE { (parts as usize).clamp(1, MOST_PARTS) } else { 1 }
         };
         let parts: Vec<usize> = (0..x.len() - 1).map(of).collect();

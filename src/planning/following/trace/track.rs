@@ -12,17 +12,17 @@ use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
 const LEAST_STEP: f64 = 1e-11;
 
 /// How far the pose may lie from where the tangent leads, rad: farther, the step is halved.
-const ASTRAY: f64 = 0.02;
+const MAX_ASTRAY: f64 = 0.02;
 
 /// The nodes are dense enough when the quintics between them miss by no more than this, rad.
-const MISS: f64 = 2e-11;
+const MAX_MISS: f64 = 2e-11;
 
 /// In the least spaces this must do, rad: close by a fold.
-const MISS_AT_LEAST: f64 = 1e-8;
+const MAX_MISS_BY_A_FOLD: f64 = 1e-8;
 /// Spaces between nodes on a piece of a curve to begin with.
 const SPACES: usize = 8;
 /// More pieces than this begin with one space each.
-const MANY: usize = 200;
+const MANY_PIECES: usize = 200;
 /// The least space, as a share of its piece, and the most nodes of a curve, some more for each piece.
 const LEAST_SPACE: f64 = 1e-6;
 const MOST_NODES: usize = 20_000;
@@ -49,7 +49,7 @@ impl Track<'_> {
                 self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.rule.keeps_side(self.map, a, *x));
             let near = |x: &[f64; 2]| {
                 let step = (x[0] - a[0]).hypot(x[1] - a[1]);
-                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= ASTRAY + 0.25 * step
+                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= MAX_ASTRAY + 0.25 * step
             };
             match found.filter(near) {
                 Some(x) => {
@@ -98,7 +98,7 @@ impl Track<'_> {
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
         let pieces = joints.len() - 1;
         // Many pieces are short, as those between samples.
-        let spaces = if pieces > MANY { 1 } else { SPACES };
+        let spaces = if pieces > MANY_PIECES { 1 } else { SPACES };
         for ends in joints.windows(2) {
             let run = ends[1] - ends[0];
             let station = |i: usize| if i == spaces { ends[1] } else { ends[0] + run * i as f64 / spaces as f64 };
@@ -107,7 +107,7 @@ impl Track<'_> {
                 let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
                 let there = self.jet(self.advance(here.a, s, next)?, next);
                 let miss = self.miss((s, here), (next, there));
-                if miss < MISS || (next - s < LEAST_SPACE * run && miss < MISS_AT_LEAST) {
+                if miss < MAX_MISS || (next - s < LEAST_SPACE * run && miss < MAX_MISS_BY_A_FOLD) {
                     stations.push(next);
                     nodes.push(there);
                     ahead.pop();

@@ -8,18 +8,18 @@ use super::span::{Span, Surface};
 use crate::mechanics::planar::{Vector, cross, dot};
 
 /// Parts of a span this near to each other, as a part of the span, are one cut.
-const SAME: f64 = 1e-11;
+const SAME_CUT_SHARE: f64 = 1e-11;
 /// Ends this near to each other are joined, as a share of the unit of the map; so are the next two lengths.
-const JOINT: f64 = 1e-9;
+const JOINED_SHARE: f64 = 1e-9;
 /// Curves still entangled at this length touch without crossing.
 const SHORTEST: f64 = 1e-9;
 /// Pairs of parts looked at before two spans count as running along each other.
-const PATIENCE: usize = 3000;
-/// What is left of [`PATIENCE`] when it is time to see whether they do.
-const WONDER: usize = PATIENCE - 100;
+const MAX_PAIRS: usize = 3000;
+/// What is left of [`MAX_PAIRS`] when it is time to see whether they do.
+const PAIRS_LEFT_AT_CHECK: usize = MAX_PAIRS - 100;
 /// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
 /// the reach, they do not cross.
-const TIP: f64 = 1e-4;
+const TOUCH_SHARE: f64 = 1e-4;
 /// Points this near to a curve lie on it.
 const ON_CURVE: f64 = 1e-11;
 
@@ -86,7 +86,7 @@ impl Part {
 impl<'a> Arrangement<'a> {
     pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
         let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
-        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach, unit: on.map.unit() }
+        Self { on, cycle, spans: &cycle.spans, tip: TOUCH_SHARE * reach, unit: on.map.unit() }
     }
 
     /// All curves, cut where they cross each other.
@@ -116,7 +116,7 @@ impl<'a> Arrangement<'a> {
         let mut nodes: Vec<Vector> = Vec::new();
         let mut node = |p: &Portion, t: f64| {
             let at = self.on.at(&self.spans[p.span], t);
-            nodes.iter().position(|n| (n - at).norm() < JOINT * self.unit).unwrap_or_else(|| {
+            nodes.iter().position(|n| (n - at).norm() < JOINED_SHARE * self.unit).unwrap_or_else(|| {
                 nodes.push(at);
                 nodes.len() - 1
             })
@@ -157,7 +157,7 @@ impl<'a> Arrangement<'a> {
             cuts.push(0.0);
             cuts.push(1.0);
             cuts.sort_by(f64::total_cmp);
-            cuts.dedup_by(|next, last| *next - *last < SAME);
+            cuts.dedup_by(|next, last| *next - *last < SAME_CUT_SHARE);
             // The exact ends survive the merging.
             if let Some(last) = cuts.last_mut() {
                 *last = 1.0;
@@ -211,7 +211,7 @@ impl<'a> Arrangement<'a> {
     /// Curves that coincide bound the workspace once.
     fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
         let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
-        let near = |a: Vector, b: Vector| (a - b).norm() < JOINT * self.unit;
+        let near = |a: Vector, b: Vector| (a - b).norm() < JOINED_SHARE * self.unit;
         let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
         for &portion in portions {
             let [from, to] = ends(&portion);
@@ -265,10 +265,10 @@ impl<'a> Arrangement<'a> {
         work.clear();
         work.push_back((Part::of(a), Part::of(b)));
         let tip = a.ends.into_iter().zip(a.at).find(|(end, _)| b.ends.contains(end)).map(|(_, at)| at);
-        let mut patience = PATIENCE;
+        let mut patience = MAX_PAIRS;
         while let Some((pa, pb)) = work.pop_front() {
             patience -= 1;
-            if patience == 0 || (patience == WONDER && self.run_along(i, j)) {
+            if patience == 0 || (patience == PAIRS_LEFT_AT_CHECK && self.run_along(i, j)) {
                 self.overlap(i, j, cuts);
                 return;
             }
@@ -312,7 +312,7 @@ impl<'a> Arrangement<'a> {
             let margin = 0.1 * (high - low);
             x.clamp((low - margin).max(0.0), (high + margin).min(1.0))
         };
-        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME && x <= r[1] + SAME;
+        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME_CUT_SHARE && x <= r[1] + SAME_CUT_SHARE;
         for _ in 0..16 {
             let (ja, jb) = (self.on.jet(a, t), self.on.jet(b, s));
             let gap = jb.at - ja.at;
@@ -335,7 +335,7 @@ impl<'a> Arrangement<'a> {
         for (one, other) in [(i, j), (j, i)] {
             for end in self.spans[one].at {
                 let (t, gap) = self.foot(&self.spans[other], end);
-                if gap < JOINT * self.unit {
+                if gap < JOINED_SHARE * self.unit {
                     cuts[other].push(t);
                 }
             }
@@ -388,7 +388,7 @@ impl<'a> Arrangement<'a> {
             let mut chain = vec![portions[first]];
             used[first] = true;
             let mut last = first;
-            while (ends[last] - starts[first]).norm() > JOINT * self.unit {
+            while (ends[last] - starts[first]).norm() > JOINED_SHARE * self.unit {
                 let along = ends[last] - at(&portions[last], 0.95);
                 let turn = |k: usize| {
                     let next = at(&portions[k], 0.05) - starts[k];
@@ -397,7 +397,7 @@ impl<'a> Arrangement<'a> {
                 let gap = |k: usize| (starts[k] - ends[last]).norm();
                 let free = || (0..portions.len()).filter(|&k| !used[k]);
                 let joined =
-                    free().filter(|&k| gap(k) <= JOINT * self.unit).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
+                    free().filter(|&k| gap(k) <= JOINED_SHARE * self.unit).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
                 // Only rounding near a tangency leaves a gap; the nearest start closes it.
                 let near = || free().filter(|&k| gap(k) < 1e-5 * self.unit).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
                 let Some(next) = joined.or_else(near) else { break };

@@ -6,7 +6,7 @@
 //! in one sliver the longer also runs where the other does not.
 
 /// More curves than these are not told apart: only machines whose curves coincide have as many.
-const MOST: usize = 12;
+const MAX_CURVES: usize = 12;
 /// Choices looked at.
 const PATIENCE: usize = 20_000;
 
@@ -36,7 +36,7 @@ impl Course {
 /// The sides of all courses, those that were unclear such that every level closes; as they were if none do.
 pub(super) fn settle(courses: &mut [Course]) {
     let mut unclear: Vec<usize> = (0..courses.len()).filter(|&i| courses[i].is_unclear()).collect();
-    if unclear.is_empty() || unclear.len() > MOST {
+    if unclear.is_empty() || unclear.len() > MAX_CURVES {
         return;
     }
     // The longest first: they cost most, so that the search ends early.

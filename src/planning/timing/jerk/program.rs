@@ -8,10 +8,12 @@ use crate::planning::curves::path::Path;
 use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
 
 /// Where limits are kept in every space, as shares of it, each with half of its weight: two points of Gauss.
-const SHARES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+const GAUSS_PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Near both ends, where all changes fast, at more places, which count for no time.
-const MORE: [(f64, f64); 5] = [(0.01, 0.0), (SHARES[0], 0.5), (0.5, 0.0), (SHARES[1], 0.5), (0.99, 0.0)];
-const ENDS: usize = 4;
+const END_PLACES: [(f64, f64); 5] =
+    [(0.01, 0.0), (GAUSS_PLACES[0], 0.5), (0.5, 0.0), (GAUSS_PLACES[1], 0.5), (0.99, 0.0)];
+/// So many spaces are near an end.
+const END_SPACES: usize = 4;
 
 /// A two-sided limit at a place: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk; c the three
 /// coefficients from the place's first.
@@ -79,8 +81,8 @@ impl JerkProgram {
         let speeds = &mut speeds[..constraints.speeds()];
         for i in 0..spaces {
             let (h, shares) = (nodes[i + 1] - nodes[i], [share(&nodes, i), share(&nodes, i + 1)]);
-            let near_end = i < ENDS || i + ENDS >= spaces;
-            let own = if near_end { &MORE[..] } else { &SHARES.map(|at| (at, 0.5)) };
+            let near_end = i < END_SPACES || i + END_SPACES >= spaces;
+            let own = if near_end { &END_PLACES[..] } else { &GAUSS_PLACES.map(|at| (at, 0.5)) };
             for &(at, weight) in own {
                 let back = 1.0 - at;
                 let by = |w: [f64; 3]| spread(w, shares);

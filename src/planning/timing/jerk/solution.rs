@@ -4,32 +4,29 @@ use super::band::Band;
 use super::program::JerkProgram;
 use super::spline::Timing;
 
-/// Steps of the method, and the share of T that the bound and the motion may be apart at its end.
-const STEPS: usize = 80;
-const APART: f64 = 2e-4;
+/// Steps of the method at most.
+const MAX_STEPS: usize = 80;
+/// The share of T that the bound and the motion may be apart at its end.
+const MAX_GAP_SHARE: f64 = 2e-4;
 /// Shares of the curvature that jerk allows, for the timing to begin with.
-const CURVED: [f64; 3] = [1.0, 0.1, 0.01];
+const CURVATURE_SHARES: [f64; 3] = [1.0, 0.1, 0.01];
 /// The least share of what room is worth that a step aims for: less, and steps creep along the limits.
-const CENTRE: f64 = 0.1;
+const MIN_CENTRING: f64 = 0.1;
 /// How often a step is halved where a limit curves towards it.
-const HALVED: usize = 50;
-/// How near to a limit a step may go.
-const SHORT: f64 = 0.99;
+const MAX_HALVINGS: usize = 50;
+/// The share of the way to the nearest limit that a step may go.
+const STEP_SHARE: f64 = 0.99;
 
 impl JerkProgram {
     /// The fastest timing; `None` if there is none that moves. `bound` is a θ̇² that no motion surpasses at a θ,
     /// `before` a timing on other nodes to begin from.
-    pub fn solve(
-        mut self,
-        bound: impl Fn(f64) -> f64,
-        before: Option<&Timing>,
-    ) -> Option<Timing> {
+    pub fn solve(mut self, bound: impl Fn(f64) -> f64, before: Option<&Timing>) -> Option<Timing> {
         let count = self.worth.len();
         let mut best: Option<(f64, Vec<f64>)> = None;
         let last = self.nodes.len() - 1;
         let place = |j: usize| 0.5 * (self.nodes[j.saturating_sub(1)] + self.nodes[j.min(last)]);
         let begun = before.map(|before| (0..count).map(|j| before.at(place(j))).collect());
-        let made = if begun.is_some() { &[][..] } else { &CURVED };
+        let made = if begun.is_some() { &[][..] } else { &CURVATURE_SHARES };
         for start in begun.into_iter().chain(made.iter().filter_map(|share| self.start(&bound, *share))) {
             let Some(start) = self.within(start) else { continue };
             let time = self.time(&start);
@@ -50,7 +47,7 @@ impl JerkProgram {
         let mut gap = self.gap(&c);
         let mut band = Band::new(count);
         let (mut step, mut next) = (vec![0.0; count], c.clone());
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             self.assemble(&c, &mut band);
             band.factor()?;
             // As if no limit were to push back: how far would that go?
@@ -60,21 +57,21 @@ impl JerkProgram {
             band.solve(&mut step);
             let (primal, dual) = self.reach(&c, &step, 0.0, 1.0);
             let left = self.left(&c, &step, primal, dual);
-            let centre = (left / gap).powi(3).clamp(CENTRE, 1.0) * gap / many;
+            let centre = (left / gap).powi(3).clamp(MIN_CENTRING, 1.0) * gap / many;
             self.bend(&c, &step);
             self.push(&c, centre, &mut step);
             band.solve(&mut step);
-            let (mut primal, dual) = self.reach(&c, &step, centre, SHORT);
+            let (mut primal, dual) = self.reach(&c, &step, centre, STEP_SHARE);
             self.revalue(&c, &step, centre, dual);
             // Where a limit curves towards the step, less of it.
             let mut halved = 0;
             loop {
                 next.iter_mut().zip(c.iter().zip(&step)).for_each(|(next, (c, step))| *next = c + primal * step);
-                if self.measure(&next, 1.0 - SHORT) {
+                if self.measure(&next, 1.0 - STEP_SHARE) {
                     break;
                 }
                 halved += 1;
-                if halved > HALVED {
+                if halved > MAX_HALVINGS {
                     return None;
                 }
                 primal *= 0.5;
@@ -86,7 +83,7 @@ impl JerkProgram {
             if !time.is_finite() {
                 return None;
             }
-            if gap < APART * time && (last - time).abs() < APART * time {
+            if gap < MAX_GAP_SHARE * time && (last - time).abs() < MAX_GAP_SHARE * time {
                 break;
             }
         }

@@ -5,7 +5,7 @@ use crate::planning::timing::law::Progress;
 use crate::planning::timing::profile::Profile;
 
 /// Points and weights of Gauss over one space, for its time.
-const TIMES: [(f64, f64); 4] = [
+const GAUSS_TIMES: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
     (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
     (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
@@ -47,7 +47,7 @@ impl Timing {
             let turn = 2.0 * (y[1] - y[0]) / (3.0 * h * rate);
             let jet = Progress { s, rate: first * rate, acceleration: second * rate * rate + first * turn, jerk: 0.0 };
             jets.push((t, jet));
-            t += h * TIMES.map(|(at, weight)| weight / curved(y, at).cbrt()).iter().sum::<f64>();
+            t += h * GAUSS_TIMES.map(|(at, weight)| weight / curved(y, at).cbrt()).iter().sum::<f64>();
         }
         jets.push((t, Progress::still(1.0)));
         Profile::through_jets(&jets)
