@@ -102,10 +102,11 @@
 //! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
 //!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
 //! * **A setting**: a row in the struct of the part that it sets, which `keyed!` declares (`settings/keyed.rs`):
-//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of a design `session/scenario/design.rs`; of machines `mechanics/machine/ranges.rs`,
-//!   and its line in `set.rs`. The row is the field, with type, default, range, meaning and when it has an effect (what frames depend on it: `session/scenario/keys.rs`); files,
-//!   `--set`, edits, *All settings* in the window and `stillbase keys` follow, and so does the page of the guide, which
-//!   `stillbase keys --markdown` writes. A row of its own in the panel stands in `app/side/`.
+//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, of a design `session/scenario/design.rs`; of
+//!   a machine a row of `mechanics/machine/keys.rs`. The row is the field, with type, default, range, meaning, when it has
+//!   an effect, and what frames depend on it. Files, `--set`, edits, *All settings* in the window and `stillbase keys`
+//!   follow. `stillbase keys --markdown` writes the page of the guide. A row in a panel of the window stands in
+//!   `app/side/`, of the design view in `app/studio/`.
 //! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the
 //!   screen and what it means. Files, keys, the command line and the menus of the window follow.
 //! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
@@ -128,6 +129,10 @@
 //! * **Something that the window can be asked for**: of the session a variant of `SessionCommand`, of how it is shown one
 //!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
 //!   words and its keys are one row of `app/actions.rs`: keyboard, list of commands, card of keys and menus follow.
+//! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. One below the
+//!   scene is a variant of `Below` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`.
+//! * **Work beside the window**: a row of `app/activity.rs` with its words. If it derives something it is a query and a row
+//!   of `TOLD` in `app/background.rs`; if it changes what is on display, `Background::run` takes it with what is done then.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
 //!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.

@@ -310,9 +310,12 @@ pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
     ui.painter().circle_filled(line.rect.left_center() + vec2(12.0, 0.0), 3.5, colour(p.amber));
 }
 
+/// How high a rule is with the room about it, points.
+pub const RULE: f32 = 11.0;
+
 /// A thin line between groups.
 pub fn rule(ui: &mut Ui, p: &Palette, width: f32) {
-    let (rect, _) = ui.allocate_exact_size(vec2(width, 11.0), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(width, RULE), Sense::hover());
     let y = rect.center().y.round() + 0.5;
     let ends = [pos2(rect.left() + 6.0, y), pos2(rect.right() - 6.0, y)];
     ui.painter().line_segment(ends, Stroke::new(1.0, colour(p.line)));

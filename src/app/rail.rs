@@ -4,7 +4,7 @@
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::{key_of, key_of_switch};
-use super::icon::{Icon, IconButton, rule, word_button, word_without};
+use super::icon::{Icon, IconButton, RULE, rule, word_button, word_without};
 use super::{Command, Switch, ViewChange, ViewState, arrangement, history};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -12,8 +12,13 @@ use crate::session::{Fork, Session};
 
 /// How wide it is, points.
 const WIDTH: f32 = 50.0;
-/// A button.
+/// A button, and one in a low window, so that none is out of sight.
 const BUTTON: egui::Vec2 = vec2(42.0, 30.0);
+const LOW: f32 = 24.0;
+/// A word for a view.
+const WORD: f32 = 25.0;
+/// Between them.
+const SPACE: f32 = 2.0;
 
 /// A button that is on or off.
 struct Toggle {
@@ -71,11 +76,13 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
     let frame = Frame::new().inner_margin(Margin { left: 4, right: 4, top: 8, bottom: 6 });
     Panel::left("tools").exact_size(WIDTH).resizable(false).frame(frame).show(ui, |ui| {
         // A low window scrolls it.
+        let room = ui.available_height();
         let bars = egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
         ScrollArea::vertical().auto_shrink(false).scroll_bar_visibility(bars).show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(0.0, 2.0);
+            ui.spacing_mut().item_spacing = vec2(0.0, SPACE);
+            let size = vec2(BUTTON.x, height(room));
             for view in ViewKind::ALL {
-                let size = vec2(BUTTON.x, 25.0);
+                let size = vec2(BUTTON.x, WORD);
                 if let Err(why) = Views::has(view, session.run()) {
                     let tip = format!("Not of this machine: {why}");
                     word_without(ui, &p, (view.name(), &tip), size);
@@ -90,28 +97,44 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
             for group in [HANDS.as_slice(), &LAYERS, &ANALYSES] {
                 rule(ui, &p, BUTTON.x);
                 for tool in group {
-                    toggle(ui, &p, tool, view_state, commands);
+                    toggle(ui, &p, tool, size, view_state, commands);
                 }
             }
             rule(ui, &p, BUTTON.x);
             let tip = format!("Show everything{}", key("Show everything"));
-            let fit = IconButton { size: BUTTON, ..IconButton::of(Icon::Corners, "show everything", &tip) };
+            let fit = IconButton { size, ..IconButton::of(Icon::Corners, "show everything", &tip) };
             if fit.show_in(ui, &p, super::theme::colour(p.dim)).clicked() {
                 commands.push(ViewChange::Fit.into());
             }
-            arrangement::show(ui, view_state, BUTTON, commands);
-            history::show(ui, (session, branches), view_state, BUTTON, commands);
+            arrangement::show(ui, view_state, size, commands);
+            history::show(ui, (session, branches), view_state, size, commands);
         });
     });
 }
 
-fn toggle(ui: &mut Ui, p: &Palette, tool: &Toggle, view_state: &ViewState, commands: &mut Vec<Command>) {
+/// How high a button is where there is so much room for all.
+fn height(room: f32) -> f32 {
+    let words = ViewKind::ALL.len() as f32 * (WORD + SPACE);
+    let rules = 4.0 * (RULE + SPACE);
+    // With those for the whole scene, the arrangement and the history.
+    let buttons = (HANDS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
+    ((room - words - rules) / buttons - SPACE).floor().clamp(LOW, BUTTON.y)
+}
+
+fn toggle(
+    ui: &mut Ui,
+    p: &Palette,
+    tool: &Toggle,
+    size: egui::Vec2,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let enabled = !tool.switch.is_of_machine() || view_state.view.shows_machine();
     let on = view_state.is_on(tool.switch);
     let only = if enabled { "" } else { "\n(in 2D and 3D)" };
     let key = in_brackets(key_of_switch(tool.switch));
     let tip = format!("{}{key}\n{}{only}", tool.label, tool.does);
-    let button = IconButton { icon: tool.icon, label: tool.label, tip: &tip, on: Some(on), enabled, size: BUTTON };
+    let button = IconButton { icon: tool.icon, label: tool.label, tip: &tip, on: Some(on), enabled, size };
     if button.show(ui, p).clicked() {
         commands.push(view_state.other(tool.switch));
     }
