@@ -1,11 +1,11 @@
 //! [`Joints`]: joint space of any machine that has a b. Its axes are drive angles, and a b is a surface in it: a plane, or a
 //! line where there are two axes.
 //!
-//! | what | where |
+//! | what | file |
 //! |---|---|
-//! | a machine with planes: all within the limits are a prism | [`prism`] |
-//! | any other: cut where the drives stand that have no axis | [`section`] |
-//! | the b that are shown | [`range`] |
+//! | a machine with planes: all within the limits are a prism | `prism` |
+//! | any other: cut where the drives stand that have no axis | `section` |
+//! | the b that are shown | `range` |
 
 mod items;
 mod prism;
