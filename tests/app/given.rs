@@ -20,19 +20,24 @@ pub const TESTS: &[Test] = tests![
     a_measured_machine_is_taken_as_it_is_and_mended,
     a_table_that_cannot_be_read_says_why_and_a_choice_mends_it,
     where_no_table_was_opened_one_is_asked_for,
+    every_machine_takes_tables_of_its_own,
 ];
 
 /// Angles of the drives in a run of a scenario, and what its base feels, as a table.
-fn table(scenario: &Scenario, measures: bool) -> String {
-    let mut text =
-        String::from(if measures { "t,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,fx,fy,nz\n" } else { "t,q1,q2,q3\n" });
+fn table(scenario: &Scenario, measures: bool, every: u64) -> String {
+    let drives = scenario.machine.drives();
+    let all = |word: &str| (1..=drives).map(|k| format!(",{word}{k}")).collect::<String>();
+    let mut text = match measures {
+        true => format!("t{}{}{},fx,fy,nz\n", all("q"), all("qd"), all("qdd")),
+        false => format!("t{}\n", all("q")),
+    };
     let mut row = |frame: &stillbase::simulation::frame::Frame| {
         write!(text, "{}", frame.time).expect("text");
         let rates: &[_] = if measures { &[frame.qd, frame.qdd] } else { &[] };
-        for k in 0..3 {
+        for k in 0..drives {
             write!(text, ",{}", frame.q.0[k]).expect("text");
         }
-        for (of, k) in rates.iter().flat_map(|of| (0..3).map(move |k| (of, k))) {
+        for (of, k) in rates.iter().flat_map(|of| (0..drives).map(move |k| (of, k))) {
             write!(text, ",{}", of[k]).expect("text");
         }
         if measures {
@@ -41,12 +46,17 @@ fn table(scenario: &Scenario, measures: bool) -> String {
         }
         text.push('\n');
     };
+    let mut row = |frame: &stillbase::simulation::frame::Frame| {
+        if frame.step.is_multiple_of(every) {
+            row(frame);
+        }
+    };
     replay(scenario, |_, frame| row(frame)).expect("it runs");
     text
 }
 
-fn open(h: &mut Window, file: &std::path::Path) {
-    h.state_mut().app_state_mut().carry_out(SessionCommand::OpenFile(file.to_owned()));
+fn open(h: &mut Window, file: impl AsRef<std::path::Path>) {
+    h.state_mut().app_state_mut().carry_out(SessionCommand::OpenFile(file.as_ref().to_owned()));
     h.run_steps(4);
 }
 
@@ -54,7 +64,7 @@ fn a_motion_of_ones_own_becomes_one_without_reactions() {
     let (folder, case) = (Folder::new("given"), Scenario::builtin("case-1").expect("built in"));
     let mut h = window("case-3", Theme::Dark);
     let before = session(&h).scenario().clone();
-    open(&mut h, &folder.file("mine.csv", &table(&case, false)));
+    open(&mut h, folder.file("mine.csv", table(&case, false, 1)));
     assert!(h.query_by_label("Given motion").is_some() && h.query_by_label("Proposed: no reactions").is_some());
     assert_eq!(*session(&h).scenario(), before, "it changes nothing until it is taken");
     for (button, is_clean) in [("Take as given", false), ("Take the proposal", true)] {
@@ -88,9 +98,9 @@ fn a_measured_machine_is_taken_as_it_is_and_mended() {
     let folder = Folder::new("given");
     let case = Scenario::builtin("case-1").expect("built in");
     let built = case.with(&one("link.5.com", -0.02)).expect("a machine");
-    let file = folder.file("plate.csv", &table(&built, true));
+    let file = folder.file("plate.csv", table(&built, true, 1));
     let mut h = window("case-3", Theme::Dark);
-    open(&mut h, &file);
+    open(&mut h, file);
     assert!(h.query_by_label("Measured machine").is_some() && h.query_by_label("g 2 along is off").is_some());
     let residual = |h: &Window| Inertia::of(&session(h).scenario().machine).force_residual();
     assert!(residual(&h) < 1e-12);
@@ -113,7 +123,7 @@ fn a_measured_machine_is_taken_as_it_is_and_mended() {
 
 fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
     let (folder, case) = (Folder::new("given"), Scenario::builtin("case-1").expect("built in"));
-    let text = table(&case, false);
+    let text = table(&case, false, 1);
     let gap: String =
         text.lines().enumerate().filter(|(i, _)| !(400..440).contains(i)).fold(String::new(), |mut all, (_, line)| {
             all += line;
@@ -128,12 +138,12 @@ fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
         ("nan.csv", "t,q1,q2,q3\n0,1,2,NaN\n", "NaN"),
         ("empty.csv", "", "want"),
     ] {
-        open(&mut h, &folder.file(name, text));
+        open(&mut h, folder.file(name, text));
         assert!(h.query_by_label_contains(words).is_some(), "{name}");
         assert!(h.query_by_label("Take the proposal").is_none(), "{name}");
     }
     assert_eq!(*session(&h).scenario(), before);
-    open(&mut h, &folder.path("gap.csv"));
+    open(&mut h, folder.path("gap.csv"));
     h.get_by_label("bridge gaps").click();
     h.run_steps(4);
     assert!(h.query_by_label("Take the proposal").is_some(), "the spline bridges it");
@@ -144,6 +154,31 @@ fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
     app_state.carry_out(WindowCommand::Ask(Options { b: Some(9e5), ..Options::default() }));
     h.run_steps(3);
     assert!(h.query_by_label("Take the proposal").is_none());
+}
+
+/// Whatever a machine can do: a motion of it is assessed with a proposal or a reason, and a measurement is read.
+fn every_machine_takes_tables_of_its_own() {
+    let folder = Folder::new("given");
+    for scenario in Scenario::builtins() {
+        let scenario = Scenario { edits: Vec::new(), ..scenario.clone() };
+        let mut h = super::window_of(scenario.clone(), Theme::Dark, 800.0);
+        for (name, text) in [("motion.csv", table(&scenario, false, 10)), ("plate.csv", table(&scenario, true, 10))] {
+            open(&mut h, folder.file(name, text));
+            h.run_steps(2);
+            let titles = ["Proposed: no reactions", "No proposal", "Least change", "No change", "Nothing mends it"];
+            let is_answered = titles.iter().any(|title| h.query_by_label(title).is_some());
+            assert!(is_answered || h.query_by_label_contains(": want ").is_some(), "{} {name}", scenario.name);
+            assert!(
+                is_answered || scenario.base.moves() || name == "motion.csv",
+                "{} {name}: a measurement on a base at rest",
+                scenario.name
+            );
+        }
+        drop(h);
+        for name in ["motion.csv", "plate.csv"] {
+            std::fs::remove_file(folder.path(name)).expect("it was written");
+        }
+    }
 }
 
 fn where_no_table_was_opened_one_is_asked_for() {

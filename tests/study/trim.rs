@@ -3,12 +3,12 @@
 use stillbase::mechanics::balance::{Body, Condition, Hold, Keep, Parameter, Quantity};
 use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
-use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::query::{Portion, Query, Shared, answered};
 use stillbase::study::trim::{
-    Fit, Made, Motion, NoTrim, Part, Recording, Rows, TrimError, TrimRequest, Trimming, Unknown, Way, fit, identified,
-    mend, next, taken, worth,
+    Fit, Made, Motion, NoTrim, Part, Recording, Rows, TrimError, TrimRequest, Trimming, Unknown, Way, doubt, fit,
+    identified, mend, next, taken, worth,
 };
 
 use crate::support::random::a_machine;
@@ -142,6 +142,20 @@ fn without_noise_every_number_is_found() {
         let off = furthest(&fit, &hidden);
         assert!(off < 1e-9, "{n} drives: {off:e}");
         drives[n] += 1;
+    }
+}
+
+/// A balanced machine gives no force: what is left is rounding, and no evidence of another unit or a reversed drive.
+#[test]
+fn rounding_is_no_evidence() {
+    let mut noise = Noise::of(3);
+    for machine in builtins() {
+        for rates in [true, false] {
+            let how = Measuring { rates, ..EXACT };
+            let recording = measured(machine, &mut noise, how, &vec![true; machine.drives()]);
+            let doubted = doubt(machine, &recording, false).expect("it can be used");
+            assert!(doubted.is_none(), "{}, {rates}: {doubted:?}", machine.name());
+        }
     }
 }
 

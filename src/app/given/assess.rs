@@ -113,7 +113,7 @@ pub enum Assessed {
         /// In how many places a whole turn was taken out of each column.
         unwrapped: Vec<usize>,
         /// What it does to the base, and what is proposed.
-        imported: Result<Imported, ImportError>,
+        imported: Box<Result<Imported, ImportError>>,
     },
     /// Of a machine.
     Measured(Box<Trimmed>),
@@ -157,7 +157,7 @@ impl Query for Assessing {
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(imported) => {
                     let (motion, unwrapped) = (motion.clone(), std::mem::take(unwrapped));
-                    Portion::Done(Ok(Assessed::Motion { motion, unwrapped, imported }))
+                    Portion::Done(Ok(Assessed::Motion { motion, unwrapped, imported: imported.into() }))
                 }
             },
             Some(Work::Measured(trimming)) => match trimming.go_on(goes_on) {

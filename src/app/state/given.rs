@@ -52,8 +52,8 @@ impl AppState {
         let found = self.assessed().filter(|(_, is_known)| *is_known).map(|(found, _)| found);
         let scenario = self.session.scenario();
         let edit = match found.as_deref() {
-            Some(Ok(Assessed::Motion { imported: Ok(imported), .. })) => imported.scenarios.as_ref().and_then(|both| {
-                let [proposal, as_given] = both;
+            Some(Ok(Assessed::Motion { imported, .. })) => imported.as_ref().as_ref().ok().and_then(|imported| {
+                let [proposal, as_given] = imported.scenarios.as_ref()?;
                 let chosen = match taking {
                     Taking::Proposal => proposal,
                     Taking::AsGiven => as_given,

@@ -29,6 +29,8 @@ pub struct Fit {
     pub noise: [f64; 2],
     /// Root mean square of what was measured of force, N, and of moment, N m, less offsets.
     pub size: [f64; 2],
+    /// The largest force, N, and moment, N m, that the machine could have in these motions.
+    pub(super) largest: [f64; 2],
     /// As how many independent rows those of force and of moment count.
     pub effective: [f64; 2],
     /// (XᵀX)⁻¹ of what is told, rows weighted by σ.
@@ -89,7 +91,8 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     let deviation = |channel: &Channel| DVector::from_column_slice(&channel.y) - &channel.x * &nominal;
     let [fx, fy, n] = rows.channels.each_ref().map(deviation);
     let left = [fx, fy, n];
-    let floors = floors(rows, &scales);
+    let largest = largest(rows, &scales);
+    let floors = largest.map(|largest| (ROUNDING * largest).max(f64::MIN_POSITIVE.sqrt()));
     let groups = [compressed(rows, &left, &[0, 1]), compressed(rows, &left, &[2])];
     let mut sigma = [rms(&[&left[0], &left[1]]).max(floors[0]), rms(&[&left[2]]).max(floors[1])];
     let mut solved = None;
@@ -156,6 +159,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
         confused,
         noise: sigma,
         size,
+        largest,
         effective,
         inverse: solved.inverse,
         information,
@@ -191,15 +195,15 @@ fn joined(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     all
 }
 
-/// What rounding leaves of force and of moment.
-fn floors(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
+/// The largest force and moment, root mean square, that so large a machine could have.
+fn largest(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
     let of = |channels: &[usize]| {
         let size = |c: &usize| {
             let columns = rows.channels[*c].x.column_iter().zip(scales.iter());
             columns.map(|(column, scale)| column.norm_squared() * scale * scale).sum::<f64>()
         };
         let all = channels.iter().map(size).sum::<f64>();
-        (ROUNDING * (all / rows.count() as f64).sqrt()).max(f64::MIN_POSITIVE.sqrt())
+        (all / rows.count() as f64).sqrt()
     };
     [of(&[0, 1]), of(&[2])]
 }

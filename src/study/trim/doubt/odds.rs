@@ -17,6 +17,8 @@ pub(super) const LEFT: f64 = 0.1;
 pub(super) const KEPT: f64 = 0.02;
 /// As few rows tell how correlated they are, this share of the independent ones is counted.
 const CORRELATED: f64 = 0.5;
+/// What is below this share of what the machine could give is rounding, also of digits that were written.
+const ROUNDING: f64 = 1e-10;
 /// Residuals below this share of what was measured are those of differences between samples, and no evidence.
 const EXACT: f64 = 1e-6;
 
@@ -42,7 +44,10 @@ pub(super) fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Opt
     let (was, now) = (&given.fit, &other.fit);
     let residuals = |of: usize| {
         let [before, after] = [was, now].map(|fit| shares(fit)[of].max(EXACT));
-        CORRELATED * was.effective[of].min(now.effective[of]) * other.share * (before / after).ln()
+        let evidence = CORRELATED * was.effective[of].min(now.effective[of]) * other.share * (before / after).ln();
+        // Where rounding alone is left there is nothing to explain: a balanced machine gives no force, whatever its unit.
+        let is_explained = was.noise[of] <= ROUNDING * was.largest[of];
+        if is_explained { evidence.min(0.0) } else { evidence }
     };
     let (before, after) = (tolerances.distance(was)?, tolerances.distance(now)?);
     // Units change what is known; more of it speaks.
