@@ -99,19 +99,23 @@
 //! | `commands` | the program's subcommands, one file each |
 //!
 //! # Where to add something
-//! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
-//!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
+//! * **A signal**: a field of `simulation/frame.rs` if it is new, filled in `simulation/simulator/simulation.rs`, and a row
+//!   of the table in `simulation/signals.rs`. Recordings and CSV have it then; a chart of its own is a row of
+//!   `picture/charts.rs`. Name it in the table of `guide/command_line.md`.
 //! * **A setting**: a row in the struct of the part that it sets, which `keyed!` declares (`settings/keyed.rs`):
-//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, of a design `session/scenario/design.rs`; of
-//!   a machine a row of `mechanics/machine/keys.rs`. The row is the field, with type, default, range, meaning, when it has
-//!   an effect, and what frames depend on it. Files, `--set`, edits, *All settings* in the window and `stillbase keys`
-//!   follow. `stillbase keys --markdown` writes the page of the guide. A row in a panel of the window stands in
-//!   `app/side/`, of the design view in `app/studio/`.
+//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, of a design `session/scenario/design.rs`, of
+//!   a scenario itself `session/scenario/own.rs`. The row is the field, with type, default, range, meaning, when it has an
+//!   effect, and what frames depend on it. Of a machine the field stands in `mechanics/machine/spec.rs`, its row in
+//!   `mechanics/machine/keys.rs`. Where the machine decides whether a key has an effect, `Scenario::idle` says so; a key
+//!   with `*` wants its names in `Scenario::settings`. Files, `--set`, edits, *All settings* in the window and
+//!   `stillbase keys` follow; `stillbase keys --markdown` writes the page of the guide. A row in a panel of the window
+//!   stands in `app/side/`, of the design view in `app/studio/`.
 //! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the
-//!   screen and what it means. Files, keys, the command line and the menus of the window follow.
-//! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
-//!   own). Window, figures and recordings show it then; what can be switched on is an option in
-//!   `picture/scene/options.rs`.
+//!   screen and what it means. Files, keys, the command line and the menus of the window follow, and the page of keys when
+//!   it is written again.
+//! * **Something to see**: an item of the scene, in `picture/scene/stage/`, drawn by `Stage::scene` (joint space and tower
+//!   are scenes of their own). Window, figures and recordings show it then. What can be switched on is an option in
+//!   `picture/scene/options.rs`, a field of `app/view_state.rs`, a `Switch`, and a line of `app/viewport.rs`.
 //! * **What is asked of a machine's poses**: a method of [`PoseSpace`](planning::pose_space::PoseSpace), for any number of
 //!   drives. If only some machines have it, it gives a `Result` with the reason in words; if three drives have a closed
 //!   form, the method takes it, and a test lays it beside [`general`](planning::pose_space::PoseSpace::general).
@@ -122,21 +126,27 @@
 //! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages name its ending
 //!   then; write a section of `guide/elsewhere.md`.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
-//!   follow; write a line of `guide/command_line.md`. It reads arguments, asks and prints: what is computed is a query or
-//!   an answer of the library (most in `study/`), which the command serialises and the window can show.
-//! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
-//!   the tests draw it at random.
+//!   follow; write a line of `guide/command_line.md`. Its help has an example, `--set` and `--json`, which a test reads. It
+//!   reads arguments, asks and prints: what is computed is a query or an answer of the library (most in `study/`), which
+//!   the command serialises and the window can show.
+//! * **An edit**: a variant in `session/edit.rs`, with its check and its title, and what it does and what undoes it in
+//!   `session/run.rs`. Look at all `matches!` on edits. Saving and replay follow; a row among the sittings of the tests has it
+//!   drawn at random.
 //! * **Something that the window can be asked for**: of the session a variant of `SessionCommand`, of how it is shown one
 //!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
 //!   words and its keys are one row of `app/actions.rs`: keyboard, list of commands, card of keys and menus follow.
 //! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. One below the
-//!   scene is a variant of `Below` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`.
-//! * **Work beside the window**: a row of `app/activity.rs` with its words. If it derives something it is a query and a row
+//!   scene is a variant of `Below` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`, its
+//!   icon in `app/icon.rs`, its words and its key a row of `app/actions.rs`.
+//! * **Work beside the window**: a row of `app/activity.rs` with its words. A query is asked for in a `refresh_…` that
+//!   `AppState::refresh` calls, and stopped there once it is out of sight. If it derives something it is a query and a row
 //!   of `TOLD` in `app/background.rs`; if it changes what is on display, `Background::run` takes it with what is done then.
 //! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
 //!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
+//! * **What a command prints** is kept in `tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `.ci/run` is what
+//!   has to pass.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
 //!

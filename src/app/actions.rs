@@ -277,7 +277,7 @@ pub const ACTIONS: &[Action] = actions![
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
-    Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Given;
+    Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Table;
     Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
     Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {

@@ -12,7 +12,7 @@ pub enum Activity {
     /// A recording is written.
     Recording,
     /// What a table says is found.
-    Given,
+    Table,
     /// Machines of a study of tolerances are drawn.
     Study,
     /// The ways of the task run side by side.
@@ -21,6 +21,8 @@ pub enum Activity {
     Kept,
     /// Lengths are sought.
     Seeking,
+    /// Fronts of other machines are found.
+    Fronts,
 }
 
 impl Activity {
@@ -31,9 +33,10 @@ impl Activity {
             Self::Opening => ("opening", Some("cancelled: nothing was opened")),
             Self::Saving => ("saving", None),
             Self::Recording => ("recording", Some("cancelled: no file is left")),
-            Self::Given => ("finding what the table says", Some("cancelled: another choice asks the table again")),
+            Self::Table => ("finding what the table says", Some("cancelled: another choice asks the table again")),
             Self::Study => ("drawing machines", Some("cancelled: no machines were drawn for the run as it is")),
             Self::Ways => ("running the ways of the task", Some("cancelled: the ways of the task were not run again")),
+            Self::Fronts => ("finding fronts", Some("cancelled: take one away, or add one, to find them again")),
             Self::Seeking => ("seeking lengths", Some("cancelled: no lengths were found")),
             Self::Kept => ("running one more beside them", Some("cancelled: no run was added")),
         }

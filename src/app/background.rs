@@ -11,6 +11,7 @@ use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
 use crate::study::comparison::Ways;
+use crate::study::fronts::Fronts;
 use crate::study::lengths::Seeking;
 use crate::study::tolerance::Studying;
 
@@ -111,10 +112,11 @@ pub(super) struct Background<A> {
 /// What queries are spoken of: their activity, how far they are, and what stops them.
 type Told = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
 
-const TOLD: [Told; 4] = [
-    (Activity::Given, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
+const TOLD: [Told; 5] = [
+    (Activity::Table, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
     (Activity::Study, Queries::progress::<Studying>, Queries::stop::<Studying>),
     (Activity::Seeking, Queries::progress::<Seeking>, Queries::stop::<Seeking>),
+    (Activity::Fronts, Queries::progress::<Fronts>, Queries::stop::<Fronts>),
     (Activity::Ways, Queries::progress::<Ways>, Queries::stop::<Ways>),
 ];
 

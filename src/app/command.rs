@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::activity::Activity;
 use super::file_dialog::{FileDialog, PlotFile, Purpose};
-use super::given::assess::{Options, Taking};
+use super::given::assess::{TableOptions, Taking};
 use super::layout::Layout;
 use crate::mechanics::counterweights::Objective;
 use crate::mechanics::machine::Machine;
@@ -133,7 +133,7 @@ pub enum Switch {
     /// The study of tolerances.
     Study,
     /// What a table says that was opened.
-    Given,
+    Table,
     /// What pins carry.
     Pins,
     /// Snapshots along the motion.
@@ -211,7 +211,7 @@ pub enum WindowCommand {
     /// Change the table of runs.
     Comparison(ComparisonCommand),
     /// Read the table that was opened so, and ask this of it.
-    Ask(Options),
+    Ask(TableOptions),
     /// Seek lengths with which this is least, as the brief has them.
     Seek(Objective),
     /// Change which fronts are drawn beside that of the machine that is designed.

@@ -1,4 +1,4 @@
-//! Over joint space where drives have no axis: which three have one, and where the others stand.
+//! Joint space of more than three drives: which three have an axis, and where the others stand.
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 

@@ -14,7 +14,7 @@ use super::{Command, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::study::advice::Advice;
 use crate::study::import::Keep;
-use assess::{Assessed, Content};
+use assess::{Assessed, TableContent};
 pub(super) use parts::Shown;
 use parts::{column, worded};
 
@@ -41,11 +41,15 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
     let height = HEIGHT.min(0.45 * ui.available_height());
     Panel::bottom("given").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
-            let title = if shown.content() == Content::Measurement { "Measured machine" } else { "Given motion" };
+            let title = match shown.content() {
+                Some(TableContent::Measurement) => "Measured machine",
+                Some(TableContent::Drives | TableContent::Tip) => "Given motion",
+                None => "Table",
+            };
             ui.label(RichText::new(title).font(bold(13.5)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
-                    commands.push(ViewChange::Switch(Switch::Given, false).into());
+                    commands.push(ViewChange::Switch(Switch::Table, false).into());
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
@@ -80,14 +84,14 @@ fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command
     let (options, content) = (&shown.given.options, shown.content());
     let choices = [
         (None, "as its columns say"),
-        (Some(Content::Drives), "a motion of the drives"),
-        (Some(Content::Tip), "a motion of the end effector"),
-        (Some(Content::Measurement), "a measurement of the base"),
+        (Some(TableContent::Drives), "a motion of the drives"),
+        (Some(TableContent::Tip), "a motion of the end effector"),
+        (Some(TableContent::Measurement), "a measurement of the base"),
     ];
     choice(ui, ("read", "What the table is taken for"), &choices, options.content, |to| {
         shown.ask(commands, |options| options.content = to);
     });
-    if content == Content::Measurement {
+    if content == Some(TableContent::Measurement) {
         let tip = "Leaves measured rates and accelerations alone, and finds them from the angles";
         switch(ui, ("from the angles alone", tip), options.angles_only, |on| {
             shown.ask(commands, |options| options.angles_only = on);
@@ -96,10 +100,10 @@ fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command
         switch(ui, ("columns as they are", tip), options.as_given, |on| {
             shown.ask(commands, |options| options.as_given = on);
         });
-        note(ui, p, "What may change is what the design view leaves free: its counterweights, or new ones.");
+        note(ui, p, "Only what the design view leaves free may change: counterweights that are there, or new ones.");
         return;
     }
-    if content == Content::Drives {
+    if content == Some(TableContent::Drives) {
         let keeps = [
             (None, "what is nearest"),
             (Some(Keep::Tip), "the end effector's motion"),
@@ -110,7 +114,8 @@ fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command
         });
     }
     let row = Row { tip: "The proposal stays on this plane", ..Row::of("on the plane b", "task.b").with(3, 0.002) };
-    optional(ui, p, &row, (options.b, 0.0), |to| shown.ask(commands, |options| options.b = to));
+    let usual = shown.proposed_b().unwrap_or_default();
+    optional(ui, p, &row, (options.b, usual), |to| shown.ask(commands, |options| options.b = to));
     let tip = "Smooths the samples without delay: half of the amplitude is left at this frequency";
     let row = Row { tip, unit: "Hz", range: 0.01..=1e5, slide: 0.01..=1e5, ..Row::of("smoothed at", "").with(1, 0.2) };
     optional(ui, p, &row, (options.smoothing, 20.0), |to| shown.ask(commands, |options| options.smoothing = to));

@@ -145,7 +145,7 @@ impl Intro {
             ) => !held,
             Command::View(
                 ViewChange::Switch(Switch::Drawing | Switch::Pushing, _)
-                | ViewChange::Switch(Switch::Compare | Switch::Study | Switch::Given, true)
+                | ViewChange::Switch(Switch::Compare | Switch::Study | Switch::Table, true)
                 | ViewChange::Reveal(_)
                 | ViewChange::LookUp(_),
             ) => true,

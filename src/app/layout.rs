@@ -86,7 +86,7 @@ pub enum Below {
     /// The study of tolerances.
     Tolerances,
     /// What a table says that was opened.
-    Given,
+    Table,
 }
 
 /// How the window is arranged: a person's liking, which outlives the session.

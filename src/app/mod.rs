@@ -64,7 +64,7 @@ pub use command::{
 };
 pub use file_dialog::{FileDialog, PlotFile, Purpose};
 pub use gesture::{Gesture, Pointed, Tool};
-pub use given::assess::{Content, Options, Taking};
+pub use given::assess::{TableContent, TableOptions, Taking};
 use intro::Intro;
 pub use layout::{Arrangement, Below, Layout, Panel, Panels};
 pub use left_off::LeftOff;

@@ -63,7 +63,7 @@ const ANALYSES: [Toggle; 3] = [
     tool(Switch::Study, Icon::Bell, "tolerances", "What the bases of many machines feel, and the spectrum"),
     tool(Switch::Compare, Icon::Beside, "side by side", "The same task done in other ways"),
     tool(
-        Switch::Given,
+        Switch::Table,
         Icon::Samples,
         "table",
         "A motion of your own without reactions, or what a measured machine lacks of balance: from a table, CSV",

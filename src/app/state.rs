@@ -309,6 +309,7 @@ impl AppState {
         self.refresh_comparison();
         self.refresh_given();
         self.refresh_seeking();
+        self.refresh_fronts();
         self.collect();
     }
 }

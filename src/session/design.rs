@@ -1,5 +1,6 @@
 //! What follows from a [`Brief`]: the edits of a machine that is kept balanced, and counterweights to take.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use toml::{Table, Value};
@@ -10,7 +11,7 @@ use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Quantity,
 use crate::mechanics::counterweights::{
     Disc, Free, FreeRotor, Front, NoWeights, Objective, Placed, Sites, Weighing, front, place,
 };
-use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine};
+use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
 use crate::session::scenario::Scenario;
 use crate::settings::change::{DEFAULT, at, join, leaves, one};
 
@@ -209,39 +210,37 @@ pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
 pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
-        let length = |link: &Link| match link.length {
-            Length::Metres(x) => Some(x),
-            Length::Named(_) => None,
-        };
-        let numbers = [
-            ("mass", Some(was.mass), Some(is.mass)),
-            ("com", Some(was.com), Some(is.com)),
-            ("com_normal", Some(was.com_normal), Some(is.com_normal)),
-            ("inertia", Some(was.inertia), Some(is.inertia)),
-            ("length", length(was), length(is)),
-        ];
-        let changed = numbers.into_iter().filter(|(_, was, is)| was != is);
-        changed.filter_map(|(what, _, is)| Some(at(&["link", &was.name, what], is?)))
+        let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
+        let keys: BTreeSet<String> = before.keys().chain(after.keys()).cloned().collect();
+        let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key));
+        // What a file leaves out is nought.
+        let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| 0.0.into());
+        changed.map(|key| at(&["link", &was.name, &key], value(&key))).collect::<Vec<_>>()
     });
     let lengths = is.lengths.iter().filter(|(name, x)| was.lengths.get(*name) != Some(x));
     let lengths = lengths.map(|(name, x)| at(&["length", name], *x));
     let change = links.chain(lengths).fold(Table::new(), |all, one| join(all, &one));
+    let carries = |spec: &MachineSpec| (spec.counterweights.clone(), spec.payload.mass, spec.drives.clone());
     let change = match weights_of(scenario, of) {
-        Edit::Set { change: weights } if was.counterweights != is.counterweights => join(change, &weights),
+        Edit::Set { change: weights } if carries(was) != carries(is) => join(change, &weights),
         _ => change,
     };
     (!change.is_empty()).then_some(Edit::Set { change })
 }
 
 /// The edit that gives a machine the counterweights of another, what that holds, with which they balance it, and the
-/// ratios of its rotors. How numbers of the counterweights before were held is forgotten: it would be said of others.
+/// ratios of its rotors. How numbers of the counterweights before were held is forgotten where it would be said of others.
 pub fn weights_of(scenario: &Scenario, of: &Machine) -> Edit {
     let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
     let change = Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]);
     let [has, holds] = [machine, of].map(|machine| machine.spec().payload.mass);
     let change = if has == holds { change } else { join(change, &one("payload.mass", holds)) };
-    let change = match scenario.design.hold.keys().any(|key| key.starts_with("counterweight.")) {
+    let carriers = |machine: &Machine| -> Vec<String> {
+        machine.spec().counterweights.iter().map(|weight| weight.link.clone()).collect()
+    };
+    let are_others = carriers(machine) != carriers(of);
+    let change = match are_others && scenario.design.hold.keys().any(|key| key.starts_with("counterweight.")) {
         true => join(change, &one("design.hold.counterweight", DEFAULT)),
         false => change,
     };

@@ -31,7 +31,7 @@ pub struct LengthSearch {
     pub lengths: Vec<FreeLength>,
     /// Counterweights, and what is to be least.
     pub weighing: Weighing,
-    /// Whether every link may carry one, from its length behind the root to the tip, whatever its length is then.
+    /// Whether places at the ends of links, or as far behind them, follow their lengths.
     pub anywhere: bool,
     /// How far the arms have to reach together at least, Σ |L_k|, m.
     pub least_reach: Option<f64>,
@@ -230,11 +230,10 @@ impl LengthSearch {
     /// As a brief has it for a machine, with what is to be least.
     pub fn of(brief: &Brief, machine: &Machine, objective: Objective) -> Self {
         let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
-        let is_anywhere = brief.behind_root.is_none();
         Self {
             lengths: lengths.collect(),
             weighing: Weighing { objective, ..brief.weighing(machine) },
-            anywhere: is_anywhere,
+            anywhere: true,
             least_reach: brief.reach,
             least_workspace: brief.workspace,
             starts: STARTS,
@@ -271,10 +270,7 @@ impl LengthSearch {
         let (lengths, changed) = self.changed(machine, shares)?;
         let mut misses = (self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0);
         let weighing = match self.anywhere {
-            true => Weighing {
-                sites: with_bounds(Sites::anywhere(&changed), &self.weighing.sites),
-                ..self.weighing.clone()
-            },
+            true => Weighing { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() },
             false => self.weighing.clone(),
         };
         let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
@@ -286,13 +282,14 @@ impl LengthSearch {
     }
 }
 
-/// The bounds on masses stay those of the links.
-fn with_bounds(mut sites: Vec<Sites>, bounds: &[Sites]) -> Vec<Sites> {
-    for site in &mut sites {
-        let most = bounds.iter().find(|bound| bound.link == site.link).map(|bound| bound.most);
-        site.most = most.unwrap_or(f64::INFINITY);
-    }
-    sites
+/// Places that go to the ends of their links, or as far behind them, go on to do so when these are longer or shorter.
+fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites> {
+    let stretch = |site: &Sites| {
+        let [was, is] = [machine, changed].map(|machine| machine.resolved_links()[site.link].length);
+        let end = |at: f64| if at.abs() == was { is.copysign(at) } else { at };
+        Sites { from: end(site.from), to: end(site.to), ..*site }
+    };
+    sites.iter().map(stretch).collect()
 }
 
 /// What a search has seen.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{Options, SessionCommand, Taking, WindowCommand};
+use stillbase::app::{SessionCommand, TableOptions, Taking, WindowCommand};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::replay;
@@ -151,7 +151,7 @@ fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
     let app_state = h.state_mut().app_state_mut();
     app_state.carry_out(SessionCommand::TakeGiven(Taking::Measured));
     assert!(app_state.view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
-    app_state.carry_out(WindowCommand::Ask(Options { b: Some(9e5), ..Options::default() }));
+    app_state.carry_out(WindowCommand::Ask(TableOptions { b: Some(9e5), ..TableOptions::default() }));
     h.run_steps(3);
     assert!(h.query_by_label("Take the proposal").is_none());
 }

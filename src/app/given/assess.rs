@@ -22,7 +22,7 @@ pub struct Table {
 
 /// What a table is read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Content {
+pub enum TableContent {
     /// Samples of the drives.
     Drives,
     /// Samples of the end effector.
@@ -33,9 +33,9 @@ pub enum Content {
 
 /// How a table is read, and what is asked of what it holds.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct TableOptions {
     /// As what; by default as what its columns say.
-    pub content: Option<Content>,
+    pub content: Option<TableContent>,
     /// Gaps in time may be bridged.
     pub gaps: bool,
     /// Cut-off of smoothing, Hz.
@@ -58,7 +58,7 @@ pub struct Given {
     /// What it holds.
     pub table: Shared<Table>,
     /// How it is read, and what is asked of it.
-    pub options: Options,
+    pub options: TableOptions,
 }
 
 /// What a session can take of what a table says.
@@ -77,15 +77,17 @@ pub enum Taking {
 impl Given {
     /// What is asked of it for a session's machine, base and control; its task and its edits do not matter.
     pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
-        let usual = Scenario::builtin("case-3")?;
+        let Scenario { name, title, machine, plant, base, control, design, .. } = scenario;
         let scenario = Scenario {
-            task: usual.task,
-            compare_b: None,
-            duration: None,
-            edits: Vec::new(),
-            bookmarks: Vec::new(),
-            branches: Vec::new(),
-            ..scenario.clone()
+            name: name.clone(),
+            title: title.clone(),
+            machine: machine.clone(),
+            plant: plant.clone(),
+            base: base.clone(),
+            control: control.clone(),
+            step: scenario.step,
+            design: design.clone(),
+            ..Scenario::builtin("case-3")?
         };
         let (table, options) = (self.table.clone(), self.options.clone());
         Some(Asked { table, scenario: Shared(scenario.into()), options })
@@ -100,7 +102,7 @@ pub struct Asked {
     /// The machine, its base and its control.
     pub scenario: Shared<Scenario>,
     /// How.
-    pub options: Options,
+    pub options: TableOptions,
 }
 
 /// What a table says.
@@ -176,9 +178,9 @@ impl Asked {
         let of = |coordinates| samples(text, name, machine, Some(coordinates), options.gaps).map(Read::Motion);
         let read = match options.content {
             None => Read::of(text, name, machine, options.gaps),
-            Some(Content::Drives) => of(Coordinates::Drives),
-            Some(Content::Tip) => of(Coordinates::EndEffector),
-            Some(Content::Measurement) => motions(text, name, machine).map(Read::Measurement),
+            Some(TableContent::Drives) => of(Coordinates::Drives),
+            Some(TableContent::Tip) => of(Coordinates::EndEffector),
+            Some(TableContent::Measurement) => motions(text, name, machine).map(Read::Measurement),
         };
         match read? {
             Read::Motion(table) => self.import(table),

@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
-use super::assess::{Assessed, Content, Given, Options, Taking};
+use super::assess::{Assessed, Given, TableContent, TableOptions, Taking};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::{Command, SessionCommand, WindowCommand};
 use crate::picture::scene::palette::Palette;
@@ -21,20 +21,26 @@ pub(in crate::app) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// What the table is read as.
-    pub fn content(&self) -> Content {
+    /// What the table is read as; none while that is not known.
+    pub fn content(&self) -> Option<TableContent> {
         match self.answer {
-            Some(Ok(Assessed::Measured(_))) => Content::Measurement,
+            Some(Ok(Assessed::Measured(_))) => Some(TableContent::Measurement),
             Some(Ok(Assessed::Motion { motion, .. })) => match motion.coordinates {
-                Coordinates::Drives => Content::Drives,
-                Coordinates::EndEffector => Content::Tip,
+                Coordinates::Drives => Some(TableContent::Drives),
+                Coordinates::EndEffector => Some(TableContent::Tip),
             },
-            _ => self.given.options.content.unwrap_or(Content::Drives),
+            _ => self.given.options.content,
         }
     }
 
+    /// b of the proposal, rad.
+    pub fn proposed_b(&self) -> Option<f64> {
+        let Some(Ok(Assessed::Motion { imported, .. })) = self.answer else { return None };
+        imported.as_ref().as_ref().ok()?.proposal.as_ref().map(|proposal| proposal.b)
+    }
+
     /// Asks the same with another choice.
-    pub fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut Options)) {
+    pub fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut TableOptions)) {
         let mut options = self.given.options.clone();
         change(&mut options);
         commands.push(WindowCommand::Ask(options).into());
@@ -73,10 +79,11 @@ pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
 pub(super) fn worded(advice: &Advice) -> String {
     let control = |remedy| match remedy {
         Remedy::Gaps => "“bridge gaps”",
-        Remedy::Smoothing | Remedy::CutOff => "“smoothed at”",
-        Remedy::PoseConstant => "“on the plane b”",
+        Remedy::Smoothing | Remedy::CutOff => "smoothing (on the left)",
+        Remedy::PoseConstant => "b (on the left)",
         Remedy::Workspace => "the workspace in the scene",
-        Remedy::Design | Remedy::Check => "the design view (D)",
+        Remedy::Design => "the design view (D)",
+        Remedy::Check => "its panel on the right",
     };
     advice.worded(control).to_string()
 }
@@ -91,6 +98,6 @@ pub(super) fn take(
 ) {
     let button = ui.add_enabled(shown.is_known, Button::new(words)).on_hover_text(tip);
     if button.on_disabled_hover_text("It is being found for the machine as it is now").clicked() {
-        commands.push(SessionCommand::TakeGiven(taking).into());
+        commands.extend([SessionCommand::TakeGiven(taking).into(), SessionCommand::EndGesture.into()]);
     }
 }

@@ -42,7 +42,7 @@ impl AppState {
         match command {
             Command::Session(command) => self.do_to_session(command),
             // Where none was opened yet, one is asked for.
-            Command::View(ViewChange::Switch(Switch::Given, true)) if self.given.is_none() => {
+            Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, Purpose::Open));
                 Ok(None)
             }

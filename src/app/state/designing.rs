@@ -10,7 +10,7 @@ use crate::query::{Query, Shared};
 use crate::session::Edit;
 use crate::session::design::{becoming, briefed, weights_of};
 use crate::session::scenario::Scenario;
-use crate::study::fronts::FrontOf;
+use crate::study::fronts::{FrontOf, Fronts};
 use crate::study::lengths::{LengthSearch, Seeking};
 
 impl AppState {
@@ -28,14 +28,21 @@ impl AppState {
         if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
     }
 
+    /// Stops the search for fronts that are on display no more; what is known may be shown again.
+    pub(super) fn refresh_fronts(&mut self) {
+        if self.view_state.view != ViewKind::Design || self.view_state.arrangement.learns {
+            studio::leave(self.queries());
+        } else if self.fronts.is_empty() {
+            self.queries().forget::<Fronts>();
+        }
+    }
+
     /// Changes which fronts are drawn beside that of the machine that is designed.
     pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
         let Scenario { machine, design, .. } = self.session.scenario();
         match change {
             FrontsCommand::Keep => self.fronts.push(FrontOf::of(machine.name(), machine, design)),
-            FrontsCommand::Add(machine) => {
-                self.fronts.push(FrontOf::of(machine.name(), &machine, design));
-            }
+            FrontsCommand::Add(other) => self.fronts.push(FrontOf::of(other.name(), &other, design)),
             FrontsCommand::Remove(place) if place < self.fronts.len() => drop(self.fronts.remove(place)),
             FrontsCommand::Remove(_) => {}
         }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::AppState;
 use super::beside::fault;
-use crate::app::Below;
 use crate::app::change::Change;
-use crate::app::given::assess::{Assessed, Assessing, Given, Options, Table, Taking};
+use crate::app::given::assess::{Assessed, Assessing, Given, Table, TableOptions, Taking};
+use crate::app::{Activity, Below};
 use crate::query::{Asked, Shared, State};
 use crate::session::Edit;
 use crate::study::advice::Advice;
@@ -17,16 +17,18 @@ impl AppState {
     /// Shows what a table says of the session on display.
     pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
         self.saving.uses(&file);
-        self.given = Some(Given { file, table: Shared(table.into()), options: Options::default() });
-        self.view_state.below = Some(Below::Given);
+        self.given = Some(Given { file, table: Shared(table.into()), options: TableOptions::default() });
+        self.view_state.below = Some(Below::Table);
         self.view_state.open.dialog = None;
     }
 
     /// Finds what the table on display says of the session's machine. Not during a drag.
     pub(super) fn refresh_given(&mut self) {
-        let given = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Given));
+        let given = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Table));
         match given.and_then(|given| given.asked(self.session.scenario())) {
-            None => self.queries().forget::<Assessing>(),
+            // What is known of it may be shown again.
+            None if self.queries().progress::<Assessing>().is_some() => self.queries().forget::<Assessing>(),
+            None => {}
             Some(_) if self.view_state.gesture.grabbed.is_some() => {}
             Some(asked) => drop(self.queries().ask_beside::<Assessing>(&asked)),
         }
@@ -37,9 +39,7 @@ impl AppState {
         let Asked { last, state } = self.queries().newest::<Assessing>()?;
         match state {
             State::Broken => Some((Arc::new(Err(fault("reading the table").into())), true)),
-            State::Stopped if last.is_none() => {
-                Some((Arc::new(Err("cancelled: another choice asks the table again".into())), true))
-            }
+            State::Stopped if last.is_none() => Some((Arc::new(Err(Activity::Table.cancelled().into())), true)),
             _ => last.map(|last| (last, state == State::Known)),
         }
     }
@@ -72,7 +72,6 @@ impl AppState {
         };
         let edit = edit.ok_or("the table says nothing new of the session as it is")?;
         self.change(Change::Edit(edit));
-        self.session.end_gesture();
         Ok(())
     }
 }

@@ -58,7 +58,7 @@ impl AppState {
         if self.view_state.below == Some(Below::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
         }
-        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Given)) {
+        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Table)) {
             let found = self.assessed();
             let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
             let shown = given::Shown { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };

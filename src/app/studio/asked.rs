@@ -14,6 +14,7 @@ use crate::session::Edit;
 use crate::session::design::Brief;
 use crate::session::scenario::{Scenario, Value};
 use crate::settings::change::DEFAULT;
+use crate::settings::word::{Choice, Words};
 
 /// Draws it.
 pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, commands: &mut Vec<Command>) {
@@ -158,16 +159,15 @@ fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced
 
 /// What it costs to move the centre of mass of each link, as the paper has it.
 fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
-    const PRESETS: [(Preset, &str); 3] =
-        [(Preset::MinimumNorm, "all alike"), (Preset::Table1, "those of Table I"), (Preset::AsPrinted, "as printed")];
     let path = "design.penalties";
     ui.horizontal(|ui| {
         ui.label("penalties p").on_hover_text(tip_of(path));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let shown = PRESETS.iter().find(|(preset, _)| *preset == now).map_or("", |(_, words)| *words);
+            let shown = now.words().screen;
             let list = egui::ComboBox::from_id_salt("penalties").selected_text(shown).width(172.0).show_ui(ui, |ui| {
-                for (preset, words) in PRESETS {
-                    if ui.selectable_label(preset == now, words).clicked() {
+                for preset in Preset::ALL {
+                    let Words { screen, meaning, .. } = preset.words();
+                    if ui.selectable_label(*preset == now, screen).on_hover_text(meaning).clicked() {
                         once(commands, Edit::set(path, preset.name()));
                     }
                 }

@@ -301,6 +301,18 @@ pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machin
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
+/// Stops what is being found for a view that is left.
+pub fn leave(queries: &Queries) {
+    fn stop<Q: Query>(queries: &Queries) {
+        if queries.progress::<Q>().is_some() {
+            queries.forget::<Q>();
+        }
+    }
+    stop::<FrontSearch>(queries);
+    stop::<Fronts>(queries);
+    stop::<Telling>(queries);
+}
+
 /// What a front is asked for with.
 fn asked(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
     (bare.clone(), brief.weighing(bare), POINTS)

@@ -103,7 +103,7 @@ fn found<'a>(
     ui.label(RichText::new(format!("{}: {added} kg added", lengths.join(", "))).font(plain(12.5)));
     let [starts, alike] = found.starts;
     let proof = format!(
-        "The best of {}; {alike} of {} ended there. Not certified, as its counterweights are.",
+        "The best of {}; {alike} of {} ended there. Its counterweights are proved the least; its lengths are the best found.",
         counted(found.machines, "machine"),
         counted(starts, "start")
     );

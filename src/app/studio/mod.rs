@@ -23,7 +23,7 @@ use super::theme::{colour, plain};
 use super::{Command, FileDialog, Purpose, ViewChange, ViewState};
 use crate::session::Session;
 
-pub use facts::{Facts, of_front};
+pub use facts::{Facts, leave, of_front};
 
 /// How wide the panels are made by themselves, points.
 const TABLE: f32 = 336.0;

@@ -17,11 +17,11 @@ use crate::settings::key::{Holds, Key};
 pub(super) struct Row {
     pub key: Key,
     pub at: At,
-    /// Whether it has an effect on a machine, which may be pushed at its end effector; none: always.
+    /// Whether it has an effect on a machine, and whether that is pushed at its end effector decides; none: always.
     pub uses: Option<fn(&MachineSpec, bool) -> bool>,
 }
 
-/// Where a value stands, of the body of so much in the list of its kind.
+/// Where a value stands: of the i-th body of its kind.
 pub(super) enum At {
     Number(fn(&MachineSpec, usize) -> f64, fn(&mut MachineSpec, usize) -> &mut f64),
     Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
@@ -278,7 +278,7 @@ impl Row {
     }
 }
 
-/// Checks all numbers of a body: that of so much in the list of its kind, by the first word of its keys.
+/// Checks all numbers of the i-th body of a kind, which is the first word of its keys.
 pub(super) fn check_body(part: &str, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
     ROWS.iter().filter(|row| row.key.part() == part).try_for_each(|row| row.check(spec, i))
 }

@@ -111,6 +111,9 @@ impl Brief {
         if let Some(name) = key.strip_prefix("ratio.") {
             return spec.drives.iter().any(|drive| drive.name == name && is_geared(drive));
         }
+        if !self.uses(key) {
+            return false;
+        }
         match key.strip_prefix("hold.").and_then(body_of) {
             Some(("link", name)) => is_link(name),
             Some((_, number)) => number.parse().is_ok_and(|n: usize| (1..=spec.counterweights.len()).contains(&n)),

@@ -246,8 +246,7 @@ impl Scenario {
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
             Some(("design", key)) => self.design.serves(key, &self.machine),
-            Some(("payload", _)) => self.machine.uses(path, self.is_pushed()),
-            _ => true,
+            _ => self.machine.uses(path, self.is_pushed()),
         };
         if used { None } else { key_of(path).map(|key| key.when) }
     }

@@ -28,9 +28,10 @@ pub(super) fn held(
             let all = serves(trace::common_b(map, curves, ASKED));
             // Where no b serves all points, the first one's gives the reason.
             let first = map.reach(samples.point(0)).ok().and_then(serves);
+            let what = if all.is_some() { "all of the path" } else { "its first point" };
             let range = all.or(first).unwrap_or([0.0; 2]);
             let b = 0.5 * (range[0] + range[1]);
-            (b, format!("b is the middle of what reaches all of the path, {} rad", between(range[0], range[1])))
+            (b, format!("b is the middle of what reaches {what}, {} rad", between(range[0], range[1])))
         }
     };
     let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
