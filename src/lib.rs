@@ -130,7 +130,7 @@
 //!   reads arguments, asks and prints: what is computed is a query or an answer of the library (most in `study/`), which
 //!   the command serialises and the window can show.
 //! * **An edit**: a variant in `session/edit.rs`, with its check and its title, and what it does and what undoes it in
-//!   `session/run.rs`. Look at all `matches!` on edits. Saving and replay follow; a row among the sittings of the tests has it
+//!   `session/run.rs`. Look at all `matches!` on edits. Saving and replay follow; a row in `../tests/session/sitting.rs` has it
 //!   drawn at random.
 //! * **Something that the window can be asked for**: of the session a variant of `SessionCommand`, of how it is shown one
 //!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
@@ -145,7 +145,7 @@
 //!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
-//! * **What a command prints** is kept in `tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `.ci/run` is what
+//! * **What a command prints** is kept in `../tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `../.ci/run` is what
 //!   has to pass.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
