@@ -77,6 +77,11 @@ impl Purpose {
 }
 
 impl FileDialog {
+    /// To open a file.
+    pub fn opening() -> Self {
+        Self { purpose: Purpose::Open, path: String::new() }
+    }
+
     /// A file name that is free, for a dialog to start from.
     pub fn suggest(session: &Session, purpose: Purpose) -> Self {
         let own = &session.scenario().name;

@@ -6,11 +6,11 @@ mod measured;
 mod motion;
 mod parts;
 
-use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, unit};
-use super::{Command, Switch, ViewChange, ViewState};
+use super::{Command, FileDialog, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::study::advice::Advice;
 use crate::study::import::Keep;
@@ -18,7 +18,9 @@ use assess::{Assessed, TableContent};
 pub(super) use parts::Shown;
 use parts::{column, worded};
 
+/// How high it is at first, and at least.
 const HEIGHT: f32 = 268.0;
+const LEAST: f32 = 150.0;
 /// How wide the column is of what is asked, points.
 const ASKED: f32 = 250.0;
 
@@ -39,7 +41,8 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = HEIGHT.min(0.45 * ui.available_height());
-    Panel::bottom("given").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
+    let most = (0.7 * ui.available_height()).max(LEAST);
+    Panel::bottom("given").default_size(height).size_range(LEAST..=most).resizable(true).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             let title = match shown.content() {
                 Some(TableContent::Measurement) => "Measured machine",
@@ -51,6 +54,9 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
                 if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
                     commands.push(ViewChange::Switch(Switch::Table, false).into());
                 }
+                if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
+                    commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
+                }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
                     ui.add(Label::new(words).truncate());
@@ -58,17 +64,19 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
             });
         });
         ui.add_space(2.0);
-        ui.horizontal_top(|ui| {
-            column(ui, "asked", ASKED, |ui| asked(ui, &p, &shown, commands));
-            let rest = ui.available_width();
-            match shown.answer {
-                None => {}
-                Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
-                Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
-                    motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+        ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
+            ui.horizontal_top(|ui| {
+                column(ui, "asked", ASKED, |ui| asked(ui, &p, &shown, commands));
+                let rest = ui.available_width();
+                match shown.answer {
+                    None => {}
+                    Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
+                    Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
+                        motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+                    }
+                    Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
                 }
-                Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
-            }
+            });
         });
     });
 }

@@ -152,8 +152,16 @@ pub fn search(
     go_on: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Found, NoLengths> {
     check(machine, asked)?;
-    let mut seen =
-        Seen { machine, asked, go_on, stopped: false, machines: 0, ended: 0, best: None, nearest: f64::INFINITY };
+    let mut seen = Seen {
+        machine,
+        asked,
+        go_on,
+        stopped: false,
+        machines: 0,
+        ended: 0,
+        best: None,
+        nearest_misses: [f64::INFINITY; 2],
+    };
     let present = asked.lengths.iter().map(|free| share(free.ends, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
     let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
@@ -171,7 +179,7 @@ pub fn search(
     let Some((value, lengths, placed)) = seen.best else {
         let why = match seen.asked.at(machine, &present) {
             Err(why) => why,
-            Ok(_) => format!("the nearest is {:.4} m of reach or m² of workspace short", seen.nearest),
+            Ok(_) => short(seen.nearest_misses),
         };
         return Err(NoLengths::None { machines, why });
     };
@@ -266,9 +274,9 @@ impl LengthSearch {
     }
 
     /// Counterweights for other lengths, and what misses; or why there are none.
-    fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, f64), String> {
+    fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, [f64; 2]), String> {
         let (lengths, changed) = self.changed(machine, shares)?;
-        let mut misses = (self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0);
+        let mut misses = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
         let weighing = match self.anywhere {
             true => Weighing { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() },
             false => self.weighing.clone(),
@@ -276,10 +284,17 @@ impl LengthSearch {
         let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
         if let Some(least) = self.least_workspace {
             let area = plane_area(&placed.machine).unwrap_or(0.0);
-            misses += (least - area).max(0.0);
+            misses[1] = (least - area).max(0.0);
         }
         Ok((lengths, placed, misses))
     }
+}
+
+/// What the nearest machine misses, in words.
+fn short([reach, area]: [f64; 2]) -> String {
+    let missing = [(reach, "m", "reach"), (area, "m²", "workspace")];
+    let missing = missing.iter().filter(|(by, ..)| *by > 0.0).map(|(by, unit, of)| format!("{by:.4} {unit} of {of}"));
+    format!("the nearest is {} short", missing.collect::<Vec<_>>().join(" and "))
 }
 
 /// Places that go to the ends of their links, or as far behind them, go on to do so when these are longer or shorter.
@@ -301,15 +316,15 @@ struct Seen<'a> {
     machines: usize,
     ended: usize,
     best: Option<(f64, Vec<f64>, Placed)>,
-    /// The least that any misses of reach and workspace together.
-    nearest: f64,
+    /// What misses of reach, m, and of workspace, m², where both together are least.
+    nearest_misses: [f64; 2],
 }
 
 impl Seen<'_> {
     fn value(&mut self, shares: &[f64]) -> f64 {
         self.machines += 1;
         let value = match self.asked.at(self.machine, shares) {
-            Ok((lengths, placed, 0.0)) => {
+            Ok((lengths, placed, [0.0, 0.0])) => {
                 let value = placed.value;
                 if self.best.as_ref().is_none_or(|(best, ..)| value < *best) {
                     self.best = Some((value, lengths, placed));
@@ -317,8 +332,11 @@ impl Seen<'_> {
                 value
             }
             Ok((.., misses)) => {
-                self.nearest = self.nearest.min(misses);
-                NO_ANSWER * (1.0 + misses)
+                let all = misses.iter().sum::<f64>();
+                if all < self.nearest_misses.iter().sum::<f64>() {
+                    self.nearest_misses = misses;
+                }
+                NO_ANSWER * (1.0 + all)
             }
             Err(_) => f64::INFINITY,
         };

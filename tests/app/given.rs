@@ -108,11 +108,13 @@ fn a_measured_machine_is_taken_as_it_is_and_mended() {
     h.run_steps(4);
     let all = Inertia::of(&built.machine).force_residual();
     assert!((residual(&h) - all).abs() < 1e-6, "{} of {all}", residual(&h));
-    // The machine as measured does what was measured, and what mends it is still offered.
-    assert!(h.query_by_label("g 2 along is off").is_none());
-    h.get_by_label("Take the change").click();
-    h.run_steps(4);
-    assert!(residual(&h) < 1e-4, "{}", residual(&h));
+    // The measurement is of the machine as it was: what mends it is still offered, and is taken once.
+    assert!(h.query_by_label("g 2 along is off").is_some());
+    for _ in 0..2 {
+        h.get_by_label("Take the change").click();
+        h.run_steps(4);
+        assert!(residual(&h) < 1e-4, "{}", residual(&h));
+    }
     assert!(!session(&h).scenario().machine.spec().counterweights.is_empty());
     for _ in 0..2 {
         h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);

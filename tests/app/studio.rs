@@ -404,9 +404,9 @@ fn fronts_are_kept_and_stand_beside_each_other() {
     h.run_steps(3);
     h.get_by_label("two-drive").click();
     h.run_steps(4);
-    h.get_by_label("Remove the front of nine-link-bare").click();
+    h.get_by_label("Remove the front of nine-link-bare, steel, reach 1.26 m").click();
     h.run_steps(3);
-    assert!(h.query_by_label("Remove the front of nine-link-bare").is_none());
+    assert!(h.query_by_label("Remove the front of nine-link-bare, steel, reach 1.26 m").is_none());
     assert!(h.query_by_label("Remove the front of two-drive").is_some());
 }
 

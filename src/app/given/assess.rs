@@ -1,9 +1,11 @@
 //! [`Assessing`]: the query for what a table of numbers says, of a motion or of a machine that was measured.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::files::table::{SampleTable, Table as Read, motions, samples};
+use crate::mechanics::machine::Machine;
 use crate::planning::curves::Coordinates;
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::session::scenario::Scenario;
@@ -59,6 +61,8 @@ pub struct Given {
     pub table: Shared<Table>,
     /// How it is read, and what is asked of it.
     pub options: TableOptions,
+    /// The machine that a measurement is of: the one on display when the table was opened.
+    pub measured: Shared<Machine>,
 }
 
 /// What a session can take of what a table says.
@@ -77,10 +81,12 @@ pub enum Taking {
 impl Given {
     /// What is asked of it for a session's machine, base and control; its task and its edits do not matter.
     pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
-        let Scenario { name, title, machine, plant, base, control, design, .. } = scenario;
+        let Scenario { machine, plant, base, control, design, .. } = scenario;
+        let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let scenario = Scenario {
-            name: name.clone(),
-            title: title.clone(),
+            // What is proposed goes by the name of the table.
+            name: part(self.file.file_stem()),
+            title: part(self.file.file_name()),
             machine: machine.clone(),
             plant: plant.clone(),
             base: base.clone(),
@@ -89,8 +95,8 @@ impl Given {
             design: design.clone(),
             ..Scenario::builtin("case-3")?
         };
-        let (table, options) = (self.table.clone(), self.options.clone());
-        Some(Asked { table, scenario: Shared(scenario.into()), options })
+        let (table, options, measured) = (self.table.clone(), self.options.clone(), self.measured.clone());
+        Some(Asked { table, scenario: Shared(scenario.into()), measured, options })
     }
 }
 
@@ -101,6 +107,8 @@ pub struct Asked {
     pub table: Shared<Table>,
     /// The machine, its base and its control.
     pub scenario: Shared<Scenario>,
+    /// The machine that a measurement is of.
+    pub measured: Shared<Machine>,
     /// How.
     pub options: TableOptions,
 }
@@ -173,14 +181,14 @@ impl Query for Assessing {
 
 impl Asked {
     fn read(&self) -> Result<Work, Advice> {
-        let Self { table, scenario, options } = self;
+        let Self { table, scenario, options, measured } = self;
         let (Table { name, text }, machine) = (&*table.0, &scenario.0.machine);
         let of = |coordinates| samples(text, name, machine, Some(coordinates), options.gaps).map(Read::Motion);
         let read = match options.content {
             None => Read::of(text, name, machine, options.gaps),
             Some(TableContent::Drives) => of(Coordinates::Drives),
             Some(TableContent::Tip) => of(Coordinates::EndEffector),
-            Some(TableContent::Measurement) => motions(text, name, machine).map(Read::Measurement),
+            Some(TableContent::Measurement) => motions(text, name, &measured.0).map(Read::Measurement),
         };
         match read? {
             Read::Motion(table) => self.import(table),
@@ -203,10 +211,10 @@ impl Asked {
     }
 
     fn trim(&self, motions: Vec<Motion>) -> Work {
-        let Self { scenario, options, .. } = self;
-        let machine = &scenario.0.machine;
+        let Self { scenario, options, measured, .. } = self;
+        let machine = &*measured.0;
         let request = TrimRequest {
-            machine: Shared(machine.clone().into()),
+            machine: measured.clone(),
             recording: Shared(Recording { motions }.into()),
             angles_only: options.angles_only,
             as_given: options.as_given,

@@ -3,7 +3,7 @@
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
 use super::assess::Taking;
-use super::parts::{Shown, column, rows, take, title};
+use super::parts::{Shown, TOLD, column, rows, take, title};
 use crate::app::Command;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::note;
@@ -35,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimme
         }
     };
     column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, &found.report));
-    let rest = ui.available_width();
+    let rest = ui.available_width().max(TOLD);
     column(ui, "change", rest, |ui| {
         change(ui, p, shown, found, commands);
         if let Some(noise) = trimmed.angle_noise {
@@ -108,10 +108,10 @@ fn change(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, found: &Trim, commands: &
     title(ui, p, head, rest);
     ui.horizontal_wrapped(|ui| {
         if mended.is_ok() && !changes.is_empty() {
-            let tip = "Gives the machine of the session these counterweights and numbers: one step to undo";
+            let tip = "The machine of the session becomes the measured one with this change: one step to undo";
             take(ui, ("Take the change", tip), shown, Taking::Change, commands);
         }
-        let tip = "Moves the centres of mass of the links so that the machine does what was measured";
+        let tip = "The machine of the session becomes the measured one as it stands: one step to undo";
         take(ui, ("Take as measured", tip), shown, Taking::Measured, commands);
     });
     match mended {

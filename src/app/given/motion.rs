@@ -6,8 +6,8 @@ use egui::{Align, Grid, Label, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoints};
 
 use super::assess::Taking;
-use super::parts::{GAP, Shown, column, rows, take, title, worded};
-use crate::app::plots::small_axes;
+use super::parts::{GAP, Shown, TOLD, column, rows, take, title, worded};
+use crate::app::plots::{marks, small_axes, spaced};
 use crate::app::study::bare;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name as named, note};
@@ -50,7 +50,7 @@ pub(super) fn show(
         }
     };
     column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, imported));
-    let rest = ui.available_width();
+    let rest = ui.available_width().max(TOLD);
     // What is told comes first where there is no room for both.
     let plot = if rest > 2.0 * MOMENTS { MOMENTS } else { 0.0 };
     let rest = if plot > 0.0 { rest - plot - GAP } else { rest };
@@ -77,21 +77,25 @@ pub(super) fn show(
 
 /// n_B over time of both motions.
 fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
-    title(ui, p, "Base moment n_B", "N m; dashed as given");
+    title(ui, p, "Base moment n_B", "N m over s; dashed as given");
     let given = imported.given.as_ref().map(|given| &given.moment);
     let proposed = imported.proposal.as_ref().map(|proposal| &proposal.account.moment);
     small_axes(ui);
     let height = ui.available_height().max(60.0);
-    let response = bare("moments", p, height).show_axes([true, true]).include_y(0.0).show(ui, |plot| {
-        if let Some(points) = given {
-            let line = Line::new("as given", PlotPoints::from(points.clone())).color(colour(p.reaction)).width(1.4);
-            plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
-        }
-        if let Some(points) = proposed {
-            let line = Line::new("proposed", PlotPoints::from(points.clone())).color(colour(p.zero)).width(1.6);
-            plot.line(line.allow_hover(false));
-        }
-    });
+    let response = bare("moments", p, height)
+        .show_axes([true, true])
+        .include_y(0.0)
+        .x_grid_spacer(move |_| marks(&spaced(0.0, imported.duration), imported.duration))
+        .show(ui, |plot| {
+            if let Some(points) = given {
+                let line = Line::new("as given", PlotPoints::from(points.clone())).color(colour(p.reaction)).width(1.4);
+                plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
+            }
+            if let Some(points) = proposed {
+                let line = Line::new("proposed", PlotPoints::from(points.clone())).color(colour(p.zero)).width(1.6);
+                plot.line(line.allow_hover(false));
+            }
+        });
     named(&response.response, "Base moment over time as given and as proposed, N m");
 }
 
@@ -141,6 +145,7 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, co
         }
         (None, reason) => {
             title(ui, p, "No proposal", "");
+            takes(ui, shown, imported, commands);
             let why = reason.as_ref().map_or_else(|| "there is no motion near it without reactions".into(), worded);
             ink(ui, &why, p.reaction);
         }
@@ -150,17 +155,23 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, co
 
 /// What can be done with both motions.
 fn takes(ui: &mut Ui, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
-    let Some(both) = &imported.scenarios else { return };
+    let Some(as_given) = &imported.as_given else { return };
     ui.horizontal_wrapped(|ui| {
-        let tip = "Makes it the task of the session: one step to undo";
-        take(ui, ("Take the proposal", tip), shown, Taking::Proposal, commands);
+        if imported.scenarios.is_some() {
+            let tip = "Makes it the task of the session: one step to undo";
+            take(ui, ("Take the proposal", tip), shown, Taking::Proposal, commands);
+        }
         let tip = "Makes the motion as it was given the task of the session, to see what it does to the base";
         take(ui, ("Take as given", tip), shown, Taking::AsGiven, commands);
         let tip = "Runs both, and adds them to the runs side by side";
-        if ui.button("Compare both").on_hover_text(tip).clicked() {
+        let proposal = imported.scenarios.as_ref().map(|[proposal, _]| proposal);
+        if let Some(proposal) = proposal
+            && ui.button("Compare both").on_hover_text(tip).clicked()
+        {
             let add = |scenario: &Scenario| ComparisonCommand::Add(Box::new(scenario.clone()));
             commands.push(ViewChange::Switch(Switch::Compare, true).into());
-            commands.extend(both.iter().map(|it| Command::Window(WindowCommand::Comparison(add(it)))));
+            let both = [proposal, as_given];
+            commands.extend(both.map(|it| Command::Window(WindowCommand::Comparison(add(it)))));
         }
     });
     ui.add_space(4.0);

@@ -9,6 +9,9 @@ use crate::picture::scene::palette::Palette;
 use crate::planning::curves::Coordinates;
 use crate::study::advice::{Advice, Remedy};
 
+/// How wide the column is at least that tells what is proposed, points.
+pub(super) const TOLD: f32 = 300.0;
+
 /// Between the columns, points.
 pub(super) const GAP: f32 = 14.0;
 

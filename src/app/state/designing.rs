@@ -3,7 +3,7 @@
 use super::AppState;
 use crate::app::change::Change;
 use crate::app::{FrontsCommand, studio};
-use crate::mechanics::counterweights::Objective;
+use crate::mechanics::counterweights::{MATERIALS, Objective};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::views::ViewKind;
 use crate::query::{Query, Shared};
@@ -41,7 +41,12 @@ impl AppState {
     pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
         let Scenario { machine, design, .. } = self.session.scenario();
         match change {
-            FrontsCommand::Keep => self.fronts.push(FrontOf::of(machine.name(), machine, design)),
+            FrontsCommand::Keep => {
+                let material = MATERIALS.iter().find(|(_, density)| *density == design.density);
+                let material = material.map_or_else(|| format!("{} kg/m³", design.density), |(name, _)| (*name).into());
+                let name = format!("{}, {material}, reach {:.2} m", machine.name(), machine.reach());
+                self.fronts.push(FrontOf::of(name, machine, design));
+            }
             FrontsCommand::Add(other) => self.fronts.push(FrontOf::of(other.name(), &other, design)),
             FrontsCommand::Remove(place) if place < self.fronts.len() => drop(self.fronts.remove(place)),
             FrontsCommand::Remove(_) => {}

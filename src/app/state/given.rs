@@ -11,13 +11,14 @@ use crate::app::{Activity, Below};
 use crate::query::{Asked, Shared, State};
 use crate::session::Edit;
 use crate::study::advice::Advice;
-use crate::study::trim::{Trim, as_measured};
+use crate::study::trim::taken_by;
 
 impl AppState {
     /// Shows what a table says of the session on display.
     pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
         self.saving.uses(&file);
-        self.given = Some(Given { file, table: Shared(table.into()), options: TableOptions::default() });
+        let measured = Shared(Arc::new(self.session.scenario().machine.clone()));
+        self.given = Some(Given { file, table: Shared(table.into()), options: TableOptions::default(), measured });
         self.view_state.below = Some(Below::Table);
         self.view_state.open.dialog = None;
     }
@@ -53,24 +54,23 @@ impl AppState {
         let scenario = self.session.scenario();
         let edit = match found.as_deref() {
             Some(Ok(Assessed::Motion { imported, .. })) => imported.as_ref().as_ref().ok().and_then(|imported| {
-                let [proposal, as_given] = imported.scenarios.as_ref()?;
                 let chosen = match taking {
-                    Taking::Proposal => proposal,
-                    Taking::AsGiven => as_given,
+                    Taking::Proposal => imported.scenarios.as_ref().map(|[proposal, _]| proposal)?,
+                    Taking::AsGiven => imported.as_given.as_ref()?,
                     Taking::Change | Taking::Measured => return None,
                 };
                 Some(Edit::of("task", chosen.task.whole()))
             }),
             Some(Ok(Assessed::Measured(trimmed))) => match (&trimmed.outcome, taking) {
-                (Ok(Trim { mended: Ok(mended), .. }), Taking::Change) => mended.edit(scenario),
-                (Ok(Trim { taken, .. }), Taking::Measured) => {
-                    as_measured(scenario, taken).map_err(|why| why.to_string())?.0
+                (Ok(trim), Taking::Change | Taking::Measured) => {
+                    let measured = self.given.as_ref().map(|given| &*given.measured.0).ok_or("no table is open")?;
+                    taken_by(scenario, measured, trim, taking == Taking::Change)?
                 }
                 _ => None,
             },
             _ => None,
         };
-        let edit = edit.ok_or("the table says nothing new of the session as it is")?;
+        let edit = edit.ok_or("the session has this already")?;
         self.change(Change::Edit(edit));
         Ok(())
     }

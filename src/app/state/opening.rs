@@ -1,13 +1,14 @@
 //! Sessions and files, opened in place of the present session.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::AppState;
 use crate::app::background::{File, Opening};
 use crate::app::change::{NotOpened, Opened, OpenedSession, Source};
 use crate::app::{Activity, Framing, LeftOff, Recovery};
 use crate::mechanics::machine::Machine;
-use crate::query::Ticket;
+use crate::query::{Shared, Ticket};
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
@@ -62,6 +63,10 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
+        // A measurement is of the machine that is opened now.
+        if let Some(given) = &mut self.given {
+            given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
+        }
         self.view_state.framing.iter_mut().for_each(Framing::renew);
         self.background.let_go(old, &self.session);
         self.foresee();

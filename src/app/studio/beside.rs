@@ -1,7 +1,7 @@
 //! Fronts of other machines beside that of the machine on display: kept ones, and built-in machines.
 
 use egui::{Align, Button, Layout, RichText, Ui};
-use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Text};
+use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
 use super::facts::Facts;
 use crate::app::theme::{colour, plain};
@@ -24,6 +24,8 @@ pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
         let places = told.measures();
         let last = places.last().copied().unwrap_or_default();
         let tone = colour(faded(p.ink, 0.6));
+        let ends = Points::new(name.clone(), PlotPoints::from(vec![last])).radius(2.5).color(tone);
+        plot.points(ends.allow_hover(false));
         let line = Line::new(name.clone(), PlotPoints::from(places)).width(1.4).color(tone);
         plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
         let number = RichText::new(format!(" {}", i + 1)).font(plain(11.5));

@@ -24,7 +24,10 @@ fn measures(placed: &Placed) -> [f64; 2] {
     [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
-/// `count` machines, at least two: those of least mass and of least inertia, and between them always one more where two
+/// Measures that differ by less than this share are alike.
+const ROUNDING: f64 = 1e-9;
+
+/// `count` machines, at least two, or two alike where one is best in both: those of least mass and of least inertia, and between them always one more where two
 /// lie furthest apart, halfway in what they differ in most.
 ///
 /// # Errors
@@ -66,6 +69,11 @@ impl Query for FrontSearch {
     }
 }
 
+/// Whether two measures differ by rounding alone.
+fn alike(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+}
+
 impl FrontSearch {
     /// Finds another machine; whether there was one to be found.
     fn one_more(&mut self) -> Result<bool, NoWeights> {
@@ -75,6 +83,8 @@ impl FrontSearch {
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
             known if known >= *count => return Ok(false),
+            // Where one machine is the lightest and the quickest there is no front between.
+            last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => return Ok(false),
             last => {
                 let size =
                     [0, 1].map(|axis| (points[last - 1].0[axis] - points[0].0[axis]).abs().max(f64::MIN_POSITIVE));

@@ -51,6 +51,9 @@ pub struct Imported {
     /// The proposal, and the motion as it was given, both to be carried out.
     #[serde(skip)]
     pub scenarios: Option<[Scenario; 2]>,
+    /// The motion as it was given, to be carried out, whether there is a proposal or not.
+    #[serde(skip)]
+    pub as_given: Option<Scenario>,
 }
 
 /// A second derivative that is uncertain by more than this fraction of its peak is noted.
@@ -84,6 +87,7 @@ impl Imported {
             proposal: None,
             notes: Vec::new(),
             scenarios: None,
+            as_given: None,
         };
         imported.notes = imported.notes_of(motion);
         imported
@@ -133,6 +137,7 @@ impl Imported {
         self.feasible = true;
         self.reason = None;
         self.proposal = Some(proposal);
+        self.as_given = Some(scenarios[1].clone());
         self.scenarios = Some(scenarios);
     }
 }

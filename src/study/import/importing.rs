@@ -114,10 +114,17 @@ fn ways(request: &Request, judge: &Judge, goes_on: Watch<'_>) -> Result<Ways, Im
     }
 }
 
+/// The step of a scenario that carries a motion out, s.
+fn step_of(motion: &GivenMotion, judge: &Judge) -> f64 {
+    motion.samples.spacing().clamp(MIN_STEP, judge.scenario.step.max(MIN_STEP))
+}
+
 impl Trying {
     fn of(motion: &GivenMotion, judge: Judge, Ways { given, candidates }: Ways) -> Self {
         let account = given.as_ref().map(|given| given.account.clone());
         let mut imported = Imported::of(motion, &judge, account);
+        let b = imported.given.as_ref().map_or(0.0, |given| given.b_mean);
+        imported.as_given = judge.as_given(motion, b, step_of(motion, &judge));
         let candidates = candidates.unwrap_or_else(|why| {
             imported.reason = Some(why);
             Vec::new()
@@ -133,7 +140,7 @@ impl Trying {
     /// Simulates the next candidate; whether another one is to be tried.
     fn next(&mut self, motion: &GivenMotion, goes_on: Watch<'_>) -> bool {
         let Some(candidate) = self.candidates.get(self.tried) else { return false };
-        let step = motion.samples.spacing().clamp(MIN_STEP, self.judge.scenario.step.max(MIN_STEP));
+        let step = step_of(motion, &self.judge);
         let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.way);
         let mut own = part(goes_on, [self.share(0.0), self.share(1.0)]);
         match self.judge.proposal(candidate, &scenario, self.given.as_ref(), &mut own) {

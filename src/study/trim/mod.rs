@@ -55,7 +55,7 @@ pub use recording::{Motion, Recording};
 pub use report::{Gain, Number, Suggestion, Tried, TrimReport};
 pub use rows::{Made, Rows};
 pub use taken::{Taken, taken};
-pub use taking::as_measured;
+pub use taking::taken_by;
 pub use trimming::{NoTrim, Trim, TrimRequest, Trimmed, Trimming};
 pub use unknowns::{Part, Unknown, Unknowns};
 pub use way::{Way, free_weights};

@@ -1,25 +1,27 @@
-//! The edits with which a session takes what a measurement says.
+//! The edit with which a session takes what a measurement says.
 
-use super::mend::{Mended, NoMend, identified};
-use super::taken::Taken;
-use crate::mechanics::planar::Vector;
+use super::mend::{identified, trimmed};
+use super::trimming::Trim;
+use crate::mechanics::machine::Machine;
 use crate::session::Edit;
 use crate::session::design::becoming;
 use crate::session::scenario::Scenario;
 
-impl Mended {
-    /// The edit with which the machine of a session is mended; none where nothing changes.
-    pub fn edit(&self, scenario: &Scenario) -> Option<Edit> {
-        becoming(scenario, &self.machine)
-    }
-}
-
-/// The edit with which the machine of a session has what was measured of balance, before anything mends it, none where it
-/// has; and what no such change makes of each line of (7) and (8).
+/// The edit with which the machine of a session becomes the one that was measured, as it stands or with what mends it; none
+/// where it is that. `measured` is the machine as its file has it, of which the measurement was read.
 ///
 /// # Errors
-/// If no such machine can be.
-pub fn as_measured(scenario: &Scenario, taken: &Taken) -> Result<(Option<Edit>, Vec<Vector>), NoMend> {
-    let (machine, misses) = identified(&scenario.machine, taken)?;
-    Ok((becoming(scenario, &machine), misses))
+/// If the session has a machine with other links, or no such machine can be.
+pub fn taken_by(scenario: &Scenario, measured: &Machine, found: &Trim, mends: bool) -> Result<Option<Edit>, String> {
+    let names = |machine: &Machine| machine.links().iter().map(|link| link.name.clone()).collect::<Vec<_>>();
+    if names(measured) != names(&scenario.machine) {
+        return Err(format!("the measurement is of {}: open that machine, then the table again", measured.name()));
+    }
+    let (built, _) = identified(measured, &found.taken).map_err(|why| why.to_string())?;
+    if !mends {
+        return Ok(becoming(scenario, &built));
+    }
+    let mended = found.mended.as_ref().map_err(ToString::to_string)?;
+    let machine = trimmed(&built, measured, mended).map_err(|why| why.to_string())?;
+    Ok(becoming(scenario, &machine))
 }
