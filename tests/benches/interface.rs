@@ -4,13 +4,14 @@
 //! `cargo bench --bench interface` prints median and worst of what the interface does in a repaint: the steps of the
 //! simulation that are due, the drag, all panels and the scene, and their tessellation. It fails if one takes 50 ms. What
 //! the GPU draws is not in it. Before that it prints what one event of a drag takes at its beginning and after a hundred
-//! thousand.
+//! thousand, and what a repaint takes while a machine is designed.
 
 use std::time::{Duration, Instant};
 
 use stillbase::app::jobs::Threads;
 use stillbase::app::{Activity, AppState, SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit};
 
@@ -51,8 +52,26 @@ fn events_of_a_drag() {
     }
 }
 
+/// A centre of mass that is dragged in the design view, with discs that stay clear of pins: the front is sought all the
+/// while, and thousands of cone programs with it.
+fn a_design_that_is_dragged() {
+    let scenario = Scenario::builtin("nine-link-bare").expect("built in");
+    let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(Threads::Background);
+    app_state.carry_out(ViewChange::Kind(ViewKind::Design));
+    app_state.carry_out(SessionCommand::Edit(Edit::set("design.clearance", 0.005)));
+    app_state.carry_out(SessionCommand::EndGesture);
+    let mut repaint = Repaint { ctx: egui::Context::default(), now: 0.0 };
+    let com = |i: u32| Edit::at(&["link", "5", "com"], 0.14 + 0.02 * (0.05 * f64::from(i)).sin());
+    for i in 0..30 {
+        repaint.once(&mut app_state, Some(com(i)));
+    }
+    let all: Vec<Duration> = (30..330).map(|i| repaint.once(&mut app_state, Some(com(i)))).collect();
+    tell("a design with clearance, dragged", &all);
+}
+
 fn main() {
     events_of_a_drag();
+    a_design_that_is_dragged();
     // A hand has led the machine for two minutes and a half: what is changed before that makes all of it again.
     let mut scenario = led(15_000, 10);
     scenario.tolerance.samples = Some(1_000_000);

@@ -89,8 +89,8 @@ impl Given {
             title: part(self.file.file_name()),
             machine: machine.clone(),
             plant: plant.clone(),
-            base: base.clone(),
-            control: control.clone(),
+            base: *base,
+            control: *control,
             step: scenario.step,
             design: design.clone(),
             ..Scenario::builtin("case-3")?
