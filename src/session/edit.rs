@@ -294,6 +294,7 @@ fn counterweights(value: &Value) -> String {
 fn title_of(change: &Table) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
     match task {
+        Some(task) if task.get("samples").is_some_and(Value::is_array) => return "take a given motion".into(),
         Some(task) if ["from", "via", "to"].iter().any(|key| task.contains_key(*key)) => {
             return "move waypoints".into();
         }

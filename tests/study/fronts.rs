@@ -97,5 +97,5 @@ fn progress_rises_from_portion_to_portion() {
         }
     }
     // A portion finds or tells one machine of a front.
-    assert!(shares.len() >= 4 * COUNT && shares.is_sorted() && shares.ends_with(&[1.0]), "{shares:?}");
+    assert!(shares.len() >= 2 * COUNT && shares.is_sorted() && shares.ends_with(&[1.0]), "{shares:?}");
 }

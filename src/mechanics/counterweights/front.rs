@@ -27,8 +27,8 @@ fn measures(placed: &Placed) -> [f64; 2] {
 /// Measures that differ by less than this share are alike.
 const ROUNDING: f64 = 1e-9;
 
-/// `count` machines, at least two, or two alike where one is best in both: those of least mass and of least inertia, and between them always one more where two
-/// lie furthest apart, halfway in what they differ in most.
+/// `count` machines, at least two, or one where that is best in both: those of least mass and of least inertia, and
+/// between them always one more where two lie furthest apart, halfway in what they differ in most.
 ///
 /// # Errors
 /// As [`place`].
@@ -83,8 +83,11 @@ impl FrontSearch {
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
             known if known >= *count => return Ok(false),
-            // Where one machine is the lightest and the quickest there is no front between.
-            last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => return Ok(false),
+            // Where one machine is the lightest and the quickest it is all of the front.
+            last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => {
+                points.truncate(1);
+                return Ok(false);
+            }
             last => {
                 let size =
                     [0, 1].map(|axis| (points[last - 1].0[axis] - points[0].0[axis]).abs().max(f64::MIN_POSITIVE));
