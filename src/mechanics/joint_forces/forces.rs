@@ -55,12 +55,6 @@ impl Forces {
     }
 }
 
-/// What links ask of their roots: force, N, and moment, N m.
-struct Asked {
-    force: [Vector; MAX_PINS],
-    moment: [f64; MAX_PINS],
-}
-
 impl Joints {
     /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that
     /// moves, gravity is g − p̈_B.
@@ -79,53 +73,15 @@ impl Joints {
         around: &Surroundings,
         couple: impl Fn(usize, usize) -> f64,
     ) -> Forces {
-        let mut asked = self.asked(e, qd, qdd, around);
-        // What a pin's friction takes from one side it gives to the other.
-        for &(from, to) in &self.rubbing {
-            let f = couple(self.links[from].drive, self.links[to].drive);
-            asked.moment[from] -= f;
-            asked.moment[to] += f;
-        }
-        // And inwards: with all that hangs on it.
-        for (j, link) in self.links.iter().enumerate().rev() {
-            if let Some(p) = link.parent {
-                let (drive, arm) = link.arm;
-                asked.moment[p] += arm * cross(e[drive], asked.force[j]);
-                asked.force[p] += asked.force[j];
-            }
-        }
-        let mut out = Forces {
-            len: self.pins.len(),
-            forces: [Vector::default(); MAX_PINS],
-            undefined: 0,
-            torque: PerDrive::zeros(self.drives),
-        };
-        self.stators.iter().filter(|stator| stator.before).for_each(|stator| self.lean(stator, qdd, &mut asked));
-        self.close(e, &mut asked, &mut out);
-        self.stators.iter().filter(|stator| !stator.before).for_each(|stator| self.lean(stator, qdd, &mut asked));
-        for (j, link) in self.links.iter().enumerate() {
-            out.forces[link.link] = asked.force[j];
-            if link.driven {
-                out.torque[link.drive] += asked.moment[j];
-            }
-        }
-        for Stator { drive, rotor, .. } in &self.stators {
-            let turning: f64 = rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
-            out.torque[*drive] += rotor.inertia * rotor.rates[*drive] * turning;
-        }
-        out
-    }
-
-    /// What each link asks of its root for itself: from B outwards, by the acceleration of each root less gravity.
-    #[inline]
-    fn asked(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Asked {
         let zero = Vector::default();
         let mut turn = [zero; MAX_DRIVES];
         for k in 0..self.drives {
             turn[k] = Vector::new(-qd[k] * qd[k], qdd[k]) * e[k];
         }
+        let links = &self.links[..];
+        // From B outwards: acceleration of each root less gravity. What each link asks of its root for itself.
         let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
-        for (j, link) in self.links.iter().enumerate() {
+        for (j, link) in links.iter().enumerate() {
             let (drive, arm) = link.arm;
             root[j] = match link.parent {
                 Some(p) => root[p] + turn[drive] * arm,
@@ -138,59 +94,81 @@ impl Joints {
                 moment[j] -= along * cross(e[link.drive], around.force);
             }
         }
-        Asked { force, moment }
-    }
-
-    /// A motor in a joint leans on the link that carries it; its rotor takes of both what it wants to turn.
-    #[inline]
-    fn lean(&self, stator: &Stator, qdd: &PerDrive, asked: &mut Asked) {
-        let turned = self.links.iter().zip(&asked.moment).filter(|(l, _)| l.driven && l.drive == stator.drive);
-        let rotor: f64 = stator.rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
-        let whole = turned.map(|(_, m)| m).sum::<f64>() + stator.rotor.inertia * rotor;
-        if let Some(link) = stator.link {
-            asked.moment[link] += whole;
+        // What a pin's friction takes from one side it gives to the other.
+        for &(from, to) in &self.rubbing {
+            let f = couple(links[from].drive, links[to].drive);
+            moment[from] -= f;
+            moment[to] += f;
         }
-    }
-
-    /// Forces of the pins that close loops, in the order in which they can be found.
-    #[inline]
-    fn close(&self, e: &Units, asked: &mut Asked, out: &mut Forces) {
+        // And inwards: with all that hangs on it.
+        for (j, link) in links.iter().enumerate().rev() {
+            if let Some(p) = link.parent {
+                let (drive, arm) = link.arm;
+                moment[p] += arm * cross(e[drive], force[j]);
+                force[p] += force[j];
+            }
+        }
+        // A motor in a joint leans on the link that carries it; its rotor takes of both what it wants to turn.
+        let lean = |stator: &Stator, moment: &mut [f64]| {
+            let turned = links.iter().zip(&*moment).filter(|(l, _)| l.driven && l.drive == stator.drive);
+            let rotor: f64 = stator.rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
+            let asked = turned.map(|(_, m)| m).sum::<f64>() + stator.rotor.inertia * rotor;
+            if let Some(link) = stator.link {
+                moment[link] += asked;
+            }
+        };
+        self.stators.iter().filter(|stator| stator.before).for_each(|stator| lean(stator, &mut moment));
+        let mut out = Forces {
+            len: self.pins.len(),
+            forces: [zero; MAX_PINS],
+            undefined: 0,
+            torque: PerDrive::zeros(self.drives),
+        };
+        let mut apply = |c: usize, lambda: Vector, force: &mut [Vector], moment: &mut [f64]| {
+            let closure = &self.closures[c];
+            out.forces[closure.pin] = lambda;
+            for &(j, w) in &closure.levers {
+                moment[j] -= w * cross(e[links[j].drive], lambda);
+            }
+            for &(j, sense) in &closure.carried {
+                force[j] -= lambda * sense;
+            }
+        };
         for step in &self.steps {
             match step {
                 SolveStep::Pair { closure, rows: [(i, v), (j, w)] } => {
-                    let (ek, el) = (e[self.links[*i].drive], e[self.links[*j].drive]);
+                    let (ek, el) = (e[links[*i].drive], e[links[*j].drive]);
                     let mut sine = cross(ek, el);
                     if sine.abs() < FLAT {
                         out.undefined |= self.closures[*closure].reaches;
                         sine = FLAT.copysign(sine);
                     }
-                    let lambda = (el * (asked.moment[*i] / v) - ek * (asked.moment[*j] / w)) / sine;
-                    self.bear(*closure, lambda, e, asked, out);
+                    let lambda = (el * (moment[*i] / v) - ek * (moment[*j] / w)) / sine;
+                    apply(*closure, lambda, &mut force, &mut moment);
                 }
                 SolveStep::Together { closures, rows } => {
-                    let (lambdas, regular) = together(&self.links, &self.closures, closures, rows, e, &asked.moment);
+                    let (lambdas, regular) = together(links, &self.closures, closures, rows, e, &moment);
                     for (&c, &lambda) in closures.iter().zip(&lambdas) {
                         if !regular {
                             out.undefined |= self.closures[c].reaches;
                         }
-                        self.bear(c, lambda, e, asked, out);
+                        apply(c, lambda, &mut force, &mut moment);
                     }
                 }
             }
         }
-    }
-
-    /// Lets the pin of a loop bear a force, N, and takes it from what is asked of the others.
-    #[inline]
-    fn bear(&self, c: usize, lambda: Vector, e: &Units, asked: &mut Asked, out: &mut Forces) {
-        let closure = &self.closures[c];
-        out.forces[closure.pin] = lambda;
-        for &(j, w) in &closure.levers {
-            asked.moment[j] -= w * cross(e[self.links[j].drive], lambda);
+        self.stators.iter().filter(|stator| !stator.before).for_each(|stator| lean(stator, &mut moment));
+        for (j, link) in links.iter().enumerate() {
+            out.forces[link.link] = force[j];
+            if link.driven {
+                out.torque[link.drive] += moment[j];
+            }
         }
-        for &(j, sense) in &closure.carried {
-            asked.force[j] -= lambda * sense;
+        for Stator { drive, rotor, .. } in &self.stators {
+            let turning: f64 = rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
+            out.torque[*drive] += rotor.inertia * rotor.rates[*drive] * turning;
         }
+        out
     }
 
     /// f_B, N: what the links at B exert on the base.

@@ -278,7 +278,7 @@ impl Row {
     }
 }
 
-/// Checks all numbers of the i-th body of a kind, which is the first word of its keys.
-pub(super) fn check_body(part: &str, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
-    ROWS.iter().filter(|row| row.key.part() == part).try_for_each(|row| row.check(spec, i))
+/// The rows of a kind of body, which is the first word of their keys.
+pub(super) fn rows_of(part: &str) -> Vec<&'static Row> {
+    ROWS.iter().filter(|row| row.key.part() == part).collect()
 }

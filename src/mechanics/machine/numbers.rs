@@ -1,34 +1,40 @@
 //! [`check_numbers`]: that every number of a description is one, and lies where it may.
 
 use super::error::{MachineError, Place};
-use super::keys::check_body;
+use super::keys::rows_of;
 use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
 use crate::settings::range::Want;
 
 /// Refuses the first number that is none, or out of the range of its key.
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
-    check_body("gravity", spec, 0)?;
+    let check = |part: &str, bodies: usize| {
+        let rows = rows_of(part);
+        (0..bodies).try_for_each(|i| rows.iter().try_for_each(|row| row.check(spec, i)))
+    };
+    check("gravity", 1)?;
     for (name, &value) in &spec.lengths {
         within(LENGTH, value, || Place::new(&[&"lengths", name]))?;
     }
-    check_body("payload", spec, 0)?;
+    check("payload", 1)?;
+    let rows = rows_of("drive");
     for (i, drive) in spec.drives.iter().enumerate() {
-        check_body("drive", spec, i)?;
+        rows.iter().try_for_each(|row| row.check(spec, i))?;
         if let Some(rotor) = drive.rotor.filter(|rotor| rotor.ratio.abs() < MIN_POSITIVE) {
             let place = Place::new(&[&"drive", &i, &"rotor", &"ratio"]);
             let want = Want::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
             return Err(MachineError::OutOfRange { place, value: rotor.ratio, want });
         }
     }
+    let rows = rows_of("link");
     for (i, link) in spec.links.iter().enumerate() {
-        check_body("link", spec, i)?;
+        rows.iter().try_for_each(|row| row.check(spec, i))?;
         if !matches!(link.direction, -1 | 1) {
             let place = Place::new(&[&"link", &i, &"direction"]);
             return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
         }
     }
-    (0..spec.counterweights.len()).try_for_each(|i| check_body("counterweight", spec, i))?;
+    check("counterweight", spec.counterweights.len())?;
     for (i, angle) in spec.angles.iter().enumerate() {
         for (key, value) in [("offset", Some(angle.offset)), ("min", angle.min), ("max", angle.max)] {
             value.map_or(Ok(()), |value| within(ANGLE, value, || Place::new(&[&"angle", &i, &key])))?;
