@@ -165,6 +165,13 @@ impl Queries {
         self.slot::<Q, _>(Slot::stop);
     }
 
+    /// Gives up work that is under way; what is known stays, and what is not is begun anew when it is asked about.
+    pub fn give_up<Q: Query>(&self) {
+        if self.progress::<Q>().is_some() {
+            self.forget::<Q>();
+        }
+    }
+
     /// Stops work and forgets the answer.
     pub fn forget<Q: Query>(&self) {
         self.slots().remove(&TypeId::of::<Slot<Q>>());

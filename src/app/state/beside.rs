@@ -42,9 +42,7 @@ impl AppState {
     pub(super) fn outline(&mut self) -> bool {
         let Some(space) = self.views.unoutlined() else {
             // What was being outlined is wanted no more.
-            if self.queries().progress::<Outlining>().is_some() {
-                self.queries().forget::<Outlining>();
-            }
+            self.queries().give_up::<Outlining>();
             return false;
         };
         if self.queries().ask_beside::<Outlining>(&Shared(space)).known().is_none() {

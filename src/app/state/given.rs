@@ -25,12 +25,12 @@ impl AppState {
 
     /// Finds what the table on display says of the session's machine. Not during a drag.
     pub(super) fn refresh_given(&mut self) {
+        if self.view_state.gesture.grabbed.is_some() {
+            return;
+        }
         let given = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Table));
         match given.and_then(|given| given.asked(self.session.scenario())) {
-            // What is known of it may be shown again.
-            None if self.queries().progress::<Assessing>().is_some() => self.queries().forget::<Assessing>(),
-            None => {}
-            Some(_) if self.view_state.gesture.grabbed.is_some() => {}
+            None => self.queries().give_up::<Assessing>(),
             Some(asked) => drop(self.queries().ask_beside::<Assessing>(&asked)),
         }
     }

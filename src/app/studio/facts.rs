@@ -303,14 +303,9 @@ pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machin
 
 /// Stops what is being found for a view that is left.
 pub fn leave(queries: &Queries) {
-    fn stop<Q: Query>(queries: &Queries) {
-        if queries.progress::<Q>().is_some() {
-            queries.forget::<Q>();
-        }
-    }
-    stop::<FrontSearch>(queries);
-    stop::<Fronts>(queries);
-    stop::<Telling>(queries);
+    queries.give_up::<FrontSearch>();
+    queries.give_up::<Fronts>();
+    queries.give_up::<Telling>();
 }
 
 /// What a front is asked for with.

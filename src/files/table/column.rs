@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::mechanics::machine::Machine;
 use crate::settings::range::{clipped, shortened};
 
 /// Words for units, and what one of them is in SI units.
@@ -61,6 +62,11 @@ pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     };
     let (name, unit) = bracketed('(', ')').or_else(|| bracketed('[', ']'))?;
     Some((name, Some(unit).filter(|unit| !unit.is_empty())))
+}
+
+/// The columns of a machine's drive angles, as a header has them.
+pub(super) fn angles(machine: &Machine) -> String {
+    (1..=machine.drives()).map(|k| format!("q{k}")).collect::<Vec<_>>().join(",")
 }
 
 /// Names as they stand.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::column::angles;
 use super::error::TableError;
 use super::measured::{feels, motions_or};
 use super::reader::Reader;
@@ -50,7 +51,6 @@ impl Table {
 }
 
 fn head_wanted(machine: &Machine) -> String {
-    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
-    let q = drives.join(",");
+    let q = angles(machine);
     format!("a header t,{q} (rad) or t,x,y (m) of a motion, or t,{q},fx,fy,nz (s, rad, N, N m) of a measurement")
 }

@@ -1,7 +1,7 @@
 //! Motions of a built machine that were measured, with what its base felt.
 
 use super::angle::{GAP_FACTOR, continuous_angle};
-use super::column::{ANGLE, Column, DEGREE, TIME, Units, named, no_column, unit_in_brackets};
+use super::column::{ANGLE, Column, DEGREE, TIME, Units, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
 use super::reader::Reader;
 use crate::mechanics::machine::Machine;
@@ -112,8 +112,7 @@ pub(super) fn feels(head: &csv::StringRecord) -> bool {
 }
 
 fn head_wanted(machine: &Machine) -> String {
-    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
-    format!("a header t,{},fx,fy,nz (s, rad, N, N m)", drives.join(","))
+    format!("a header t,{},fx,fy,nz (s, rad, N, N m)", angles(machine))
 }
 
 /// Rows of one motion, and the lines that they stand in.

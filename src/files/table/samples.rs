@@ -1,7 +1,7 @@
 //! A motion given by samples over time: of the drive angles, or of the end effector.
 
 use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
-use super::column::{ANGLE, Column, TIME, Units, named, no_column, unit_in_brackets};
+use super::column::{ANGLE, Column, TIME, Units, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
 use super::reader::Reader;
 use crate::mechanics::machine::Machine;
@@ -95,8 +95,7 @@ pub(super) fn samples_or(
 }
 
 fn head_wanted(machine: &Machine) -> String {
-    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
-    format!("a header t,{} (rad) or t,x,y (m)", drives.join(","))
+    format!("a header t,{} (rad) or t,x,y (m)", angles(machine))
 }
 
 struct Columns {

@@ -78,21 +78,25 @@ impl Session {
         self.end_gesture();
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
-        let done = match (&change.inverse, change.beside) {
+        self.go_to(&change, change.inverse.as_ref(), watch)?;
+        self.undo.pop();
+        self.redo.push(Arc::new(Change { before: after, ..Change::clone(&change) }));
+        Ok(())
+    }
+
+    /// What was before a change or after it: in motion by an edit at the present step, paused or at rest by restoring it.
+    fn go_to(&mut self, change: &Change, edit: Option<&Edit>, watch: Watch<'_>) -> Result<(), Refusal> {
+        match (edit, change.beside) {
             (_, Some(kept)) => {
                 self.document.keep_as(&change.before, kept);
                 Ok(())
             }
             (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
-            (Some(inverse), None) if self.is_running() && !change.plans() => {
-                self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
+            (Some(edit), None) if self.is_running() && !change.plans() => {
+                self.append(edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
             _ => self.return_to(&change.before, watch),
-        };
-        done?;
-        self.undo.pop();
-        self.redo.push(Arc::new(Change { before: after, ..Change::clone(&change) }));
-        Ok(())
+        }
     }
 
     /// Brings back what undo took.
@@ -111,18 +115,7 @@ impl Session {
         self.end_gesture();
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
-        let done = match (&change.edit, change.beside) {
-            (_, Some(kept)) => {
-                self.document.keep_as(&change.before, kept);
-                Ok(())
-            }
-            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
-            (Some(timed), None) if self.is_running() && !change.plans() => {
-                self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
-            }
-            _ => self.return_to(&change.before, watch),
-        };
-        done?;
+        self.go_to(&change, change.edit.as_ref().map(|timed| &timed.edit), watch)?;
         self.redo.pop();
         self.undo.push(Arc::new(Change { before, ..Change::clone(&change) }));
         Ok(())
