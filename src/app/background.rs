@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::change::Change;
 use super::given::assess::Assessing;
+use super::waiting::{Drawing, Waiting};
 use super::{Activity, SessionCommand};
 use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
 use crate::session::scenario::Scenario;
@@ -97,6 +98,8 @@ const UNSPOKEN: u32 = 6;
 /// What is under way, who does it, and what it changes in `A` once it has ended.
 pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
+    /// Where work waits until the window is drawn; none if it is done at once.
+    waiting: Option<Arc<Waiting>>,
     /// What is derived of the session.
     pub queries: Queries,
     /// Woken when a job has ended.
@@ -124,6 +127,7 @@ impl<A> Default for Background<A> {
     fn default() -> Self {
         Self {
             workers: Arc::new(AtOnce),
+            waiting: None,
             queries: Queries::default(),
             ctx: None,
             running: Vec::new(),
@@ -136,8 +140,15 @@ impl<A> Default for Background<A> {
 impl<A> Background<A> {
     /// Has everything done by somebody from now on.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
-        self.workers = Arc::new(workers);
+        let waiting = Arc::new(Waiting::new(workers));
+        self.workers = waiting.clone();
+        self.waiting = Some(waiting);
         self.queries.hire(self.workers.clone());
+    }
+
+    /// The window is drawn from now on.
+    pub fn drawing(&self) -> Drawing {
+        Drawing::begin(self.waiting.as_ref())
     }
 
     /// Repaints this whenever a job has ended.
@@ -219,6 +230,9 @@ impl<A> Background<A> {
 
     /// Waits for the end of such work; nothing is done then.
     pub fn wait_for(&mut self, activity: Activity) {
+        if let Some(waiting) = &self.waiting {
+            waiting.open();
+        }
         self.running.iter_mut().filter(|(own, _)| *own == activity).for_each(|(_, work)| work.wait());
     }
 

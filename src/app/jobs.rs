@@ -1,12 +1,13 @@
 //! [`Threads`]: who does the work of jobs where there are threads.
 
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, SendError, Sender, channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use self::priority::{step_back, thread};
-use crate::query::Workers;
+use crate::query::{Work, Workers};
 
-/// Each job on a thread of its own; where none can be had, at once.
+/// Each job that runs has a thread to itself; where none can be had, it is done at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
     /// The window goes first where there are fewer processors than work.
@@ -19,25 +20,23 @@ pub enum Threads {
 const UNSEEN: Duration = Duration::from_millis(4);
 
 impl Workers for Threads {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
-        let steps_back = *self == Self::Background;
-        on_thread(Box::new(move || {
-            if steps_back {
-                step_back(None);
-            }
-            work();
-        }));
+    fn start(&self, work: Work) {
+        match self {
+            Self::Background => PATIENT.start(work),
+            Self::Prompt => on_thread(work, |work| work()),
+        }
     }
 
     /// Work that turns out to be long lets the window go first from then on.
-    fn start_short(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start_short(&self, work: Work) {
         let (told, ended) = channel();
-        on_thread(Box::new(move || {
+        let work = Box::new(move || {
             // The other end may wait no more.
             let _ = told.send(thread());
             work();
             let _ = told.send(None);
-        }));
+        });
+        on_thread(work, |work| work());
         let thread = ended.recv().unwrap_or_default();
         if ended.recv_timeout(UNSEEN) == Err(RecvTimeoutError::Timeout) && *self == Self::Background {
             step_back(thread);
@@ -45,18 +44,59 @@ impl Workers for Threads {
     }
 }
 
-/// Where no thread can be had, at once.
-fn on_thread(work: Box<dyn FnOnce() + Send>) {
+/// Has it done on a new thread in this way; where none can be had, it is done at once.
+fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
     // A thread that cannot start takes the work with it, so the work waits here for whoever can do it.
-    let (hand, take) = channel::<Box<dyn FnOnce() + Send>>();
+    let (hand, take) = channel::<Work>();
     let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
         if let Ok(work) = take.recv() {
-            work();
+            way(work);
         }
     });
     match thread {
         Ok(_) => drop(hand.send(work)),
         Err(_) => work(),
+    }
+}
+
+/// Threads that let the window go first. They stay for the next job: a new thread begins as urgent as the window, and
+/// would hold it up before it steps back.
+static PATIENT: Pool = Pool { idle: Mutex::new(Vec::new()) };
+
+/// Threads without work, the one that worked last at the end.
+struct Pool {
+    idle: Mutex<Vec<Sender<Work>>>,
+}
+
+impl Pool {
+    /// Hands work to an idle thread, or to a new one.
+    fn start(&'static self, work: Work) {
+        let idle = self.idle().pop();
+        let refused = match idle {
+            Some(idle) => idle.send(work).err(),
+            None => Some(SendError(work)),
+        };
+        if let Some(SendError(work)) = refused {
+            on_thread(work, |work| self.run(work));
+        }
+    }
+
+    /// Does this work and all that is handed over afterwards. A panic ends the thread, and nothing else.
+    fn run(&self, mut work: Work) {
+        step_back(None);
+        loop {
+            work();
+            let (hand, take) = channel();
+            self.idle().push(hand);
+            match take.recv() {
+                Ok(next) => work = next,
+                Err(_) => return,
+            }
+        }
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Sender<Work>>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

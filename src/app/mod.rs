@@ -54,6 +54,7 @@ mod tour;
 mod view_change;
 mod view_state;
 mod viewport;
+mod waiting;
 mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
@@ -74,3 +75,4 @@ pub use said::{RefusedEdit, Said};
 pub use state::AppState;
 use view_state::set_b;
 pub use view_state::{Framing, ViewState};
+pub use waiting::Drawing;

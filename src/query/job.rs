@@ -5,13 +5,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+/// What a job does.
+pub type Work = Box<dyn FnOnce() + Send>;
+
 /// Who does the work.
 pub trait Workers {
     /// Has it done, at once or beside.
-    fn start(&self, work: Box<dyn FnOnce() + Send>);
+    fn start(&self, work: Work);
 
     /// The same of work that is short as a rule: who reads a clock may wait for its end, as long as nobody sees it.
-    fn start_short(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start_short(&self, work: Work) {
         self.start(work);
     }
 }
@@ -20,7 +23,7 @@ pub trait Workers {
 pub struct Short<'a>(pub &'a dyn Workers);
 
 impl Workers for Short<'_> {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start(&self, work: Work) {
         self.0.start_short(work);
     }
 }
@@ -30,7 +33,7 @@ impl Workers for Short<'_> {
 pub struct AtOnce;
 
 impl Workers for AtOnce {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start(&self, work: Work) {
         work();
     }
 }
@@ -41,6 +44,12 @@ struct Shared {
     stopped: AtomicBool,
     /// Thousandths that are done.
     done: AtomicU32,
+}
+
+impl Shared {
+    fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Told by a job as it goes.
@@ -86,6 +95,11 @@ impl<T: Send + 'static> Job<T> {
         f64::from(self.shared.done.load(Ordering::Relaxed)) / 1e3
     }
 
+    /// Has it stop at its next word.
+    pub fn stop(&self) {
+        self.shared.stop();
+    }
+
     /// Waits for its result; a job that broke off has none.
     pub fn wait(self) -> Option<T> {
         self.result.recv().ok()
@@ -103,7 +117,7 @@ impl<T: Send + 'static> Job<T> {
 
 impl<T> Drop for Job<T> {
     fn drop(&mut self) {
-        self.shared.stopped.store(true, Ordering::Relaxed);
+        self.shared.stop();
     }
 }
 

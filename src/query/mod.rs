@@ -25,7 +25,7 @@ mod slot;
 pub use asked::{Asked, State};
 pub use growing::{Growing, Grown, grown};
 pub use input::{Same, Shared};
-pub use job::{AtOnce, Job, Poll, Short, Ticket, Workers};
+pub use job::{AtOnce, Job, Poll, Short, Ticket, Work, Workers};
 pub use queries::{Asking, Queries};
 pub use question::{Portion, Query, Quick, Watch, Whole, answered, part};
 pub use sequence::{Mark, Revision, Sequence};

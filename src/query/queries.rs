@@ -114,13 +114,13 @@ impl Queries {
 
     /// The answer if it is known; if not, it is worked on beside, and there is the last one so long.
     pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> Asked<Q::Answer> {
-        if self.slot::<Q, _>(|slot| slot.is_new(input)) {
+        if let Some(replaced) = self.slot::<Q, _>(|slot| slot.replaced_by(input)) {
             let (workers, wake) = {
                 let place = self.place();
                 (place.workers.clone(), place.wake.clone())
             };
             // Begun outside of the slots, as work that is done at once may ask others.
-            let work = Working::begin(input.clone(), workers.as_deref(), wake);
+            let work = Working::begin(input.clone(), replaced, workers.as_deref(), wake);
             self.slot::<Q, _>(|slot| slot.work_on(work));
         } else if let Some(mut work) = self.slot::<Q, _>(|slot| slot.take_portions()) {
             work.go_on();

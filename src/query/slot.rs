@@ -65,8 +65,14 @@ enum By<Q: Query> {
 }
 
 impl<Q: Query> Working<Q> {
-    /// Begins it, with somebody who works beside or in portions.
-    pub fn begin(of: Q::Input, workers: Option<&(dyn Workers + Send + Sync)>, wake: Option<Wake>) -> Self {
+    /// Begins it, with somebody who works beside or in portions. It starts when what it replaces has stopped: two searches
+    /// for one answer would take processors from each other, and from the window.
+    pub fn begin(
+        of: Q::Input,
+        replaced: Replaced<Q>,
+        workers: Option<&(dyn Workers + Send + Sync)>,
+        wake: Option<Wake>,
+    ) -> Self {
         let Some(workers) = workers else {
             let mut new = Self { by: By::Portions(Q::begin(of.clone()), 0.0), of };
             new.go_on();
@@ -79,6 +85,12 @@ impl<Q: Query> Working<Q> {
             }
         };
         let job = Job::start(workers, done, move |ticket| {
+            if let Replaced(Some(job)) = replaced {
+                job.wait();
+            }
+            if !ticket.goes_on(0.0) {
+                return None;
+            }
             let mut work = Q::begin(input);
             loop {
                 match work.go_on(&mut |share| ticket.goes_on(share)) {
@@ -100,6 +112,21 @@ impl<Q: Query> Working<Q> {
                 Portion::Stopped => {}
                 Portion::Done(answer) => self.by = By::Done(answer),
             }
+        }
+    }
+}
+
+/// Work on another input that was told to stop, and may not have heard it yet.
+pub(super) struct Replaced<Q: Query>(Option<Job<Option<Q::Answer>>>);
+
+impl<Q: Query> Replaced<Q> {
+    fn by_another(work: Option<Working<Q>>) -> Self {
+        match work.map(|work| work.by) {
+            Some(By::Job(job)) => {
+                job.stop();
+                Self(Some(job))
+            }
+            _ => Self(None),
         }
     }
 }
@@ -127,16 +154,16 @@ impl<Q: Query> Slot<Q> {
         self.left = None;
     }
 
-    /// Whether work on an input is to begin: it is neither known nor left, and nothing is under way that ends first. Other
-    /// work stops.
-    pub fn is_new(&mut self, input: &Q::Input) -> bool {
+    /// If work on an input is to begin, what it replaces: the input is neither known nor left, and nothing is under way that
+    /// ends first. Other work stops.
+    pub fn replaced_by(&mut self, input: &Q::Input) -> Option<Replaced<Q>> {
         self.collect();
-        if !Q::ENDS && self.working.as_ref().is_some_and(|working| working.of != *input) {
-            self.working = None;
-        }
+        let stays = |work: &mut Working<Q>| Q::ENDS || work.of == *input;
+        let replaced = Replaced::by_another(self.working.take_if(|work| !stays(work)));
         self.left = self.left.take().filter(|(of, _)| of == input);
         let known = self.known.as_ref().is_some_and(|(of, _)| of == input);
-        !(known || self.left.is_some() || self.working.is_some())
+        let new = !(known || self.left.is_some() || self.working.is_some());
+        new.then_some(replaced)
     }
 
     /// Work that whoever asks does, to be done outside of the slot.

@@ -14,7 +14,7 @@ use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange, Wind
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
-use stillbase::query::{AtOnce, Job, Poll, Workers};
+use stillbase::query::{AtOnce, Job, Poll, Work, Workers};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
@@ -35,6 +35,8 @@ pub const TESTS: &[Test] = tests![
     a_file_is_opened_beside_the_window,
     what_is_done_beside_equals_what_is_done_at_once,
     jobs_end_break_off_and_are_stopped,
+    threads_stay_for_the_next_job,
+    work_begins_when_the_window_is_drawn,
     what_a_machine_reaches_is_outlined_beside_the_window,
     counterweights_are_looked_for_beside_the_window,
 ];
@@ -47,10 +49,8 @@ struct Waiting {
     is_slow: bool,
 }
 
-type Work = Box<dyn FnOnce() + Send>;
-
 impl Workers for Waiting {
-    fn start(&self, work: Box<dyn FnOnce() + Send>) {
+    fn start(&self, work: Work) {
         self.works.lock().expect("nobody panicked").push(work);
     }
 
@@ -502,6 +502,65 @@ fn what_is_done_beside_equals_what_is_done_at_once() {
         Ok(())
     });
     result.unwrap_or_else(|why| panic!("{why}"));
+}
+
+/// Until then it waits: only a change of the session is made meanwhile.
+fn work_begins_when_the_window_is_drawn() {
+    let workers = Waiting::default();
+    let scenario = Scenario::builtin("case-3").expect("built in");
+    let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(workers.clone());
+    let ctx = egui::Context::default();
+    let mut draw = |app_state: &mut AppState| {
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
+            ..egui::RawInput::default()
+        };
+        let _ = ctx.run_ui(input, |ui| app_state.ui(ui));
+    };
+    draw(&mut app_state);
+    workers.work();
+    let drawing = app_state.drawing();
+    app_state.carry_out(ViewChange::Switch(Switch::Study, true));
+    app_state.carry_out(SessionCommand::Edit(Edit::set("task.time", 2.0)));
+    draw(&mut app_state);
+    assert_eq!(app_state.session().scenario().task.time, 2.0, "a change is made at once");
+    assert_eq!(workers.work(), 0, "the window is being drawn");
+    assert!(app_state.is_working(), "and the work is not forgotten");
+    drop(drawing);
+    assert!(workers.work() > 0);
+    draw(&mut app_state);
+    // What begins after that waits no more.
+    app_state.carry_out(SessionCommand::Edit(Edit::set("task.time", 1.5)));
+    app_state.carry_out(SessionCommand::EndGesture);
+    draw(&mut app_state);
+    assert!(workers.work() > 0);
+}
+
+fn threads_stay_for_the_next_job() {
+    let on = || {
+        let job = Job::start(&Threads::Background, || (), |_| {
+            let nice = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+            let nice = nice.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(16)).map(String::from);
+            (std::thread::current().id(), nice)
+        });
+        let ran = job.wait().expect("it ends");
+        // Its thread is back a moment later.
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        ran
+    };
+    let ran: Vec<_> = (0..40).map(|_| on()).collect();
+    let mut threads = std::collections::HashSet::new();
+    for (thread, nice) in &ran {
+        threads.insert(*thread);
+        if cfg!(target_os = "linux") {
+            assert_eq!(nice.as_deref(), Some("19"), "the window goes first");
+        }
+    }
+    assert!(threads.len() < 20, "{} threads for 40 jobs, one after the other", threads.len());
+    // A panic costs a thread and not the others.
+    let broken: Job<()> = Job::start(&Threads::Background, || (), |_| panic!("this one breaks off, as the test wants"));
+    assert_eq!(broken.wait(), None);
+    assert!(matches!(Job::start(&Threads::Background, || (), |_| 7).wait(), Some(7)));
 }
 
 fn jobs_end_break_off_and_are_stopped() {

@@ -136,6 +136,7 @@ impl Repaint {
     /// One repaint, with the hand somewhere; how long it took.
     fn once(&mut self, app_state: &mut AppState, hand: Option<Edit>) -> Duration {
         let begun = Instant::now();
+        let drawing = app_state.drawing();
         app_state.pass(PACE.as_secs_f64());
         if let Some(edit) = hand {
             app_state.carry_out(SessionCommand::Edit(edit));
@@ -148,6 +149,7 @@ impl Repaint {
         let output = self.ctx.run_ui(input, |ui| app_state.ui(ui));
         let drawn = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let took = begun.elapsed();
+        drop(drawing);
         assert!(drawn.len() > 5, "the panels are drawn: {}", drawn.len());
         self.now += PACE.as_secs_f64();
         std::thread::sleep(PACE.saturating_sub(took));

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use stillbase::query::{
-    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Workers,
-    answered,
+    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Work,
+    Workers,    answered,
 };
 
 /// How often something was made: each test has its own.
@@ -59,8 +59,6 @@ impl Query for Sum {
         Portion::More(self.at as f64 / self.n as f64)
     }
 }
-
-type Work = Box<dyn FnOnce() + Send>;
 
 /// Someone who does what is given when told to.
 #[derive(Clone, Default)]
@@ -139,9 +137,68 @@ fn the_newest_asking_counts() {
         }
     }
     assert_eq!(later.work(), 20);
-    // Those before have stopped at their first word.
-    assert_eq!(count(&made), 19 + 41);
+    // Those before had not begun: nothing is done for them.
+    assert_eq!(count(&made), 41);
     assert_eq!(known(&queries.ask_beside::<Sum>(&(made.clone(), 40))), Some(820));
+}
+
+/// A number after some waiting in many portions; tells how many of its kind work at the same time, at most.
+struct Slow {
+    input: (Same<[AtomicUsize; 2]>, u64),
+    left: u32,
+}
+
+impl Query for Slow {
+    type Input = (Same<[AtomicUsize; 2]>, u64);
+    type Answer = u64;
+
+    fn begin(input: Self::Input) -> Self {
+        let [now, most] = &*input.0.0;
+        let working = now.fetch_add(1, Ordering::SeqCst) + 1;
+        most.fetch_max(working, Ordering::SeqCst);
+        Self { input, left: 20 }
+    }
+
+    fn go_on(&mut self, _: Watch<'_>) -> Portion<u64> {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        self.left -= 1;
+        if self.left > 0 { Portion::More(0.5) } else { Portion::Done(self.input.1) }
+    }
+}
+
+impl Drop for Slow {
+    fn drop(&mut self) {
+        self.input.0.0[0].fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// Each work on a thread of its own.
+struct OnThreads;
+
+impl Workers for OnThreads {
+    fn start(&self, work: Work) {
+        std::thread::spawn(work);
+    }
+}
+
+#[test]
+fn work_begins_when_what_it_replaces_has_stopped() {
+    let queries = Queries::default();
+    queries.hire(Arc::new(OnThreads));
+    let counts = Same(Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]));
+    let ask = |n: u64| queries.ask_beside::<Slow>(&(counts.clone(), n));
+    for n in 0..40 {
+        ask(n);
+        // Some of them have begun by then, and others have not.
+        std::thread::sleep(std::time::Duration::from_micros(n * 400 % 3000));
+    }
+    let answer = (0..5000).find_map(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        known(&ask(39))
+    });
+    assert_eq!(answer, Some(39));
+    let [now, most] = &*counts.0;
+    assert_eq!((now.load(Ordering::SeqCst), most.load(Ordering::SeqCst)), (0, 1));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::AppState;
 use crate::app::facts::Facts;
 use crate::app::marks::Marks;
 use crate::app::{
-    Below, Command, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given, keys,
+    Below, Command, Drawing, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given, keys,
     order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
 };
 use crate::picture::scene::views::ViewKind;
@@ -13,6 +13,13 @@ use crate::picture::scene::views::ViewKind;
 const SHOWN_AGAIN: f32 = 0.1;
 
 impl AppState {
+    /// The window is drawn while this lives: work that nobody waits for begins afterwards, so that it does not hold up the
+    /// drawing.
+    #[must_use]
+    pub fn drawing(&self) -> Drawing {
+        self.background.drawing()
+    }
+
     /// One pass of the user interface; commands are carried out at its end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.dress(ui.ctx());

@@ -189,6 +189,7 @@ impl Shell<'_> {
         raw.viewports.insert(ViewportId::ROOT, info.clone());
         info.events.clear();
         let closes = raw.viewport().close_requested();
+        let drawing = self.app.app_state().drawing();
         let output = ctx.run_ui(raw, |ui| self.app.ui(ui));
         let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, mut viewport_output } = output;
         screen.take_textures(textures_delta);
@@ -208,6 +209,8 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
+            // The screen makes the window wait for its turn.
+            drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, (&shapes, pixels_per_point), behind) == Outcome::Again {
                 window.request_redraw();
