@@ -538,11 +538,15 @@ fn work_begins_when_the_window_is_drawn() {
 
 fn threads_stay_for_the_next_job() {
     let on = || {
-        let job = Job::start(&Threads::Background, || (), |_| {
-            let nice = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
-            let nice = nice.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(16)).map(String::from);
-            (std::thread::current().id(), nice)
-        });
+        let job = Job::start(
+            &Threads::Background,
+            || (),
+            |_| {
+                let nice = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+                let nice = nice.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(16)).map(String::from);
+                (std::thread::current().id(), nice)
+            },
+        );
         let ran = job.wait().expect("it ends");
         // Its thread is back a moment later.
         std::thread::sleep(std::time::Duration::from_millis(2));

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use stillbase::query::{
-    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Work,
-    Workers,    answered,
+    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Work, Workers,
+    answered,
 };
 
 /// How often something was made: each test has its own.

@@ -4,8 +4,8 @@ use super::AppState;
 use crate::app::facts::Facts;
 use crate::app::marks::Marks;
 use crate::app::{
-    Below, Command, Drawing, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given, keys,
-    order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
+    Below, Command, Drawing, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given,
+    keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
 };
 use crate::picture::scene::views::ViewKind;
 
