@@ -1,17 +1,18 @@
-//! Which b serve several points at once, and where none does, the point that has to move least: one way for any number
-//! of drives.
+//! The pose constants b at which several points can all be reached, and if there are none, the shortest move of one
+//! point that mends it: one method for any number of drives.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | p = r e^{iθ} | a point, r from the base pin | m |
-//! | B(r) | the b that reach (r, 0) | rad |
-//! | S | the b that serve all other points | rad |
+//! | p = r e^{iθ} | a point, at distance r from the base pin | m |
+//! | B(r) | the set of b at which (r, 0) can be reached | rad |
+//! | S | the set of b at which all other points can be reached | rad |
 //!
 //! # Method
-//! Turning the machine as a whole turns b along: p is reached at the b of B(r) + θ Σλ. The least move of p to a place
-//! that some b of S reaches is therefore a search over the distance r' alone. At each r' the least turn Δθ is the
-//! distance of B(r') + θ Σλ from S on the circle of b, divided by Σλ, and the move is r² + r'² − 2 r r' cos Δθ, squared.
+//! Turning the machine as a whole by θ adds θ Σλ to b: p can be reached at the b of B(r) + θ Σλ. The shortest move of p
+//! to a place that can be reached at some b of S is therefore a one-dimensional search over the new distance r'. At
+//! each r' the smallest turn |Δθ| is the distance between B(r') + θ Σλ and S on the circle of b, divided by Σλ. The
+//! length of the move is √(r² + r'² − 2 r r' cos Δθ).
 
 use crate::mechanics::planar::{Vector, unit};
 use crate::planning::golden::golden;
@@ -19,16 +20,16 @@ use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{BSet, Decimal, NoReach};
 use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
 
-/// Distances that are tried between the least and the greatest one.
-const TRIES: usize = 96;
-/// Of the distances that were tried, how many are refined, and by how many golden sections.
-const REFINED: usize = 3;
-const SECTIONS: usize = 40;
+/// Equal steps between the least and the greatest distance r' in the coarse search.
+const RADIAL_STEPS: usize = 96;
+/// Number of best coarse distances that are refined, and golden sections of each refinement.
+const MAX_REFINED: usize = 3;
+const GOLDEN_SECTIONS: usize = 40;
 
-/// By how much longer moves are tried than the least one, shares of it.
-const LONGER_BY: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
+/// Factors less 1 by which the shortest move is lengthened in turn, until rounding no longer makes it infeasible.
+const EXTENSIONS: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
 
-/// The b that reach a point, single ones with their slack.
+/// Returns the b at which a point, m, can be reached, each interval widened by [`PoseSpace::b_slack`].
 fn set_of(space: &PoseSpace, p: Vector) -> Result<BSet, NoReach> {
     Ok(slackened(space, space.reach(p)?))
 }
@@ -39,7 +40,7 @@ fn slackened(space: &PoseSpace, mut set: BSet) -> BSet {
     set
 }
 
-/// The b that serve all points, m; `None` if none does.
+/// Returns the b at which all points, m, can be reached; `None` if there are none.
 pub fn common(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
     if let [point] = points {
         return space.reach(*point).ok();
@@ -48,19 +49,20 @@ pub fn common(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
     Some(BSet::overlap(&sets?)).filter(|common| !common.is_empty())
 }
 
-/// The middle of the widest range of b that serve all points, rad: as far from every end as it gets.
+/// Returns the midpoint of the widest interval of b at which all points, m, can be reached, rad.
 pub fn middle(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
     let ranges = common(space, points)?.intervals.into_iter();
     let widest = ranges.max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])))?;
     Some(0.5 * (widest[0] + widest[1]))
 }
 
-/// The b, rad, from which to start a motion through points: the middle of what serves all, or else the first.
+/// Returns the b, rad, at which to start a motion through points, m: the midpoint that all share, or else that of the
+/// first point alone.
 pub fn starting_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
     middle(space, points).or_else(|| middle(space, points.get(..1)?))
 }
 
-/// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
+/// Returns why points, m, have no b in common; `None` if they share one, or if some point cannot be reached at any b.
 pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
     let sets: Vec<BSet> = points.iter().map(|p| set_of(space, *p).ok()).collect::<Option<_>>()?;
     if !BSet::overlap(&sets).is_empty() {
@@ -77,15 +79,15 @@ pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
     Some(NoCommon { pair, mend: least.and_then(|mend| proved(space, points, &others(mend.point), mend)) })
 }
 
-/// Which of some points that are to share a b cannot be reached at it, and why; `None` if all can. A point that no b
-/// reaches comes first, as it says more than one that wants another b.
+/// Returns the index of a point that cannot be reached at b, and why; `None` if all can. A point that cannot be reached
+/// at any b takes precedence over one that only needs another b.
 pub fn unreached(space: &PoseSpace, points: &[Vector], b: f64) -> Option<(usize, Unreachable)> {
     let i = points.iter().position(|p| !space.reaches(*p, b))?;
     let i = points.iter().position(|p| space.reach(*p).is_err()).unwrap_or(i);
     Some((i, why_not(space, points, i, b)))
 }
 
-/// Why a point of some that are to share a b cannot be reached at it, and what would do for all of them.
+/// Explains why point `i` cannot be reached at b, and which b would be feasible for all points.
 pub fn why_not(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreachable {
     let (x, y) = (points[i].re, points[i].im);
     let own = match set_of(space, points[i]) {
@@ -102,12 +104,12 @@ pub fn why_not(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreac
             Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, shown_b }
         }
         (None, Some(why)) => Unreachable::NoCommonPlane(why),
-        // Another point is out of every reach.
+        // Another point cannot be reached at any b.
         (None, None) => Unreachable::OnThisPlane { x, y, b, would_do: own.in_words(), nearest_b: None, shown_b: None },
     }
 }
 
-/// The shift of a set along the circle, by the shorter way, after which it touches another one, rad.
+/// Returns the smallest signed shift of a set along the circle of b after which it touches another set, rad.
 fn shift(set: &BSet, onto: &BSet) -> Option<f64> {
     let period = set.period;
     let each = |[low, high]: &[f64; 2], [from, to]: &[f64; 2]| {
@@ -119,14 +121,14 @@ fn shift(set: &BSet, onto: &BSet) -> Option<f64> {
     all.min_by(|x, y| x.abs().total_cmp(&y.abs()))
 }
 
-/// The nearest place to p that some b of a set reaches, m.
+/// Finds the place nearest to p, m, that can be reached at some b of a set.
 fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
     if others.is_empty() {
         return None;
     }
     let (r, theta, sum) = (p.norm(), p.arg(), space.lambda_sum());
     let (near, far) = (space.nearest(), space.farthest());
-    // How far the move to a distance goes, m, and by what angle, for the b that reach (distance, 0).
+    // Length of the move to a distance, m, and its turn, rad, given the b at which (distance, 0) can be reached.
     let by = |distance: f64, set: Result<BSet, NoReach>| -> (f64, f64) {
         let turned = |set: BSet| BSet {
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),
@@ -142,10 +144,10 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
         }
     };
     let to = |distance: f64| by(distance, space.reach(Vector::new(distance, 0.0)));
-    let step = (far - near) / TRIES as f64;
-    let mut tries: Vec<f64> = (0..=TRIES).map(|i| near + step * i as f64).chain([r.clamp(near, far)]).collect();
+    let step = (far - near) / RADIAL_STEPS as f64;
+    let mut tries: Vec<f64> = (0..=RADIAL_STEPS).map(|i| near + step * i as f64).chain([r.clamp(near, far)]).collect();
     tries.sort_by(|x, y| (x - r).abs().total_cmp(&(y - r).abs()));
-    // No move is shorter than the difference of the distances.
+    // The move is at least as long as the difference of the distances.
     let mut tried: Vec<(f64, f64)> = Vec::with_capacity(tries.len());
     let mut best = f64::INFINITY;
     for distance in tries {
@@ -160,16 +162,18 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
     tried.sort_by(|x, y| x.0.total_cmp(&y.0));
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for (gap, distance) in tried {
-        if kept.len() < REFINED && kept.iter().all(|(_, known)| (known - distance).abs() > 1.5 * step) {
+        if kept.len() < MAX_REFINED && kept.iter().all(|(_, known)| (known - distance).abs() > 1.5 * step) {
             kept.push((gap, distance));
         }
     }
     let refined = kept.into_iter().map(|(gap, distance)| {
-        let (better, least) = golden([(distance - step).max(near), (distance + step).min(far)], SECTIONS, |x| to(x).0);
+        let (better, least) =
+            golden([(distance - step).max(near), (distance + step).min(far)], GOLDEN_SECTIONS, |x| to(x).0);
         if least < gap { (least, better) } else { (gap, distance) }
     });
     let (_, distance) = refined.min_by(|x, y| x.0.total_cmp(&y.0))?;
-    // Rounding may part what just touches, as where the curve of two drives ends: then a little beside it.
+    // Rounding may separate sets that just touch, as at the end of the curve of two drives: then slightly other
+    // distances.
     let beside = [0.0, 1e-12, 1e-10, 1e-8, 1e-6].into_iter().flat_map(|share| [share * far, -share * far]);
     let mut touching = beside.filter_map(|beside| {
         let distance = (distance + beside).clamp(near, far);
@@ -189,8 +193,8 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
     Some(Mend { point, to: at, distance: (at - p).norm(), b, shown: None })
 }
 
-/// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed; `None`
-/// if no pose was found there.
+/// Makes a move robust against rounding: lengthens it slightly if its end is infeasible, and finds decimals to print.
+/// Returns `None` if no pose was found there.
 fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
     let from = points[mend.point];
     let shared = |to: Vector| {
@@ -202,15 +206,15 @@ fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Op
         let at = |(i, p): (usize, &Vector)| if i == mend.point { to } else { *p };
         points.iter().enumerate().map(at).all(|p| space.reaches(p, b))
     };
-    let exact = LONGER_BY.into_iter().find_map(|share| {
+    let exact = EXTENSIONS.into_iter().find_map(|share| {
         let to = from + (1.0 + share) * (mend.to - from);
         let [low, high] = shared(to)?;
         [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))
     });
-    // Where no number beside the least move serves, a longer one may.
+    // If no decimal near the shortest move is feasible, a longer move may be.
     let all = [1.02, 1.1].into_iter().flat_map(|longest| (3..=12).map(move |decimals| (longest, decimals)));
     let shown = all.into_iter().find_map(|(longest, decimals)| {
-        // All numbers near by with so many decimals, the least move first.
+        // All decimals near the end of the move, the shortest move first.
         let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
         let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
             .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
@@ -223,7 +227,7 @@ fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Op
             let [low, high] = shared(at)?;
             let b = mend.b.clamp(low, high);
             let inside = |x: f64| low <= x && x <= high && serves(at, x);
-            // Where the common b are few, the middle of them has more room than their end.
+            // If the common interval of b is short, its midpoint allows fewer decimals than its ends.
             let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
             let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
             Some(ShownMend { to, b, far, does: true })

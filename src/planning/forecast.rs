@@ -1,4 +1,4 @@
-//! What a motion will cost if it is followed exactly: known before anything moves.
+//! [`Forecast`]: torques, speeds and reactions of a motion that is followed exactly, computed before it is run.
 
 use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::Inertia;
@@ -7,28 +7,28 @@ use crate::planning::Motion;
 use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 use crate::query::Watch;
 
-/// Peaks and sums over a motion, from the model's own dynamics.
+/// Peaks and integrals over a motion, from the inverse dynamics of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
-    /// T, s.
+    /// Duration T, s.
     pub time: f64,
-    /// Largest torque of each motor, either way, N m.
+    /// Largest |torque| of each motor, N m.
     pub torque: PerDrive,
-    /// Largest rate of each motor, rad/s: |q̇_k| of those on the base.
+    /// Largest |speed| of each motor, rad/s: |q̇_k| for motors on the base.
     pub speed: PerDrive,
-    /// Largest |n_B|, N m.
+    /// Largest base moment |n_B|, N m.
     pub moment: f64,
-    /// ∫ |n_B| dt, N m s.
+    /// Impulse of the base moment, ∫ |n_B| dt, N m s.
     pub impulse: f64,
-    /// Root of the mean of n_B², N m.
+    /// Root mean square of n_B, N m.
     pub moment_rms: f64,
-    /// Largest dynamic |f_B|, N.
+    /// Largest dynamic base force |f_B|, N.
     pub force: f64,
-    /// Root of the mean of the dynamic |f_B|², N.
+    /// Root mean square of the dynamic |f_B|, N.
     pub force_rms: f64,
-    /// The limit of a drive that is passed by most, and by what factor; none if all are kept.
+    /// The drive limit that is exceeded by the largest factor, and that factor; `None` if all are kept.
     pub over: Option<(DriveLimit, f64)>,
-    /// Least and greatest b on the way, rad.
+    /// Least and greatest b during the motion, rad.
     pub b: [f64; 2],
     /// Mean of b over time, rad.
     pub b_mean: f64,
@@ -38,32 +38,33 @@ pub struct Forecast {
     pub b_end: f64,
 }
 
-/// Instants at which a motion is looked at, at least.
-const MIN_INSTANTS: usize = 2000;
-/// Those for each part of a path of many.
-const INSTANTS_PER_PART: usize = 100;
-/// Those at most.
-const MAX_INSTANTS: usize = 100_000;
+/// Minimum number of samples of a motion.
+const MIN_SAMPLES: usize = 2000;
+/// Minimum number of samples for each part of a path.
+const SAMPLES_PER_PART: usize = 100;
+/// Maximum number of samples of a motion.
+const MAX_SAMPLES: usize = 100_000;
 
-/// After so many instants it is told how much is done.
-const INSTANTS_PER_WORD: usize = 1024;
+/// Number of samples between two progress reports.
+const SAMPLES_PER_REPORT: usize = 1024;
 
-/// A limit counts as passed from this factor on.
-const PASSED_FACTOR: f64 = 1.0 + 1e-6;
+/// A limit counts as exceeded above this ratio to it; below, the excess is rounding.
+const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
-    /// Of a motion of a model.
+    /// Returns the forecast of a motion of a model, with a number of samples that depends on the path.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
-        let instants = (INSTANTS_PER_PART * motion.path.parts()).clamp(MIN_INSTANTS, MAX_INSTANTS);
+        let instants = (SAMPLES_PER_PART * motion.path.parts()).clamp(MIN_SAMPLES, MAX_SAMPLES);
         Self::at(motion, model, around, limits, instants)
     }
 
-    /// The same by that many instants, evenly in the middles of as many parts of T.
+    /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
     pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, instants: usize) -> Self {
         Self::at_while(motion, (model, around, limits), instants, &mut |_| true)
     }
 
-    /// The same; once the rest is not wanted it is left out, and the answer is of no use.
+    /// Returns the same forecast, with progress reported to `goes_on`. If `goes_on` returns false, the computation
+    /// stops and the result is to be discarded.
     pub fn at_while(
         motion: &Motion,
         (model, around, limits): (&Inertia, &Surroundings, &Limits),
@@ -87,12 +88,12 @@ impl Forecast {
             b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
-        // The instants lie between: the ends belong to the range too.
+        // The samples lie between: the endpoints belong to the range too.
         sum.b = [sum.b_start.min(sum.b_end), sum.b_start.max(sum.b_end)];
         let dt = time / instants as f64;
-        // Between the instants, so that no step of the acceleration is looked at from the wrong side.
+        // At midpoints, so that a jump of the acceleration is not sampled on the wrong side.
         for i in 0..instants {
-            if i % INSTANTS_PER_WORD == 0 && !goes_on(i as f64 / instants as f64) {
+            if i % SAMPLES_PER_REPORT == 0 && !goes_on(i as f64 / instants as f64) {
                 break;
             }
             let r = motion.at((i as f64 + 0.5) * dt);
@@ -111,8 +112,8 @@ impl Forecast {
             ] {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;
-                    // What rounding passes by is none.
-                    if factor > PASSED_FACTOR && sum.over.is_none_or(|(_, most)| factor > most) {
+                    // Excess within rounding is ignored.
+                    if factor > EXCEEDED_ABOVE && sum.over.is_none_or(|(_, most)| factor > most) {
                         sum.over = Some((DriveLimit { quantity, drive }, factor));
                     }
                 }

@@ -3,14 +3,15 @@
 /// The smaller part of the golden section, (3 − √5)/2.
 const SMALLER_SECTION: f64 = 0.381_966_011_250_105_2;
 
-/// The place of least value among those that a golden-section search looks at, and the value: the least one where the
-/// function has one minimum in the range. One evaluation a section, and one more; an infinite value is nowhere least.
+/// Finds a minimum of `f` in [low, high] by golden-section search: returns the best sample and its value. It is the
+/// global minimum if `f` is unimodal in the interval. Takes `sections` + 1 evaluations; infinite values are allowed.
 pub(super) fn golden([mut low, mut high]: [f64; 2], sections: usize, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     let mut at = |x: f64| (x, f(x));
     let (mut left, mut right) = (at(low + SMALLER_SECTION * (high - low)), at(high - SMALLER_SECTION * (high - low)));
     let mut best = if right.1 < left.1 { right } else { left };
     for _ in 1..sections {
-        // The new place parts what lies on the far side of the one that stays, so that no rounding adds up.
+        // The new sample is placed relative to the one on the far side of the kept sample, so that rounding does not
+        // accumulate.
         let new = if left.1 < right.1 {
             (high, right) = (right.0, left);
             left = at(right.0 - SMALLER_SECTION * (right.0 - low));

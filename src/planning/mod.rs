@@ -1,21 +1,21 @@
-//! Where a machine may go, and when.
+//! Motion planning: which poses and paths a machine can reach, and when it passes along them.
 //!
 //! | what | modules |
 //! |---|---|
 //! | whether a machine has a pose constant b = Σ λ_k q_k, in words | [`pose_constant`] |
-//! | coordinates (a, b), poses, boundaries, which b reach a point, for any number of drives | [`pose_space`] |
-//! | the same of three drives with two bounded angles in closed form: the kernel of such a pose space | [`reactionless`] |
-//! | where: curves of the end effector, paths of the drives | [`curves`] |
-//! | which b serve several points, and which point has to move least where none does | [`common`] |
-//! | poses of several points at a b, and where the points go as b does | [`posed`] |
-//! | when: laws, limits, the fastest | [`timing`] |
-//! | what becomes of the freedoms that four drives and more have left | [`posture`] |
-//! | with b held: curves followed, or why not; the pointer and the slider | [`following`] |
-//! | off the planes: what a change of b costs, the least reaction, zero momentum | [`off_plane`] |
-//! | where and when together, and what they will cost | [`motion`], [`forecast`] |
+//! | coordinates (a, b), poses, workspace boundaries, and the b at which a point can be reached, for any number of drives | [`pose_space`] |
+//! | the same in closed form for three drives with two bounded angles; [`pose_space`] uses it for such machines | [`reactionless`] |
+//! | geometry: curves of the end effector, paths of the drives | [`curves`] |
+//! | the b that several points share, and if there is none, the point that has to move least | [`common`] |
+//! | poses of several points at a b, and how the points are carried along when b changes | [`posed`] |
+//! | time: time laws, limits, the fastest motion | [`timing`] |
+//! | how the redundant freedoms of four and more drives are used | [`posture`] |
+//! | with b held: curves followed, or the reason why not; dragging by the pointer, the slider of b | [`following`] |
+//! | off the planes b = const: the cost of a change of b, the least reaction, zero momentum | [`off_plane`] |
+//! | path and timing together, and a forecast of torques and reactions | [`motion`], [`forecast`] |
 //!
-//! Nothing outside of [`pose_space`] asks how many drives there are to choose its way. What a machine lacks is asked of its
-//! pose space by name, and answered with the reason in words: [`planes`](pose_space::PoseSpace::planes),
+//! Only [`pose_space`] chooses its methods by the number of drives. Callers query a pose space for a capability by
+//! name, and it answers or gives the reason in words: [`planes`](pose_space::PoseSpace::planes),
 //! [`follows_curves`](pose_space::PoseSpace::follows_curves),
 //! [`leaves_freedoms`](pose_space::PoseSpace::leaves_freedoms).
 

@@ -1,31 +1,32 @@
-//! [`Motion`]: a path and a timing make the [`Reference`] that control follows.
+//! [`Motion`]: a path with a timing, which yields the [`Reference`] that control follows.
 
 use super::reference::Reference;
 use crate::planning::curves::Path;
 use crate::planning::timing::{Profile, TimeLaw};
 
-/// A path run through once, from rest to rest unless it is given otherwise.
+/// A path traversed once, from rest to rest unless the profile says otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// The path that is followed.
+    /// The path.
     pub path: Path,
-    /// How far along it the motion is at each time.
+    /// The path parameter over time.
     pub profile: Profile,
 }
 
 impl Motion {
-    /// A path by a law in a time T, s.
+    /// Returns the motion along a path by a time law in a duration T, s.
     pub fn new(path: Path, law: TimeLaw, duration: f64) -> Self {
         Self { path, profile: Profile::of(law, duration) }
     }
 
-    /// T, s.
+    /// Duration T, s.
     #[inline]
     pub fn duration(&self) -> f64 {
         self.profile.duration()
     }
 
-    /// Times after the start at which q̈ jumps or bends, s, in order: no step of a simulation should pass one.
+    /// Returns the times after the start at which q̈ or its slope jumps, s, ascending: no integration step should cross
+    /// one.
     pub fn kinks(&self) -> Vec<f64> {
         let mut all = self.profile.kinks();
         all.extend(self.path.kinks().into_iter().map(|s| self.profile.when(s)));
@@ -34,7 +35,7 @@ impl Motion {
         all
     }
 
-    /// The reference t seconds after the start; at rest before it and after T.
+    /// Returns the reference t seconds after the start; at rest before the start and after T.
     #[inline]
     pub fn at(&self, t: f64) -> Reference {
         let p = self.profile.at(t);

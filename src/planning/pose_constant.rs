@@ -1,4 +1,4 @@
-//! A machine's pose constant: whether there is a b, in words, and the queries that make its poses' coordinates once.
+//! Whether a machine has a pose constant b, in words; and cached queries for its pose space and for the b of points.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::query::{Quick, Same};
 
 pub use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
 
-/// The pose space of a machine, or why its b cannot be held.
+/// Query for the pose space of a machine, or the reason why it has none.
 pub struct SpaceOf;
 
 impl Quick for SpaceOf {
@@ -25,20 +25,20 @@ impl Quick for SpaceOf {
     }
 }
 
-/// The b that serve all of several points, m, and those of each; none where there are none.
+/// Query for the b at which several points, m, can be reached: all of them together, and each alone.
 pub struct BOfPoints;
 
-/// What [`BOfPoints`] answers.
+/// Answer of [`BOfPoints`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Serving {
-    /// Of each point.
+    /// The b of each point; `None` if it cannot be reached.
     pub each: Vec<Option<BSet>>,
-    /// Of all of them.
+    /// The b that all points share; `None` if there are none.
     pub all: Option<BSet>,
 }
 
 impl Quick for BOfPoints {
-    /// A pose space, and the points.
+    /// A pose space, and the points, m.
     type Input = (Same<PoseSpace>, Vec<Vector>);
     type Answer = Serving;
 
@@ -47,13 +47,13 @@ impl Quick for BOfPoints {
     }
 }
 
-/// Whether a machine has a pose constant b = Σ λ_k q_k, asked here alone.
+/// Whether a machine has a pose constant b = Σ λ_k q_k.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PoseConstant {
-    /// Holding b keeps every moment from the base.
+    /// Holding b keeps the base free of moments.
     #[error("b = Σ λ_k q_k")]
     Exact,
-    /// λ depends on the pose so little that holding b keeps most of the moment from the base.
+    /// λ depends so little on the pose that holding b removes most of the base moment.
     #[error(
         "b = Σ λ_k q_k, but only nearly: couplings of up to {residual:.1e} kg m² remain, so holding b is not exactly \
          reactionless; `stillbase design` removes them"
@@ -62,16 +62,16 @@ pub enum PoseConstant {
         /// Largest |C_kl|, kg m².
         residual: f64,
     },
-    /// None, and none is needed.
+    /// There is none, and none is needed.
     #[error("none is needed: every motion is reactionless, as no drive turns the base")]
     Unneeded,
-    /// None.
+    /// There is none, for this reason.
     #[error("none: {0}")]
     None(NoPoseSpace),
 }
 
 impl PoseConstant {
-    /// Of a machine.
+    /// Returns whether a machine has a pose constant.
     pub fn of(machine: &Machine) -> Self {
         match PoseSpace::general(machine) {
             Ok(_) if is_reactionless(machine) => Self::Exact,
@@ -81,7 +81,7 @@ impl PoseConstant {
         }
     }
 
-    /// In a word, for a key of JSON.
+    /// Returns one word for it, the value of a JSON key.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Exact => "exact",

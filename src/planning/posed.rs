@@ -1,35 +1,35 @@
-//! Poses of points of a task: one for each at a b, the nearest two of two b, and where points go as b does.
+//! Poses of the points of a task: one pose for each point at a b, the nearest two poses at two b, and how points are
+//! carried along when b changes.
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::common;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::unreachable::Unreachable;
 
-/// A pose by its relative angles and b, and by its drives, rad.
+/// A pose in coordinates (a, b) and in drive angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posed {
-    /// Relative angles.
+    /// Relative angles, rad.
     pub a: PerDrive,
-    /// Pose constant.
+    /// Pose constant, rad.
     pub b: f64,
-    /// Drive angles.
+    /// Drive angles, rad.
     pub q: DriveAngles,
 }
 
 impl Posed {
-    /// Of drive angles.
+    /// Returns the pose of drive angles, rad.
     pub fn of(space: &PoseSpace, q: DriveAngles) -> Self {
         let (a, b) = space.project(&q);
         Self { a, b, q }
     }
 
-    /// Of relative angles and b.
+    /// Returns the pose of relative angles and b, rad.
     pub fn lifted(space: &PoseSpace, a: PerDrive, b: f64) -> Self {
         Self { a, b, q: space.lift(&a, b) }
     }
 
-    /// How far the straight line of joint space to another pose goes, rad: on planes in their own coordinates, else as far
-    /// as the drive that turns most.
+    /// Length of the straight line in joint space to another pose, rad: with planes |Δa|, else the largest |Δq_k|.
     pub fn way(&self, space: &PoseSpace, to: &Self) -> f64 {
         match space.planes() {
             Ok(_) => across(&self.a, &to.a),
@@ -43,10 +43,11 @@ fn across(x: &PerDrive, y: &PerDrive) -> f64 {
     (x[0] - y[0]).hypot(x[1] - y[1])
 }
 
-/// One pose for each of some points at b: all on one sheet if that is known and possible, else each near the one before.
+/// Returns one pose for each point, m, at b, rad. With planes, all lie on one sheet if possible; otherwise each is near
+/// the previous one.
 ///
 /// # Errors
-/// Which point (counted from 0) cannot be reached, and what b would do.
+/// The index of the point that cannot be reached (counted from 0), and which b would be feasible.
 pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>, (usize, Unreachable)> {
     if let Some(why) = common::unreached(space, points, b) {
         return Err(why);
@@ -65,7 +66,7 @@ pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>,
     let poses: Vec<Vec<PerDrive>> = points.iter().map(|p| space.sheets(*p, b)).collect();
     let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
     let det = |a: &PerDrive| planes.map().det([a[0], a[1]]);
-    // The nearest pose to the last one, of those that a filter lets pass.
+    // From each point the pose nearest to the previous one, optionally on the sheet of the first.
     let chain = |start: &PerDrive, one_sheet: bool| {
         let sheet = det(start);
         let mut served = vec![*start];
@@ -81,7 +82,7 @@ pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>,
     Ok(served.into_iter().map(|a| Posed::lifted(space, a, b)).collect())
 }
 
-/// Of the poses of two points, m, each at its own b, rad, the two that lie nearest together.
+/// Returns the nearest pair of poses of two points, m, each point at its own b, rad.
 pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Option<[Posed; 2]> {
     let pairs: Vec<([Posed; 2], f64)> = match space.planes() {
         Ok(_) => {
@@ -104,8 +105,8 @@ pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Opt
     pairs.into_iter().min_by(|x, y| x.1.total_cmp(&y.1)).map(|(pair, _)| pair)
 }
 
-/// Where points are taken when b goes from one value to another, rad: they stay while the new one serves all, and else
-/// turn with what is reached; on planes from the nearest b that serves all, with other spaces from the old one.
+/// Returns where points, m, go when b changes from `old` to `new`, rad. They stay if all can be reached at `new`, else
+/// they turn with the workspace: with planes from the nearest b that all share, otherwise from `old`.
 pub fn carried(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
     if points.iter().all(|p| space.reaches(*p, new)) {
         return points.to_vec();
@@ -116,7 +117,7 @@ pub fn carried(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Ve
     }
     let turned = || {
         let shared = common::common(space, points)?;
-        // A hair inside, so that rounding does not put the pose outside again.
+        // Second try slightly inside the interval, where rounding does not make the pose infeasible.
         let nearest = shared.nearest(new)?;
         let served =
             serve(space, points, nearest).or_else(|_| serve(space, points, shared.inwards(nearest, 1e-9))).ok()?;

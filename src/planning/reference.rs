@@ -1,20 +1,20 @@
-//! [`Reference`]: what control follows.
+//! [`Reference`]: the reference that control follows.
 
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 
-/// Where the machine should be, and how it should move there.
+/// Desired drive angles, rates and accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
-    /// rad.
+    /// Drive angles, rad.
     pub q: DriveAngles,
-    /// rad/s.
+    /// Drive rates, rad/s.
     pub qd: PerDrive,
-    /// rad/s².
+    /// Drive accelerations, rad/s².
     pub qdd: PerDrive,
 }
 
 impl Reference {
-    /// The reference that rests at a pose.
+    /// Returns the reference that rests at a pose.
     pub fn at_rest(q: DriveAngles) -> Self {
         let still = PerDrive::zeros(q.len());
         Self { q, qd: still, qdd: still }

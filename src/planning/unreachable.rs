@@ -1,4 +1,4 @@
-//! Why points are not on a plane, or have no b in common, and what would mend it.
+//! Why points cannot be reached at a b, or have no b in common, and a correction.
 
 use serde::{Serialize, Serializer};
 use thiserror::Error;
@@ -6,51 +6,51 @@ use thiserror::Error;
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{Decimal, NoReach, metres};
 
-/// Why a point is not on a plane, and what would do.
+/// Why a point cannot be reached at a b, and which b would be feasible.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unreachable {
-    /// Not on any plane.
+    /// The point cannot be reached at any b.
     #[error("({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
     Anywhere {
-        /// m.
+        /// x of the point, m.
         x: f64,
-        /// m.
+        /// y of the point, m.
         y: f64,
         /// Why no b reaches it.
         reason: NoReach,
     },
-    /// Not on this plane.
+    /// The point can be reached, but not at this b.
     #[error("({}, {}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}", metres(*.x, 3), metres(*.y, 3))]
     OnThisPlane {
-        /// m.
+        /// x of the point, m.
         x: f64,
-        /// m.
+        /// y of the point, m.
         y: f64,
-        /// rad.
+        /// The given b, rad.
         b: f64,
-        /// The b that would do, in words.
+        /// The feasible b, in words.
         would_do: String,
-        /// The nearest of them to b, rad.
+        /// The feasible b nearest to the given one, rad.
         nearest_b: Option<f64>,
-        /// The same as it is shown: rounded to where it still does.
+        /// The same as displayed: rounded to a value that is still feasible.
         shown_b: Option<Decimal>,
     },
-    /// Each point on some plane, but no plane serves all.
+    /// Each point can be reached at some b, but all of them at none.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
     NoCommonPlane(NoCommon),
 }
 
-/// Why points have no b in common, and what would mend it. Points are counted from 0.
+/// Why points have no b in common, and a correction. Points are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoCommon {
-    /// The first two that share no b; none if all do in pairs, but not all at once.
+    /// The first two points that share no b; `None` if each pair shares one, but not all points at once.
     pub pair: Option<[usize; 2]>,
-    /// The least move of one point that would mend it.
+    /// The shortest move of one point after which all points share a b.
     pub mend: Option<Mend>,
 }
 
 impl NoCommon {
-    /// In words, with a name for each point.
+    /// Describes it in words; `name` gives each point a name.
     pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
         let who = match self.pair {
             Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),
@@ -75,21 +75,21 @@ impl NoCommon {
     }
 }
 
-/// A [`Mend`] as it is printed: rounded to numbers that still serve all points.
+/// A [`Mend`] as displayed: rounded to numbers at which all points can still be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownMend {
-    /// Where the point would go, m.
+    /// New place of the point, m.
     pub to: [Decimal; 2],
-    /// The b that then serves all, rad.
+    /// The b that all points then share, rad.
     pub b: Decimal,
-    /// How far the point would go, m.
+    /// Length of the move, m.
     pub far: f64,
-    /// Whether what is planned can then be done too.
+    /// Whether the planned path is then feasible too.
     pub does: bool,
 }
 
 impl ShownMend {
-    /// Where the point would go, m.
+    /// Returns the new place of the point, m.
     pub fn point(&self) -> Vector {
         Vector::new(self.to[0].value(), self.to[1].value())
     }
@@ -102,16 +102,16 @@ impl ShownMend {
 /// A move of one point after which all points have a b in common.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mend {
-    /// Number of the point, counted from 0; serialised from 1, as people count.
+    /// Index of the point, counted from 0; serialised from 1.
     #[serde(serialize_with = "from_one")]
     pub point: usize,
-    /// Where it would go, m.
+    /// New place of the point, m.
     pub to: Vector,
-    /// How far, m.
+    /// Length of the move, m.
     pub distance: f64,
-    /// The b that then serves all, rad.
+    /// The b that all points then share, rad.
     pub b: f64,
-    /// The same as it is printed.
+    /// The same as displayed.
     #[serde(skip)]
     pub shown: Option<ShownMend>,
 }

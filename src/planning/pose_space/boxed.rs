@@ -1,38 +1,39 @@
-//! The step within a box that two linear equations ask for.
+//! The weighted least-squares step within a box, subject to two linear equations.
 //!
 //! # Symbols
 //! | letter | meaning |
 //! |---|---|
-//! | x | the step: least ½ Σ w_i (x_i − y_i)² with Σ c_i x_i = r and low_i ≤ x_i ≤ high_i |
+//! | x | the step: minimises ½ Σ w_i (x_i − y_i)² subject to Σ c_i x_i = r and low_i ≤ x_i ≤ high_i |
 //! | ν | the multiplier of the two equations: x_i = y_i + c_i·ν / w_i, clamped |
 //!
 //! # Method
-//! The dual in ν is concave, piecewise quadratic and of two dimensions: Newton's iteration on it with an exact search along
-//! each direction ends after a few steps. Where no x in the box meets the equations, x comes as near as it can.
+//! The dual is a concave, piecewise quadratic function of the two components of ν. Newton's iteration on it, with an
+//! exact line search, ends after a few iterations. If no x in the box satisfies the equations, x approximates the least
+//! residual.
 
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot};
 
-/// Steps of Newton's iteration at most.
+/// Maximum number of Newton iterations.
 const MAX_ITERATIONS: usize = 30;
-/// What keeps the dual strictly concave, a share of Σ |c_i|² / w_i.
+/// Regularisation that makes the dual strictly concave, as a fraction of Σ |c_i|² / w_i.
 const DAMPING: f64 = 1e-14;
-/// Equations are met when they miss by less than this share of what they ask for.
-const MET_SHARE: f64 = 1e-13;
+/// Relative tolerance of the residual of the equations.
+const RELATIVE_TOLERANCE: f64 = 1e-13;
 
-/// A box, and what a step within it is to be like.
+/// A box-constrained least-squares problem.
 pub(super) struct Boxed<'a> {
-    /// c_i.
+    /// Columns c_i of the equations.
     pub columns: &'a [Vector; MAX_DRIVES],
-    /// w_i, above 0.
+    /// Weights w_i, above 0.
     pub weight: &'a PerDrive,
-    /// y_i.
+    /// Unconstrained optimum y_i.
     pub wish: &'a PerDrive,
-    /// low_i and high_i.
+    /// Bounds low_i and high_i.
     pub range: [[f64; 2]; MAX_DRIVES],
 }
 
 impl Boxed<'_> {
-    /// The step, and its multiplier.
+    /// Returns the step x for the right-hand side r = `wanted`, and the multiplier ν.
     pub fn step(&self, wanted: Vector) -> (PerDrive, Vector) {
         let n = self.wish.len();
         let scale: f64 = (0..n).map(|i| self.columns[i].norm_sqr() / self.weight[i]).sum();
@@ -43,7 +44,7 @@ impl Boxed<'_> {
             return (x, nu);
         }
         let gradient = |x: &PerDrive, nu: Vector| wanted - self.sum(x) - damping * nu;
-        let enough = MET_SHARE * (wanted.norm() + self.sum(self.wish).norm());
+        let enough = RELATIVE_TOLERANCE * (wanted.norm() + self.sum(self.wish).norm());
         for _ in 0..MAX_ITERATIONS {
             let missing = gradient(&x, nu);
             if missing.norm() <= enough {
@@ -83,7 +84,8 @@ impl Boxed<'_> {
         x.iter().zip(self.columns).map(|(x, c)| *c * *x).sum()
     }
 
-    /// How far along a way the dual is greatest, where its slope, which falls in straight pieces, is 0.
+    /// Exact line search: returns where the dual is greatest along a direction. Its slope decreases piecewise linearly
+    /// to 0.
     fn along(&self, nu: Vector, way: Vector, slope: impl Fn(&PerDrive, Vector) -> f64) -> Option<f64> {
         let at = |t: f64| slope(&self.at(nu + t * way), nu + t * way);
         let first = at(0.0);
@@ -114,7 +116,8 @@ impl Boxed<'_> {
             }
             (from, before) = (t, here);
         }
-        // Past the last kink only what damps is left, or what is free all the way.
+        // Past the last kink the slope comes only from the regularisation and from components without bounds in this
+        // direction.
         let beyond = from.max(1.0) * 2.0;
         let here = at(beyond);
         let falls = before - here;

@@ -1,14 +1,16 @@
-//! Poses of a point and a b, continued from the critical poses of the point.
+//! Poses of a point at a b, by continuation from the critical poses of the point.
 //!
 //! # Method
-//! With p fixed, b is a function on the poses of p, and the poses at one b form pieces. Follow such a piece as b rises:
-//! it ends, parts or joins another first at a critical pose, from which b can fall; and whatever falls from there comes
-//! down to that piece without another stop. The same holds downwards. So each piece is found by climbing from a critical
-//! pose below it, or descending from one above it; only pieces on which b goes round without end have none.
+//! With p fixed, b is a function on the poses of p, and the poses at one b form connected components. As b rises, a
+//! component first ends, splits or merges at a critical pose, from which b can fall. A descent from that pose reaches
+//! the component without passing another critical pose. The same holds for falling b. So each component is found by
+//! climbing from a critical pose below it or descending from one above it. The exception are components on which b
+//! increases round and round without end: they have no critical poses.
 //!
-//! From a critical pose b changes first along the joints that can leave their limit with a gain, or else, with t² only,
-//! along the strongest curvature of b among the directions that keep p. From then on Newton's iteration at a given b takes
-//! steps that are least in a, with every a_i within its limits; steps of b are halved where it finds nothing.
+//! From a critical pose, b changes to first order along a joint that leaves its limit in the right sense. Otherwise it
+//! changes to second order, along the direction of largest curvature of b among those that keep p. From there on,
+//! Newton's iteration at prescribed values of b takes steps of least norm in a within the bounds of every a_i. If it
+//! does not converge, the step of b is reduced to a quarter.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -17,44 +19,45 @@ use super::critical::Critical;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// Steps of Newton's iteration at most, the longest, and the shortest, rad.
-const MAX_ITERATIONS: usize = 30;
-const LONGEST: f64 = 0.7;
-const SHORTEST: f64 = 1e-11;
-/// A pose that misses its point by less than this share of the reach is there; one of rounding's making by less than that.
-const AT: f64 = 1e-13;
-const ROUNDED: f64 = 1e-10;
-/// A b as near to a critical one as this, rad, may be off it by rounding; its pose then is on its point up to this share
-/// of the reach.
-const BESIDE_END: f64 = 1e-9;
-const ON_POINT: f64 = 5e-10;
-/// So many steps that do not halve the distance lead nowhere.
-const MAX_SLOW: usize = 6;
-/// How hard a way to a b is tried.
+/// Maximum number of Newton iterations, and the greatest and least step, rad.
+const MAX_NEWTON_ITERATIONS: usize = 30;
+const MAX_STEP_RAD: f64 = 0.7;
+const MIN_STEP_RAD: f64 = 1e-11;
+/// Residual below which a pose is on its point, and a looser one that is accepted at the end; as fractions of the
+/// reach.
+const RESIDUAL_TOLERANCE: f64 = 1e-13;
+const STALLED_TOLERANCE: f64 = 1e-10;
+/// Values of b within this tolerance, rad, of a critical one may differ from it by rounding only. The critical pose
+/// itself is then the solution, if its residual is below this fraction of the reach.
+const CRITICAL_B_TOLERANCE_RAD: f64 = 1e-9;
+const CRITICAL_RESIDUAL: f64 = 5e-10;
+/// Iterations that reduce the residual by less than half are stopped after this number.
+const MAX_SLOW_ITERATIONS: usize = 6;
+/// Limits on the work of one continuation in b.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Steps of b at most.
+    /// Maximum number of steps of b.
     max_steps: usize,
-    /// The shortest of them, as a share of the whole way.
-    least_step: f64,
-    /// So many steps of Newton's iteration that bring nothing lead nowhere.
-    max_vain: usize,
+    /// Least step of b, as a fraction of the whole change.
+    min_step_fraction: f64,
+    /// Maximum number of rejected Newton steps.
+    max_rejected: usize,
 }
 
-/// Where no pose is found yet.
-pub(super) const THOROUGH: Effort = Effort { max_steps: 60, least_step: 1e-5, max_vain: usize::MAX };
-/// Where others are wanted.
-pub(super) const BRIEF: Effort = Effort { max_steps: 8, least_step: 0.05, max_vain: usize::MAX };
-/// Where most likely there is none.
-pub(super) const GLANCE: Effort = Effort { max_steps: 4, least_step: 0.2, max_vain: 2 };
-/// The longest way along a curvature, rad.
-const MAX_LEAP: f64 = 0.2;
-/// How often a shorter one is tried.
-const MAX_LEAPS: usize = 4;
-/// Gains and curvatures below this share of the largest are rounding.
+/// While no pose has been found.
+pub(super) const THOROUGH: Effort = Effort { max_steps: 60, min_step_fraction: 1e-5, max_rejected: usize::MAX };
+/// For further poses.
+pub(super) const BRIEF: Effort = Effort { max_steps: 8, min_step_fraction: 0.05, max_rejected: usize::MAX };
+/// Where most likely there is no pose.
+pub(super) const GLANCE: Effort = Effort { max_steps: 4, min_step_fraction: 0.2, max_rejected: 2 };
+/// Greatest first step along the direction of largest curvature, rad.
+const MAX_FIRST_STEP_RAD: f64 = 0.2;
+/// Number of first steps that are tried, each for a tenth of the rise of the previous one.
+const FIRST_STEP_TRIES: usize = 4;
+/// Derivatives and curvatures of b below this fraction of the largest are treated as zero.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
-/// A way from a critical pose to a b: by how much b has to rise, rad.
+/// A change of b from a critical pose: by `rise`, rad, down if negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Climb<'a> {
     pub from: &'a Critical,
@@ -62,12 +65,12 @@ pub(super) struct Climb<'a> {
 }
 
 impl PoseSpace {
-    /// Where each relative angle may be, rad, one turn where it has no limits.
+    /// Returns the bounds of each relative angle, rad; [−π, π] if it has no limits.
     pub(super) fn windows(&self) -> [[f64; 2]; MAX_DRIVES] {
         std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.limits))
     }
 
-    /// The end effector, m, and ∂p/∂a_i with b held, m.
+    /// Returns the end effector, m, and ∂p/∂a_i with b held, m.
     pub(in crate::planning) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
         let i = Vector::new(0.0, 1.0);
         let mut arm = [Vector::default(); MAX_DRIVES];
@@ -78,7 +81,7 @@ impl PoseSpace {
             place += *arm;
         }
         let mut columns = [Vector::default(); MAX_DRIVES];
-        // Outermost first: a joint turns all drives beyond it, and all together turn back to keep b.
+        // From the outermost joint inwards: a joint turns all drives beyond it, and all together turn back to keep b.
         for (column, joint) in columns.iter_mut().zip(&*self.joints).rev() {
             let [near, far] = joint.ends;
             *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.sum));
@@ -88,7 +91,8 @@ impl PoseSpace {
         (place, columns)
     }
 
-    /// The pose at p, m, and b, rad, that Newton's iteration finds from another one within these ranges.
+    /// Solves for a pose at p, m, and b, rad, by Newton's iteration from another one, within bounds of the relative
+    /// angles.
     pub(in crate::planning) fn solved(
         &self,
         p: Vector,
@@ -99,49 +103,49 @@ impl PoseSpace {
         self.solved_by(p, b, from, (windows, usize::MAX))
     }
 
-    /// The same, with so many steps at most that bring nothing.
+    /// Does the same with at most `max_rejected` rejected steps.
     fn solved_by(
         &self,
         p: Vector,
         b: f64,
         from: &PerDrive,
-        (windows, max_vain): (&[[f64; 2]; MAX_DRIVES], usize),
+        (windows, max_rejected): (&[[f64; 2]; MAX_DRIVES], usize),
     ) -> Option<PerDrive> {
         let (n, reach) = (self.joints.len(), self.farthest());
-        let mut vain = 0;
+        let mut rejected = 0;
         let (even, none) = (PerDrive::from_fn(n, |_| 1.0), PerDrive::zeros(n));
         let mut a = *from;
         let (place, mut columns) = self.columns(&self.lift(&a, b));
-        let mut off = p - place;
-        let (mut longest, mut slow) = (LONGEST, 0);
-        for _ in 0..MAX_ITERATIONS {
-            if off.norm() <= AT * reach {
+        let mut residual = p - place;
+        let (mut longest, mut slow_iterations) = (MAX_STEP_RAD, 0);
+        for _ in 0..MAX_NEWTON_ITERATIONS {
+            if residual.norm() <= RESIDUAL_TOLERANCE * reach {
                 return Some(a);
             }
             let range = within(windows, &a, longest);
-            let (step, _) = Boxed { columns: &columns, weight: &even, wish: &none, range }.step(off);
+            let (step, _) = Boxed { columns: &columns, weight: &even, wish: &none, range }.step(residual);
             let next = PerDrive::from_fn(n, |i| (a[i] + step[i]).clamp(windows[i][0], windows[i][1]));
-            let (place, beside) = self.columns(&self.lift(&next, b));
-            let left = p - place;
-            if left.norm() < off.norm() {
-                slow += usize::from(left.norm() > 0.5 * off.norm());
-                (a, off, columns) = (next, left, beside);
-                longest = (2.0 * longest).min(LONGEST);
-                if slow > MAX_SLOW {
+            let (place, next_columns) = self.columns(&self.lift(&next, b));
+            let next_residual = p - place;
+            if next_residual.norm() < residual.norm() {
+                slow_iterations += usize::from(next_residual.norm() > 0.5 * residual.norm());
+                (a, residual, columns) = (next, next_residual, next_columns);
+                longest = (2.0 * longest).min(MAX_STEP_RAD);
+                if slow_iterations > MAX_SLOW_ITERATIONS {
                     break;
                 }
             } else {
                 longest = 0.25 * step.max_abs();
-                vain += 1;
-                if longest < SHORTEST || vain > max_vain {
+                rejected += 1;
+                if longest < MIN_STEP_RAD || rejected > max_rejected {
                     break;
                 }
             }
         }
-        (off.norm() <= ROUNDED * reach).then_some(a)
+        (residual.norm() <= STALLED_TOLERANCE * reach).then_some(a)
     }
 
-    /// The same from a pose of p at another b, step by step.
+    /// Continues a pose of p from one b to another, rad, in adaptive steps.
     pub(super) fn continued(
         &self,
         p: Vector,
@@ -151,11 +155,11 @@ impl PoseSpace {
     ) -> Option<PerDrive> {
         let mut a = *from;
         let mut step = to - b;
-        let least = effort.least_step * step.abs();
+        let least = effort.min_step_fraction * step.abs();
         for _ in 0..effort.max_steps {
             let last = step.abs() >= (to - b).abs();
             let next = if last { to } else { b + step };
-            match self.solved_by(p, next, &a, (windows, effort.max_vain)) {
+            match self.solved_by(p, next, &a, (windows, effort.max_rejected)) {
                 Some(there) if last => return Some(there),
                 Some(there) => {
                     (a, b) = (there, next);
@@ -170,7 +174,7 @@ impl PoseSpace {
         None
     }
 
-    /// All critical poses of points at a distance from B, m; of B itself none.
+    /// Returns all critical poses of points at a distance from B, m; none for B itself.
     pub(super) fn starts(&self, distance: f64) -> Vec<Critical> {
         let mut starts = Vec::new();
         if distance > 0.0 {
@@ -179,14 +183,15 @@ impl PoseSpace {
         starts
     }
 
-    /// The ways from critical poses to a b, rad, the shortest first; b beside the end of a set by rounding is at that end.
+    /// Returns the changes of b from critical poses to the given b, rad, the smallest first. If b is a critical value
+    /// within rounding, that pose is among them.
     pub(super) fn climbs<'a>(&self, starts: &'a [Critical], b: f64) -> Vec<Climb<'a>> {
         let period = self.period();
         let mut climbs: Vec<Climb<'a>> = Vec::with_capacity(starts.len());
         for from in starts {
             let by = (b - from.b).rem_euclid(period);
-            if by.min(period - by) <= BESIDE_END {
-                climbs.push(Climb { from, rise: if by <= BESIDE_END { by } else { by - period } });
+            if by.min(period - by) <= CRITICAL_B_TOLERANCE_RAD {
+                climbs.push(Climb { from, rise: if by <= CRITICAL_B_TOLERANCE_RAD { by } else { by - period } });
                 continue;
             }
             if from.up {
@@ -200,17 +205,18 @@ impl PoseSpace {
         climbs
     }
 
-    /// The pose at p, m, on the x axis, to which a way leads.
+    /// Follows a climb to a pose at p, m, on the x axis; a critical pose within rounding counts as one.
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
-        self.left(p, climb, effort).or_else(|| {
-            let there = || (self.place(&self.lift(&from.a, from.b + rise)) - p).norm() <= ON_POINT * self.farthest();
-            (rise.abs() <= BESIDE_END && there()).then_some(from.a)
+        self.climbed_strictly(p, climb, effort).or_else(|| {
+            let there =
+                || (self.place(&self.lift(&from.a, from.b + rise)) - p).norm() <= CRITICAL_RESIDUAL * self.farthest();
+            (rise.abs() <= CRITICAL_B_TOLERANCE_RAD && there()).then_some(from.a)
         })
     }
 
-    /// The same without what rounding makes of an end.
-    pub(super) fn left(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
+    /// Does the same without accepting the critical pose itself.
+    pub(super) fn climbed_strictly(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
         let Climb { from: Critical { a, b, .. }, rise } = climb;
         let (b, to) = (*b, b + rise);
         let windows = &self.windows();
@@ -222,12 +228,12 @@ impl PoseSpace {
         }
         let (way, bend) = leave.along?;
         for side in [1.0, -1.0] {
-            let mut rise = rise.abs().min(0.5 * bend * MAX_LEAP * MAX_LEAP);
-            for _ in 0..MAX_LEAPS {
+            let mut rise = rise.abs().min(0.5 * bend * MAX_FIRST_STEP_RAD * MAX_FIRST_STEP_RAD);
+            for _ in 0..FIRST_STEP_TRIES {
                 let by = side * (2.0 * rise / bend).sqrt();
                 let beside = PerDrive::from_fn(a.len(), |i| (a[i] + by * way[i]).clamp(windows[i][0], windows[i][1]));
                 let level = b + rise.copysign(to - b);
-                if let Some(there) = self.solved_by(p, level, &beside, (windows, effort.max_vain)) {
+                if let Some(there) = self.solved_by(p, level, &beside, (windows, effort.max_rejected)) {
                     if let Some(there) = self.continued(p, (&there, level), to, (windows, effort)) {
                         return Some(there);
                     }
@@ -239,7 +245,7 @@ impl PoseSpace {
         None
     }
 
-    /// How b can change from a critical pose by a sign.
+    /// Returns how b can change from a critical pose in the direction of a sign.
     fn leaving(&self, a: &PerDrive, b: f64, sign: f64) -> Leaving {
         let none = Leaving { gains: false, along: None };
         let n = self.joints.len();
@@ -248,7 +254,7 @@ impl PoseSpace {
         let limits = |i: usize| self.joints[i].limits;
         let is_free = |i: &usize| a[*i] > limits(*i)[0] && a[*i] < limits(*i)[1];
         let free: Vec<usize> = (0..n).filter(is_free).collect();
-        // μ is across what all free joints can do.
+        // μ is normal to all that the free joints can do to p.
         let Some(most) = free.iter().copied().max_by(|i, j| columns[*i].norm_sqr().total_cmp(&columns[*j].norm_sqr()))
         else {
             return none;
@@ -289,15 +295,15 @@ impl PoseSpace {
     }
 }
 
-/// How b can change from a critical pose.
+/// The ways in which b can change from a critical pose.
 struct Leaving {
-    /// Whether a joint that stands at its limit gains by leaving it.
+    /// Whether a joint at its limit changes b in the right sense by leaving it.
     gains: bool,
-    /// The direction of the strongest curvature that keeps p, and that curvature.
+    /// The direction of largest curvature of b that keeps p, and that curvature.
     along: Option<(PerDrive, f64)>,
 }
 
-/// What of ranges is left about a pose, and not farther than so many rad.
+/// Returns the bounds relative to a pose, limited to `longest` either way, rad.
 pub(super) fn within(windows: &[[f64; 2]; MAX_DRIVES], a: &PerDrive, longest: f64) -> [[f64; 2]; MAX_DRIVES] {
     std::array::from_fn(|i| {
         let [low, high] = windows[i];

@@ -1,25 +1,28 @@
-//! [`Covered`]: what of the circle of b reaches points at a distance from B.
+//! [`Covered`]: the values of b at which points at a given distance from B can be reached.
 
 use super::critical::Critical;
 use crate::planning::reactionless::BSet;
 
-/// Values as near to a gap as this, as a share of b's period, may pass it from one circle to the next.
+/// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it from one circle to
+/// the next.
 const NEAR_GAP: f64 = 0.125;
 
-/// What of the circle of b is covered at a distance. Sets begin and end at critical values only, so at a distance near by
-/// what lies between the same two is covered as well, or not, unless a third one has passed both: then there are mostly
-/// others about them.
+/// The circle of b at a distance from B, divided by the critical values into gaps that are feasible or not. Feasible
+/// sets begin and end at critical values only. At a nearby distance, the gap between the same two values is therefore
+/// feasible too, or not, unless a third value has passed both. In that case the neighbouring values have mostly
+/// changed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Covered {
-    /// The critical values, from the least.
+    /// The critical values, ascending in b.
     pub ends: Vec<Critical>,
-    /// Whether what lies between each and the next is covered; one, of the whole circle, where there are no values.
+    /// Whether the gap after each critical value is feasible; a single entry for the whole circle if there are no
+    /// critical values.
     pub gaps: Vec<bool>,
     pub period: f64,
 }
 
 impl Covered {
-    /// As intervals of b.
+    /// Returns the feasible set of b.
     pub fn set(&self, period: f64) -> BSet {
         let n = self.ends.len();
         if n == 0 {
@@ -37,7 +40,7 @@ impl Covered {
         BSet::union(parts, period)
     }
 
-    /// What comes to a value at which nothing ends goes on there.
+    /// Extends feasible gaps across critical values at which no component ends.
     pub fn spread(&mut self) {
         let n = self.ends.len();
         for _ in 0..2 {
@@ -52,15 +55,15 @@ impl Covered {
         }
     }
 
-    /// The names of the values about gap i, two on either side.
+    /// Returns the names of the critical values around gap i, two on either side.
     fn around(&self, i: usize) -> [u64; 4] {
         let n = self.ends.len();
         [n - 1, 0, 1, 2].map(|j| self.ends[(i + j) % n].name)
     }
 
-    /// The gap between the same two values as one of another distance; with the same ones on either side of it, too, if
-    /// all have to be. Two values that pass each other keep their order round the circle: of two, it has to be the same
-    /// from 0 on.
+    /// Finds the gap between the same two critical values as gap `i` of another distance. With `all`, the next values
+    /// on either side must agree as well, and none may have passed the gap. Values that pass each other keep their
+    /// cyclic order; so with fewer than three the index must agree too.
     pub fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
         let (n, around) = (self.ends.len(), of.around(i));
         let same = |j: &usize| {
@@ -73,8 +76,8 @@ impl Covered {
         (0..n).find(same)
     }
 
-    /// Whether no value has passed gap j on its way to gap i of another distance: those near either have kept their sides,
-    /// and none is new or gone.
+    /// Whether no critical value has passed gap j on its way to gap i of another distance: the values near either gap
+    /// are the same and lie on the same side of it.
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
         let near = NEAR_GAP * self.period;
         let (here, there) = (self.middle(j), of.middle(i));
@@ -91,19 +94,20 @@ impl Covered {
         keeps(self, here, of, there) && keeps(of, there, self, here)
     }
 
-    /// The b in the middle of a gap, rad.
+    /// Returns the b at the midpoint of a gap, rad.
     fn middle(&self, i: usize) -> f64 {
         let [from, to] = self.edges(i);
         0.5 * (from + to)
     }
 
-    /// The b at which a gap begins and ends, rad.
+    /// Returns the b at which a gap begins and ends, rad.
     pub fn edges(&self, i: usize) -> [f64; 2] {
         let n = self.ends.len();
         [self.ends[i].b, if i + 1 < n { self.ends[i + 1].b } else { self.ends[0].b + self.period }]
     }
 
-    /// How far below and above gap i poses in it may come from without passing a gap that is empty, rad.
+    /// Returns how far below and above gap i the next gaps lie that are known to be empty, rad: poses in gap i cannot
+    /// come from beyond them.
     pub fn free(&self, i: usize, empty: &[bool]) -> [f64; 2] {
         let n = self.ends.len();
         let [from, to] = self.edges(i);
@@ -114,7 +118,7 @@ impl Covered {
         [low, high]
     }
 
-    /// Covers what is covered at a distance beside this one: what was found there cannot be missing here.
+    /// Marks gaps as feasible that are feasible at a neighbouring distance: a component found there exists here too.
     pub fn covers_too(&mut self, beside: &Self) {
         for i in 0..self.ends.len() {
             self.gaps[i] |= beside.gap(self, i, true).is_some_and(|j| beside.gaps[j]);
@@ -122,7 +126,7 @@ impl Covered {
         self.spread();
     }
 
-    /// Whether all of it was covered, where there were no values.
+    /// Whether the whole circle is feasible; `None` if there are critical values.
     pub fn whole(&self) -> Option<bool> {
         self.gaps.first().copied().filter(|_| self.ends.is_empty())
     }

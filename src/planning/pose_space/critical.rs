@@ -1,4 +1,5 @@
-//! The values at which b of a point can end: where it is stationary within what the limits leave free.
+//! Critical values of b of a point, where its feasible set of b can end: b is stationary with respect to the joints
+//! that are not at a limit.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,62 +9,62 @@ use super::pattern::{At, Pattern, SPACES, Signs, place};
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// A pose at which b is stationary, and where it may go from there.
+/// A pose at which b is stationary, and whether b can rise or fall from there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Critical {
     /// b for the point on the x axis, rad.
     pub b: f64,
     /// Whether b can rise from here while the end effector stays.
     pub up: bool,
-    /// Whether it can fall.
+    /// Whether b can fall.
     pub down: bool,
-    /// The same for the same value at another distance: its pattern, signs, side and whole turns.
+    /// Identifies the same critical value at other distances: its pattern, signs, side and whole turns.
     pub name: u64,
     pub spot: Spot,
-    /// Its relative angles, rad.
+    /// Relative angles, rad.
     pub a: PerDrive,
-    /// Whether where b goes from it is known; where values of b merge it is not always.
+    /// Whether `up` and `down` are certain; where several values of b merge they may not be.
     pub sure: bool,
-    /// How many compounds it has.
+    /// Number of compounds.
     count: usize,
 }
 
 impl Critical {
-    /// Whether b goes up from it, for certain.
+    /// Whether b certainly can rise from here.
     pub fn rises(&self) -> bool {
         self.sure && self.up
     }
 
-    /// Whether b goes down from it, for certain.
+    /// Whether b certainly can fall from here.
     pub fn falls(&self) -> bool {
         self.sure && self.down
     }
 
-    /// Whether nothing that comes to it from below ends there.
+    /// Whether a component that comes from below certainly does not end here.
     pub fn passes_up(&self) -> bool {
         self.sure && !self.down
     }
 
-    /// Whether nothing that comes to it from above ends there.
+    /// Whether a component that comes from above certainly does not end here.
     pub fn passes_down(&self) -> bool {
         self.sure && !self.up
     }
 
-    /// Takes in another one at the same b. Where a curve comes to a limit two are one pose: the one with more freedoms
-    /// knows where b goes from there; of two compounds b ends where one of them says so. Else b goes where it goes from
-    /// either.
+    /// Merges another critical pose at the same b. Where a curve of critical poses meets a limit, both may be the same
+    /// pose. Then the one with more compounds decides whether b can rise or fall; if each has two, b can do so only if
+    /// both say so. In all other cases b can do so if it can from either.
     pub fn merge(&mut self, other: &Self) {
         let near = |apart: f64| self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < apart);
-        let one = near(SAME_POSE);
-        // Between poses that are near but not the same b may rise and fall by less than tells values apart.
-        self.sure &= other.sure && (!one || near(SAME_ANGLES));
+        let one = near(SAME_POSE_RAD);
+        // Between poses that are near but not the same, b may vary by less than the tolerance of equal values.
+        self.sure &= other.sure && (!one || near(SAME_ANGLES_RAD));
         if one && self.count != other.count {
             if other.count > self.count {
                 *self = Self { sure: self.sure, ..*other };
             }
             return;
         }
-        // Whichever comes first, it is the same one at other distances.
+        // Independent of the order of merging, so that it is the same at other distances.
         if other.spot.curve < self.spot.curve {
             (self.spot, self.a, self.count) = (other.spot, other.a, other.count);
         }
@@ -78,22 +79,22 @@ impl Critical {
     }
 }
 
-/// Where on the curves of critical poses a pose is: which curve, and how far along it.
+/// A place on the curves of critical poses: the curve, and the parameter along it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spot {
     pub curve: Curve,
-    /// Of two compounds the angle between their arms, γ from 0 to π; of more t, with ν = ν_most sin t.
+    /// With two compounds the angle γ between their arms, 0 to π; with more the t of ν = ν_max sin t.
     pub t: f64,
 }
 
-/// A curve of critical poses over the distance from B.
+/// A curve of critical poses, parametrised over the distance from B.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) struct Curve {
     pattern: u32,
     bits: u32,
-    /// Whether it is mirrored at the line from B to the point.
+    /// Whether it is mirrored in the line from B to the point.
     mirrored: bool,
-    /// How many whole turns each relative angle is less than what the directions of the arms give.
+    /// Whole turns subtracted from each relative angle that follows from the directions of the arms.
     turns: [i8; MAX_DRIVES],
 }
 
@@ -108,32 +109,32 @@ impl Curve {
     }
 }
 
-/// Angles may miss their limits by this much, rad: rounding of an inverse.
-const SLACK: f64 = 1e-9;
+/// Tolerance of the joint limits for rounding of the inverse kinematics, rad.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// Distances as near to that of a corner of the limits as this, as a share of the reach, are its own: twice as far as
-/// the slack of the limits goes. An angle is not looked at there if it misses its limit by more than the second, rad.
-const CORNER: f64 = 2e-9;
-const CORNER_ANGLE: f64 = 1e-3;
+/// Tolerance of the distance of a corner of the limits, as a fraction of the reach: twice the effect of the tolerance
+/// of the limits. It is only checked for angles within the second tolerance, rad, of a limit.
+const CORNER_TOLERANCE: f64 = 2e-9;
+const CORNER_ANGLE_RAD: f64 = 1e-3;
 
-/// What a joint at its limit gains in b is nothing to rounding up to this share of the largest λ.
-const NO_GAIN: f64 = 1e-12;
+/// The gain in b of leaving a limit is treated as zero below this fraction of the largest λ.
+const GAIN_TOLERANCE: f64 = 1e-12;
 
-/// Poses with the same b are one if no angle differs by more than this, rad: b is stationary there.
-const SAME_POSE: f64 = 0.1;
+/// Poses with equal b are one pose if no angle differs by more than this, rad: b is stationary there.
+const SAME_POSE_RAD: f64 = 0.1;
 
-/// The same pose, to what the slack of limits makes of it, rad.
-const SAME_ANGLES: f64 = 1e-6;
+/// Poses are equal within the tolerance of the limits if no angle differs by more than this, rad.
+const SAME_ANGLES_RAD: f64 = 1e-6;
 
-/// Poses of a curve may miss the limits by this much, rad: what a root that is found to 1e-11 makes of them.
-const LIMIT_MISS: f64 = 1e-6;
+/// Tolerance of the joint limits along a curve, rad: the effect of roots with an error of 1e-11.
+const CURVE_LIMIT_TOLERANCE_RAD: f64 = 1e-6;
 
-/// A step of Newton's iteration after which it is there.
-const LAST_NEWTON_STEP: f64 = 1e-11;
+/// Newton's iteration has converged after a step below this.
+const NEWTON_TOLERANCE: f64 = 1e-11;
 
 impl PoseSpace {
-    /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles. False where
-    /// rounding decides on some: all arms may be on one line, or all joints at limits.
+    /// Visits each critical value of b for points at a distance from B above 0, m, with its relative angles. Returns
+    /// false if rounding affects some of them: all arms may be on one line, or all joints at limits.
     pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
         let mut regular = true;
         for (i, pattern) in self.patterns().iter().enumerate() {
@@ -151,7 +152,8 @@ impl PoseSpace {
         regular
     }
 
-    /// The distance from B, m, and b for the point on the x axis, rad, of a pose of a curve; `None` beyond the limits.
+    /// Returns the distance from B, m, and b for the point on the x axis, rad, of a pose on a curve; `None` outside the
+    /// limits.
     pub(super) fn along(&self, curve: &Curve, t: f64) -> Option<(f64, f64)> {
         let c = self.patterns().get(curve.pattern as usize)?;
         let mut angle = [0.0; MAX_DRIVES];
@@ -178,14 +180,15 @@ impl PoseSpace {
                     joint.sense * (far - near) + c.shift[i] - TAU * f64::from(curve.turns[i])
                 }
             };
-            if a[i] < low - LIMIT_MISS || a[i] > high + LIMIT_MISS {
+            if a[i] < low - CURVE_LIMIT_TOLERANCE_RAD || a[i] > high + CURVE_LIMIT_TOLERANCE_RAD {
                 return None;
             }
         }
         Some((distance, turn(c.of[0]) * self.sum + self.b(&self.unturned(&a))))
     }
 
-    /// Two compounds: the point leaves no freedom, so b is where it is. False where a pose is in a corner of the limits.
+    /// Two compounds: the point leaves no freedom, and each pose has a single b. Returns false if a pose is in a corner
+    /// of the limits.
     fn triangle(&self, c: &Pattern, (name, curve): (u64, Curve), r: f64, found: &mut impl FnMut(Critical)) -> bool {
         let [l, m] = [c.length[0], c.length[1]];
         let cos = (r * r + l * l - m * m) / (2.0 * r * l);
@@ -206,7 +209,7 @@ impl PoseSpace {
                 found(critical);
             };
             let decided = self.poses_of(c, (name, spot), turn, &mut noted, || {
-                // μ with Λ = Re(μ̄ i L e^{iψ}) for both.
+                // μ such that Λ = Re(μ̄ i L e^{iψ}) for both.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
                 let det = j.re * k.im - j.im * k.re;
@@ -223,24 +226,25 @@ impl PoseSpace {
         regular
     }
 
-    /// Whether the free joint of two compounds comes to a limit as near to this distance from B, m, as the slack of the
-    /// limits lets curves go on past their ends. All curves of one corner answer alike. Two drives have one curve only.
+    /// Whether the free joint of two compounds reaches a limit at this distance from B, m, within the overshoot that
+    /// the tolerance of the limits allows. All curves that meet in a corner give the same answer. Two drives have one
+    /// curve only.
     fn in_corner(&self, c: &Pattern, a: &PerDrive, r: f64) -> bool {
         let Some(i) = (0..self.joints.len()).find(|i| c.at[*i] == At::Free && self.joints.len() > 1) else {
             return false;
         };
         let limits = self.joints[i].limits;
-        limits.into_iter().filter(|limit| (a[i] - limit).abs() < CORNER_ANGLE).any(|limit| {
+        limits.into_iter().filter(|limit| (a[i] - limit).abs() < CORNER_ANGLE_RAD).any(|limit| {
             let mut corner = *a;
             corner[i] = limit;
             let q = self.unturned(&corner);
             let p: Vector = self.tip.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
-            (p.norm() - r).abs() < CORNER * self.farthest()
+            (p.norm() - r).abs() < CORNER_TOLERANCE * self.farthest()
         })
     }
 
-    /// Three compounds and more: one equation in ν for each choice of signs. False where a solution is at ν = 0, all
-    /// arms on one line, to rounding.
+    /// Three compounds and more: one equation in ν for each choice of signs. Returns false if a solution lies at ν = 0
+    /// within rounding, with all arms on one line.
     fn stationary(
         &self,
         c: &Pattern,
@@ -274,8 +278,9 @@ impl PoseSpace {
         regular
     }
 
-    /// The poses of compounds that are turned so, in every winding that the limits allow. If there are any, it is asked
-    /// for μ and for where b goes with no joint that is held. False where rounding decides what a held joint makes of b.
+    /// Visits the poses of compounds turned by `turn`, in each winding within the limits. If there are any, `which` is
+    /// called; it returns μ and whether b can rise or fall with all held joints fixed. Returns false if rounding
+    /// decides how b changes when a held joint leaves its limit.
     fn poses_of(
         &self,
         c: &Pattern,
@@ -284,7 +289,7 @@ impl PoseSpace {
         found: &mut impl FnMut(Critical),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
     ) -> bool {
-        // The least of each angle's values.
+        // The least feasible value of each angle.
         let mut a = PerDrive::zeros(self.joints.len());
         for (i, joint) in self.joints.iter().enumerate() {
             let [low, high] = joint.limits;
@@ -294,10 +299,10 @@ impl PoseSpace {
                 At::Free => {
                     let [near, far] = joint.ends.map(|k| turn(c.of[k]));
                     let own = joint.sense * (far - near) + c.shift[i];
-                    let turns = ((own - low + SLACK) / TAU).floor();
+                    let turns = ((own - low + LIMIT_TOLERANCE_RAD) / TAU).floor();
                     let angle = own - TAU * turns;
                     spot.curve.turns[i] = turns as i8;
-                    if angle > high + SLACK {
+                    if angle > high + LIMIT_TOLERANCE_RAD {
                         return true;
                     }
                     angle
@@ -307,7 +312,8 @@ impl PoseSpace {
         let (mu, [mut up, mut down]) = which();
         let mut undecided = false;
         if let Some(mu) = mu.filter(|_| c.held) {
-            // What b gains from each drive beyond what keeps the point, and of each joint from all that it turns.
+            // The derivative of b beyond what keeps the point: for each drive, and for each joint the sum over all
+            // drives that it turns.
             let mut gain = PerDrive::from_fn(self.drives(), |k| {
                 let q = turn(c.of[k]) + c.delta[k];
                 self.lambda[k] - self.tip[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
@@ -323,7 +329,7 @@ impl PoseSpace {
                 if joint.limits[0] == joint.limits[1] {
                     continue;
                 }
-                if own.abs() <= NO_GAIN * scale {
+                if own.abs() <= GAIN_TOLERANCE * scale {
                     undecided = true;
                 } else {
                     let rises = (own > 0.0) == (at == At::Least);
@@ -332,7 +338,7 @@ impl PoseSpace {
                 }
             }
         }
-        // Drive 1 as it is; b counts the windings.
+        // The first term is that of drive 1; the windings change b.
         let first = turn(c.of[0]) * self.sum;
         self.wound(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
@@ -345,7 +351,7 @@ impl PoseSpace {
         !undecided || (up && down)
     }
 
-    /// Each choice of whole turns that puts all free angles within their limits, from the least.
+    /// Visits each choice of whole turns that puts all free angles within their limits, in ascending order.
     fn wound(&self, i: usize, c: &Pattern, mut a: PerDrive, name: u64, take: &mut impl FnMut(&PerDrive, u64)) {
         let Some(joint) = self.joints.get(i) else { return take(&a, name) };
         if c.at[i] != At::Free {
@@ -354,7 +360,7 @@ impl PoseSpace {
         let [low, high] = joint.limits;
         let mut angle = a[i];
         let mut turns = 0;
-        while angle <= high + SLACK {
+        while angle <= high + LIMIT_TOLERANCE_RAD {
             a[i] = angle.clamp(low, high);
             self.wound(i + 1, c, a, name | turns << (4 * i), take);
             angle += TAU;
@@ -363,8 +369,8 @@ impl PoseSpace {
     }
 }
 
-/// Whether b rises, and whether it falls, from a stationary pose in some direction that keeps the point: the form
-/// −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
+/// Returns whether b can rise, and whether it can fall, from a stationary pose to second order while the point is kept:
+/// the signs of the form −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
 fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> [bool; 2] {
     if n == 3 {
         let x = [
@@ -378,8 +384,8 @@ fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) ->
     signature(n, nu, c, lambda).unwrap_or_else(|| by_basis(n, nu, c, lambda))
 }
 
-/// The same by Haynsworth: the signs of a form on a subspace are those of the form and of the Schur complement of the
-/// two conditions, less two of each. `None` where one of them is 0 to rounding.
+/// Returns the same by Haynsworth's inertia theorem: the signs of the form on the subspace are those of the form, plus
+/// those of the Schur complement of the two conditions, less two of each. `None` if a pivot is zero within rounding.
 fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> Option<[bool; 2]> {
     let size = c[..n].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (mut positive, mut negative) = (0, 0);
@@ -402,7 +408,7 @@ fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES
     if det.abs() < 1e-6 * (size * scale + mixed * mixed) {
         return None;
     }
-    // For ν above 0; below it both change places.
+    // For ν > 0; for ν < 0 they are swapped.
     let complement = match (det < 0.0, sum > 0.0) {
         (true, _) => [1, 1],
         (false, true) => [2, 0],
@@ -412,9 +418,9 @@ fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES
     Some(if nu > 0.0 { ways } else { [ways[1], ways[0]] })
 }
 
-/// The same from a basis of what the two conditions leave.
+/// Returns the same from a basis of the null space of the two conditions.
 fn by_basis(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> [bool; 2] {
-    // A basis of what is normal to both, by orthogonalisation.
+    // The basis by orthogonalisation; its first two rows span the conditions.
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
     let candidates = [c[..n].to_vec(), lambda[..n].to_vec()].into_iter();
     let axes = (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect::<Vec<f64>>());
@@ -441,7 +447,7 @@ fn by_basis(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]
     [values.iter().any(|v| *v > least), values.iter().any(|v| *v < -least)]
 }
 
-/// Where |p|² of stationary poses is a square, each place t once, and after how many of those where it turns back.
+/// Finds each t at which |p|² of the stationary poses equals `square`, with the number of turning points before it.
 fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usize)) {
     if !(signs.least..=signs.greatest).contains(&square) {
         return;
@@ -452,8 +458,9 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     };
     let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let value = |i: usize| signs.values[i] - square;
-    // From one turn to the next it rises or falls. Where a turn lies among poses beyond the limits it is not known exactly:
-    // one stretch ends at the place before it and the next begins at the place after. Ends: the cell, t and the value.
+    // Between turning points |p|² is monotone. A turning point in a cell beyond the limits is not known exactly: the
+    // monotone interval before it ends at the cell's start, the next begins at its end. Ends: the cell, t and the
+    // value.
     let end = |i: usize| (place(i), value(i));
     let (mut first, mut from) = (0, end(0));
     for turns in 0..=signs.turns.len() {
@@ -468,7 +475,7 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
         if from.1 == 0.0 {
             found(from.0, turns);
         } else if from.0 < to.0 && (from.1 * to.1 < 0.0 || (to.1 == 0.0 && next.1.0 > to.0)) {
-            // The last place that is on the side of the first end, and the next.
+            // Bisection for the cell in which the sign changes.
             let (mut low, mut high) = (first, last);
             while high - low > 1 {
                 let middle = (low + high) / 2;
@@ -487,8 +494,8 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     }
 }
 
-/// A zero between places of opposite sign, of a function with its slope: Newton's iteration, and halves where it leaves
-/// the places or is slow.
+/// Finds a zero of a function with a known slope between two places of opposite sign: Newton's iteration, safeguarded
+/// by bisection where it leaves the bracket or converges slowly.
 fn bracketed(f: &impl Fn(f64) -> (f64, f64), [mut a, mut b]: [f64; 2], [fa, fb]: [f64; 2]) -> f64 {
     let mut x = a + (b - a) * (fa / (fa - fb));
     let mut last = b - a;
@@ -505,8 +512,8 @@ fn bracketed(f: &impl Fn(f64) -> (f64, f64), [mut a, mut b]: [f64; 2], [fa, fb]:
         }
         x += step;
         last = step;
-        // What is left of it is the square of this.
-        if step.abs() <= if newton { LAST_NEWTON_STEP } else { 2.0 * f64::EPSILON } {
+        // The error after a Newton step is of the order of its square.
+        if step.abs() <= if newton { NEWTON_TOLERANCE } else { 2.0 * f64::EPSILON } {
             break;
         }
     }

@@ -1,4 +1,4 @@
-//! Poses of a point and a b with one drive at a given angle.
+//! Poses of a point at a b with one drive at a given angle.
 
 use std::f64::consts::TAU;
 
@@ -7,31 +7,31 @@ use super::pattern::Patterns;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
-/// Whole turns of that drive either way from the middle of its range.
+/// Number of whole turns of that drive tried on either side of the middle of its range.
 const MAX_TURNS: i32 = 3;
-/// Rounding of a limit, rad.
-const LIMIT_ROUNDING: f64 = 1e-9;
+/// Tolerance of the joint limits for rounding, rad.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
 impl PoseSpace {
-    /// Poses of four drives and more within the limits that put the end effector on `p`, m, at `b`, rad, with a drive at
-    /// an angle, rad, whole turns aside: those nearest to the given relative angles first. Without one for a drive that
-    /// others are joined to.
+    /// Returns poses of four and more drives within the limits that put the end effector on `p`, m, at `b`, rad, with
+    /// one drive at an angle, rad, modulo whole turns. The poses nearest to the given relative angles come first.
+    /// Returns none if other drives are joined to the given one beyond it.
     pub fn facing(&self, p: Vector, b: f64, (drive, angle): (usize, f64), near: &[f64]) -> Vec<DriveAngles> {
         let Some((rest, joint)) = self.without(drive) else { return Vec::new() };
-        let left = p - self.tip[drive] * unit(angle);
+        let rest_target = p - self.tip[drive] * unit(angle);
         let about = ((self.lift(&self.middle(), b)[drive] - angle) / TAU).round();
         let mut found: Vec<(f64, DriveAngles)> = Vec::new();
         for turn in -MAX_TURNS..=MAX_TURNS {
             let own = angle + TAU * (about + f64::from(turn));
             let wanted: Vec<f64> = (0..self.joints.len()).filter(|i| *i != joint).map(|i| near[i]).collect();
-            for others in rest.poses(left, b - self.lambda[drive] * own, &wanted) {
+            for others in rest.poses(rest_target, b - self.lambda[drive] * own, &wanted) {
                 let q = PerDrive::from_fn(self.drives(), |k| match k {
                     k if k == drive => own,
                     k => others[k - usize::from(k > drive)],
                 });
                 let [low, high] = self.joints[joint].bounds();
                 let a = self.joints[joint].of(&q);
-                if a >= low - LIMIT_ROUNDING && a <= high + LIMIT_ROUNDING {
+                if a >= low - LIMIT_TOLERANCE_RAD && a <= high + LIMIT_TOLERANCE_RAD {
                     let far = self.angles(&q).iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum();
                     found.push((far, DriveAngles(q)));
                 }
@@ -41,7 +41,7 @@ impl PoseSpace {
         found.into_iter().map(|(_, q)| q).collect()
     }
 
-    /// The same machine less a drive to which no other is joined, and the joint that it had.
+    /// Returns the machine without a drive at the end of the joint tree, and the index of its joint.
     fn without(&self, drive: usize) -> Option<(Self, usize)> {
         let mut own = self.joints.iter().enumerate().filter(|(_, joint)| joint.ends.contains(&drive));
         let (joint, _) = own.next().filter(|(_, joint)| joint.ends[1] == drive)?;

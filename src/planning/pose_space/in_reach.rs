@@ -1,4 +1,4 @@
-//! [`Reach`]: whether a hand's target can be reached while b is held.
+//! [`Reach`]: whether the target of a drag can be reached while b is held.
 
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::Decimal;
@@ -8,17 +8,18 @@ use crate::planning::reactionless::Decimal;
 pub enum Reach {
     /// The target can be reached.
     Inside,
-    /// It cannot; the machine waits at the nearest point that it can reach with b held.
+    /// The target cannot be reached; the machine stays at the nearest point that is feasible with b held.
     Outside {
-        /// Where it waits, m.
+        /// The nearest feasible point, m.
         nearest: Vector,
-        /// The b nearest to the present one that would reach the target, rad; none if no b does.
+        /// The b nearest to the present one at which the target can be reached, rad; `None` if there is none.
         mending_b: Option<f64>,
-        /// The same as it is shown: rounded to where it still does.
+        /// The same as displayed: rounded to a value that is still feasible.
         shown_b: Option<Decimal>,
-        /// A pose of this b reaches it, but beyond a fold, or a change point to keep off.
+        /// Whether a pose at this b reaches it, but beyond a fold, or beyond a change point that is to be kept off.
         other_sheet: bool,
     },
-    /// It cannot any more since b was changed, so the machine keeps its relative angles and turns with its workspace.
+    /// A change of b has made the target infeasible, so the machine keeps its relative angles and turns with its
+    /// workspace.
     Carried,
 }

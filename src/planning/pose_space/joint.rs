@@ -1,39 +1,39 @@
-//! [`Joint`]: one of the relative angles that join all drives.
+//! [`Joint`]: one of the relative angles that connect all drives.
 
-/// A relative joint angle between the drive that is nearer to drive 1 and the other.
+/// A relative angle between two drives, one of them nearer to drive 1 in the tree of joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
     /// The drive nearer to drive 1, and the other, counted from 0.
     pub(super) ends: [usize; 2],
-    /// 1 where the other one's angle is added.
+    /// Sign of the farther drive's angle in the relative angle: 1 or −1.
     pub(super) sense: f64,
-    /// rad.
+    /// Constant offset of the angle, rad.
     pub(super) offset: f64,
-    /// Least and greatest angle, rad; one turn where there are no limits.
+    /// Bounds, rad; [−π, π] if the joint is free.
     pub(super) limits: [f64; 2],
-    /// Whether there are none.
+    /// Whether the joint has no limits.
     pub(super) free: bool,
-    /// Its place among the machine's angles; none where the file names no angle that joins these drives.
+    /// Index among the machine's angles; `None` if the file names no angle between these drives.
     pub(super) angle: Option<usize>,
 }
 
 impl Joint {
-    /// Least and greatest angle, rad.
+    /// Returns the bounds, rad; [−π, π] if the joint is free.
     pub fn limits(&self) -> [f64; 2] {
         self.limits
     }
 
-    /// The same, without end where there are no limits.
+    /// Returns the bounds, rad; infinite if the joint is free.
     pub fn bounds(&self) -> [f64; 2] {
         if self.free { [f64::NEG_INFINITY, f64::INFINITY] } else { self.limits }
     }
 
-    /// Its place among the machine's angles; none where the file has no angle between these drives.
+    /// Returns the index among the machine's angles; `None` if the file has no angle between these drives.
     pub fn angle(&self) -> Option<usize> {
         self.angle
     }
 
-    /// The angle of a pose, rad.
+    /// Returns the relative angle of a pose, rad.
     pub fn of(&self, q: &[f64]) -> f64 {
         self.sense * (q[self.ends[1]] - q[self.ends[0]]) + self.offset
     }

@@ -1,4 +1,4 @@
-//! [`NoPoseSpace`]: why a machine has no pose constant, and what little of it few drives have.
+//! [`NoPoseSpace`]: why a machine has no pose constant; and why a machine of few drives follows no curves.
 
 use thiserror::Error;
 
@@ -16,19 +16,19 @@ pub enum NoPoseSpace {
         .pair[0], .pair[1], significant(*residual), if *.only { ONLY_TWO } else { "" }
     )]
     Varies {
-        /// The drives that are coupled most, counted from 1.
+        /// The pair of drives with the largest coupling, counted from 1.
         pair: [usize; 2],
-        /// |C_kl|, kg m².
+        /// Size of the coupling |C_kl|, kg m².
         residual: f64,
         /// The link that contributes most.
         link: String,
-        /// Whether there are only these two drives.
+        /// Whether the machine has only these two drives.
         only: bool,
     },
-    /// Every D_k is 0.
+    /// Every inertia D_k is 0.
     #[error("every motion of this machine is reactionless, as no drive turns the base: there is no b to hold")]
     Free,
-    /// Turning the machine as a whole changes b the wrong way, or not at all.
+    /// Turning the machine as a whole decreases b, or leaves it unchanged.
     #[error(
         "turned as a whole, this machine changes b by Σλ = {}: want it above 0, with rotors that turn the other way less \
          fast or lighter", Short(*sum)
@@ -37,58 +37,58 @@ pub enum NoPoseSpace {
         /// Σλ.
         sum: f64,
     },
-    /// The relative angles bind each other.
+    /// A relative angle joins drives that are already connected: a closed loop.
     #[error(
         "angle {angle:?} joins drives that the angles before it join already: want at most one way between two drives \
          for reactionless planes"
     )]
     Loop {
-        /// The angle.
+        /// Name of the angle.
         angle: String,
     },
-    /// Limits too far apart to count windings one by one.
+    /// Limits too far apart for windings to be counted one by one.
     #[error("angle {angle:?} may turn by {width:.2} rad: want limits at most eight turns apart, {WIDEST} rad")]
     TooWide {
-        /// The angle.
+        /// Name of the angle.
         angle: String,
         /// max − min, rad.
         width: f64,
     },
-    /// An arm that is nothing, or all of them.
+    /// The reach is 0 or otherwise outside the numerical range.
     #[error("the arms reach {} m: want a reach of 1e-9 to 1e9 m", Short(*reach))]
     Size {
-        /// Σ |c_k|, m.
+        /// Reach Σ |c_k|, m.
         reach: f64,
     },
 }
 
-/// Why no curve of the end effector can be followed while b is held, in words.
+/// Why the end effector cannot follow prescribed curves while b is held, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("while b is held the end effector of a machine with {} has its own way", counted(*.drives, "drive"))]
 pub struct OwnWay {
-    /// Drives of the machine.
+    /// Number of drives of the machine.
     pub drives: usize,
 }
 
-/// Two drives keep something even so: see [`b_integral`](crate::planning::off_plane::b_integral).
+/// Even then two drives conserve an integral: see [`b_integral`](crate::planning::off_plane::b_integral).
 const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
                         b, because its λ changes with the pose";
 
-/// Up to this share λ changes so little that to hold b keeps most of the moment from the base.
-const NEARLY: f64 = 0.1;
+/// Below this relative variation of λ, holding b removes most of the base moment.
+const MAX_POSE_DEPENDENCE: f64 = 0.1;
 
-/// Whether holding Σ λ_k q_k keeps every moment from the base.
+/// Whether holding Σ λ_k q_k keeps the base free of moments.
 pub(crate) fn is_reactionless(machine: &Machine) -> bool {
     Inertia::of(machine).is_invariant()
 }
 
-/// The inertia of a machine with λ that are constant, or nearly.
+/// Returns the inertia of a machine whose λ are constant, or nearly so.
 ///
 /// # Errors
-/// Why it has none.
+/// If the machine has no pose constant: the reason.
 pub(crate) fn held(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
     let inertia = Inertia::of(machine);
-    if inertia.pose_dependence() > NEARLY {
+    if inertia.pose_dependence() > MAX_POSE_DEPENDENCE {
         return Err(varies(machine, &inertia));
     }
     if inertia.pose_inertia() == 0.0 {
@@ -97,7 +97,7 @@ pub(crate) fn held(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
     Ok(inertia)
 }
 
-/// The drives that are coupled most, and the link that contributes most to that.
+/// Finds the pair of drives with the largest coupling, and the link that contributes most to it.
 fn varies(machine: &Machine, inertia: &Inertia) -> NoPoseSpace {
     let n = machine.drives();
     let coupled = |(k, l): &(usize, usize)| inertia.coupling(*k, *l).norm();
@@ -105,7 +105,7 @@ fn varies(machine: &Machine, inertia: &Inertia) -> NoPoseSpace {
     let whole = inertia.coupling(k, l);
     let part = |j: &usize| {
         let a = machine.com_chain(*j);
-        // As far as it adds to the sum, rather than taking from it.
+        // Component in the direction of the sum.
         (machine.links()[*j].mass * a[k].conj() * a[l] * whole.conj()).re
     };
     let most = (0..machine.links().len()).max_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);

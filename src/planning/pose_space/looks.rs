@@ -1,10 +1,10 @@
 //! Whether any pose is at a distance from B between two critical values of b.
 //!
 //! # Method
-//! What lies between two critical values goes on to both of them, and ends or joins another piece at critical poses
-//! beyond. So it is found by climbing from the nearest critical poses below and by descending from the nearest ones
-//! above. Only pieces on which b goes round without an end come from none: for these, a look over the last joints, with
-//! the three arms that are left in closed form.
+//! A component between two critical values of b extends to both of them, and ends or merges at critical poses beyond.
+//! So it is found by climbing from the nearest critical poses below or descending from the nearest ones above.
+//! Components on which b goes round without end have no critical poses. They are found on a grid over the last joints,
+//! with the remaining three arms in closed form.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,56 +14,56 @@ use super::space::{AT_BASE, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
-/// Looks over the range of the joints that are left free, for one, two, three and more of them.
-const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
-/// Of how many critical poses on either side of a gap, the nearest ones, ways lead into it: at first, and with all care.
-const NEAREST: [usize; 2] = [3, 24];
-/// How far into it, as a share of it.
-const GAP_DEPTH_SHARE: f64 = 0.3;
-/// And at most, as a share of b's period.
-const MAX_GAP_DEPTH_SHARE: f64 = 0.02;
-/// How often all joints turn at most to come to a distance.
+/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of these.
+const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];
+/// Number of critical poses on either side of a gap from which climbs are tried: in a quick and in a careful search.
+const NEAREST_CRITICALS: [usize; 2] = [3, 24];
+/// Depth of a climb into a gap, as a fraction of the gap.
+const GAP_DEPTH: f64 = 0.3;
+/// Maximum of this depth, as a fraction of the period of b.
+const MAX_GAP_DEPTH: f64 = 0.02;
+/// Maximum number of sweeps over all joints in a search for a pose at a distance.
 const MAX_SWEEPS: usize = 200;
-/// Turns that bring less than this share of the reach are nothing.
-const NO_TURN_SHARE: f64 = 1e-12;
-/// Places all over the ranges from which poses at a distance are come to, at first and with all care.
-const SAMPLES: [usize; 2] = [32, 512];
-/// How far inside a gap one of them is, as a share of it.
-const INSIDE_GAP_SHARE: f64 = 1e-3;
-/// From how near B poses lead onto it, as a share of the reach.
-const NEAR_BASE: f64 = 1e-2;
-/// Critical values that are one, to rounding, rad.
-const SAME_CRITICAL: f64 = 1e-9;
+/// Sweeps that reduce the error of the distance by less than this fraction of the reach end the search.
+const MIN_SWEEP_GAIN: f64 = 1e-12;
+/// Number of samples of all ranges from which poses at a distance are sought: in a quick and in a careful search.
+const START_SAMPLES: [usize; 2] = [32, 512];
+/// Margin by which a sample must lie inside a gap, as a fraction of the gap.
+const GAP_MARGIN: f64 = 1e-3;
+/// Distance from B at which poses are sought as a start for one at B, as a fraction of the reach.
+const NEAR_BASE_DISTANCE: f64 = 1e-2;
+/// Critical values within this tolerance are equal, rad.
+const SAME_CRITICAL_RAD: f64 = 1e-9;
 
-/// What lies between two critical values of b, rad.
+/// The interval between two critical values of b, rad.
 pub(super) struct Gap {
     pub from: f64,
     pub to: f64,
-    /// How far below and above poses in it may come from, rad.
+    /// How far below and above the gap critical poses may lie from which it can be reached, rad.
     pub free: [f64; 2],
 }
 
 impl Gap {
-    /// Some of its b, as where a set is about to part few poses are left.
+    /// Some values of b in the gap: near its ends too, as a set that is about to split has few poses.
     fn places(&self) -> [f64; 5] {
         [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| self.from + part * (self.to - self.from))
     }
 }
 
-/// What reaches a point with the last joints held at each place of a grid: the same for every b, so it is looked up once.
+/// Cached samples at one distance: they hold for every b.
 #[derive(Default)]
 pub(super) struct Looks {
-    /// Spans of b, rad, and where those of each look end.
+    /// Feasible intervals of b with the last joints held at each grid point, rad; and the end index of each grid point.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
-    /// The b of some poses at the distance, rad, wherever they are.
+    /// The b of sampled poses at the distance, rad.
     samples: Vec<f64>,
-    /// Whether to look with all care.
+    /// Whether the search is careful rather than quick.
     pub careful: bool,
 }
 
 impl Looks {
-    /// For another point.
+    /// Clears the samples for another point.
     pub fn clear(&mut self) {
         self.spans.clear();
         self.ends.clear();
@@ -72,12 +72,12 @@ impl Looks {
 }
 
 impl PoseSpace {
-    /// Whether some pose is on the x axis at a distance from B, m, in a gap between its critical poses, which are sorted
-    /// by b.
+    /// Whether some pose is on the x axis at a distance from B, m, with b in a gap between the given critical poses,
+    /// which are sorted by b.
     pub(super) fn has_pose(&self, distance: f64, gap: &Gap, criticals: &[Critical], looks: &mut Looks) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_climbed_into(p, gap, (criticals, NEAREST[usize::from(looks.careful)]))
+            return self.is_climbed_into(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
                 || self.is_seen(p, &gap.places(), looks)
                 || self.is_sampled(distance, gap, looks)
                 || (looks.careful && self.is_solved(p, 0.5 * (gap.from + gap.to)));
@@ -85,19 +85,19 @@ impl PoseSpace {
         gap.places().iter().any(|b| self.is_there(p, *b))
     }
 
-    /// Whether a way from a critical pose near a gap leads into it.
+    /// Whether a climb from a critical pose near a gap leads into it.
     fn is_climbed_into(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
         let (period, n) = (self.period(), criticals.len());
-        let into = (GAP_DEPTH_SHARE * (gap.to - gap.from)).min(MAX_GAP_DEPTH_SHARE * period);
-        let past = |by: f64| (by + SAME_CRITICAL).rem_euclid(period) - SAME_CRITICAL;
-        let at_most = |by: &f64, free: f64| *by <= free + SAME_CRITICAL;
-        let first = criticals.partition_point(|c| c.b <= gap.from + SAME_CRITICAL);
+        let into = (GAP_DEPTH * (gap.to - gap.from)).min(MAX_GAP_DEPTH * period);
+        let past = |by: f64| (by + SAME_CRITICAL_RAD).rem_euclid(period) - SAME_CRITICAL_RAD;
+        let at_most = |by: &f64, free: f64| *by <= free + SAME_CRITICAL_RAD;
+        let first = criticals.partition_point(|c| c.b <= gap.from + SAME_CRITICAL_RAD);
         let mut below = (1..=n)
             .map(|k| &criticals[(first + n - k) % n])
             .map(|c| (c, past(gap.from - c.b)))
             .take_while(|(_, by)| at_most(by, gap.free[0]))
             .filter(|(c, _)| c.up);
-        let last = criticals.partition_point(|c| c.b < gap.to - SAME_CRITICAL);
+        let last = criticals.partition_point(|c| c.b < gap.to - SAME_CRITICAL_RAD);
         let mut above = (0..n)
             .map(|k| &criticals[(last + k) % n])
             .map(|c| (c, past(c.b - gap.to)))
@@ -106,14 +106,14 @@ impl PoseSpace {
         (0..nearest).any(|_| {
             let rise = below.next().map(|(from, by)| Climb { from, rise: by + into });
             let fall = above.next().map(|(from, by)| Climb { from, rise: -(by + into) });
-            rise.iter().chain(&fall).any(|climb| self.left(p, climb, GLANCE).is_some())
+            rise.iter().chain(&fall).any(|climb| self.climbed_strictly(p, climb, GLANCE).is_some())
         })
     }
 
-    /// Whether a pose at one of these b is seen with the last joints held at places of a grid.
+    /// Whether a pose at one of these b exists with the last joints held at a grid point.
     fn is_seen(&self, p: Vector, b: &[f64], looks: &mut Looks) -> bool {
         let (n, first) = (self.joints.len(), 2);
-        let each = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
+        let each = GRID_POINTS[(self.drives() - 4).min(GRID_POINTS.len() - 1)];
         let at = |i: usize, j: usize| {
             let [low, high] = self.joints[i].limits;
             low + (high - low) * (j as f64 + 0.5) / each as f64
@@ -137,7 +137,7 @@ impl PoseSpace {
         })
     }
 
-    /// Whether one of some poses at the distance has a b in the gap.
+    /// Whether a sampled pose at the distance has a b in the gap.
     fn is_sampled(&self, distance: f64, gap: &Gap, looks: &mut Looks) -> bool {
         if looks.samples.is_empty() {
             let b = |a: PerDrive| {
@@ -145,34 +145,35 @@ impl PoseSpace {
                 let turn = self.place(&DriveAngles(q)).arg();
                 self.lambda.dot(&q) - turn * self.sum
             };
-            let found =
-                (0..SAMPLES[usize::from(looks.careful)]).filter_map(|i| self.comes_to(distance, self.spread(i))).map(b);
+            let found = (0..START_SAMPLES[usize::from(looks.careful)])
+                .filter_map(|i| self.comes_to(distance, self.spread(i)))
+                .map(b);
             looks.samples.extend(found.chain([f64::NAN]));
         }
-        let inside = INSIDE_GAP_SHARE * (gap.to - gap.from);
+        let inside = GAP_MARGIN * (gap.to - gap.from);
         looks.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
     }
 
-    /// Whether a span holds a b, whole turns aside.
+    /// Whether an interval contains a b, modulo the period.
     fn holds(&self, [low, high]: [f64; 2], b: f64) -> bool {
         (b - low).rem_euclid(self.period()) <= high - low
     }
 
-    /// The spans of b that reach p with these joints held.
+    /// Visits the intervals of b at which p can be reached with the last joints held.
     fn spans(&self, p: Vector, held: &PerDrive, mut take: impl FnMut([f64; 2])) {
         if let Some((map, shift)) = self.three(held) {
             map.spans(p, |[low, high]| take([low + shift, high + shift]));
         }
     }
 
-    /// Whether any pose is at a distance from B, m, where b goes round without an end: at one b as at any.
+    /// Whether any pose is at a distance from B, m, where no critical values exist: then it exists at every b.
     pub(super) fn any_pose(&self, distance: f64, looks: &Looks) -> bool {
-        let starts = SAMPLES[usize::from(looks.careful)];
+        let starts = START_SAMPLES[usize::from(looks.careful)];
         match self.drives() {
             ..4 => self.is_there(Vector::new(distance, 0.0), 0.0),
             _ if distance <= AT_BASE * self.farthest() => self.is_at_base(starts),
             _ if (0..starts).any(|i| self.comes_to(distance, self.spread(i)).is_some()) => true,
-            // On the way from a pose that is farther off to one on B.
+            // By continuity, between a pose farther from B and one at B.
             _ => {
                 let distance_of = |i: usize| self.place(&DriveAngles(self.unturned(&self.spread(i)))).norm();
                 (0..starts).any(|i| distance_of(i) >= distance) && self.is_at_base(starts)
@@ -180,16 +181,16 @@ impl PoseSpace {
         }
     }
 
-    /// Whether a pose on B is come to from one of so many places: at one b as at any.
+    /// Whether a pose at B is found from one of this many samples; if so, one exists at every b.
     fn is_at_base(&self, starts: usize) -> bool {
         let windows = self.windows();
         let leads = |a: &PerDrive| self.solved(Vector::default(), 0.0, a, &windows).is_some();
-        (0..starts)
-            .map(|i| self.spread(i))
-            .any(|a| leads(&a) || self.comes_to(NEAR_BASE * self.farthest(), a).is_some_and(|near| leads(&near)))
+        (0..starts).map(|i| self.spread(i)).any(|a| {
+            leads(&a) || self.comes_to(NEAR_BASE_DISTANCE * self.farthest(), a).is_some_and(|near| leads(&near))
+        })
     }
 
-    /// Whether a pose at a point and b is come to from somewhere.
+    /// Whether a pose at a point and b is found from any sample.
     fn is_solved(&self, p: Vector, b: f64) -> bool {
         let mut any = false;
         self.each_spread(p, b, &mut |_| {
@@ -199,8 +200,8 @@ impl PoseSpace {
         any
     }
 
-    /// A pose at a distance from B, m, if joints that turn one after another, each as far as brings the end effector nearest
-    /// to it, come to one.
+    /// Finds a pose at a distance from B, m, by coordinate descent: the joints turn one after another, each to the
+    /// angle that brings the end effector nearest to the distance.
     fn comes_to(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
         let far = self.farthest();
         let at = |a: &PerDrive| self.place(&DriveAngles(self.unturned(a)));
@@ -212,14 +213,15 @@ impl PoseSpace {
                 let here = at(&a);
                 a[i] = own + PI;
                 let there = at(&a);
-                // It turns one part about the other.
+                // The joint turns one part of the arm about the other.
                 let (still, turning) = (0.5 * (here + there), 0.5 * (here - there));
                 let [low, high] = self.joints[i].limits;
                 let apart = (turning * still.conj()).arg();
                 let sense = self.joints[i].sense;
                 let [from, to] = [low, high].map(|end| apart + sense * (end - own));
                 let (from, to) = (from.min(to), from.max(to));
-                // Angles between the two parts: where they are in line, or at the ends.
+                // Angle between the two parts: the extrema of the distance are where they are in line, or at the
+                // limits.
                 let inside = |line: f64| Some(line + ((from - line) / TAU).ceil() * TAU).filter(|x| *x <= to);
                 let length = |angle: f64| (still + turning * unit(angle - apart)).norm();
                 let ends = if length(from) < length(to) { [from, to] } else { [to, from] };
@@ -229,7 +231,7 @@ impl PoseSpace {
                     let sizes = [still.norm(), turning.norm()];
                     let square = distance * distance - sizes[0] * sizes[0] - sizes[1] * sizes[1];
                     let bend = (square / (2.0 * sizes[0] * sizes[1])).clamp(-1.0, 1.0).acos();
-                    // The nearest one in the range; rounding may leave none.
+                    // The nearest solution in the range; rounding may leave none.
                     let both = [bend, -bend].map(|line| line + ((from - line) / TAU).ceil() * TAU);
                     let there = both
                         .into_iter()
@@ -242,14 +244,14 @@ impl PoseSpace {
                 a[i] = (own + sense * (best - apart)).clamp(low, high);
                 missing = (length(best) - distance).abs();
             }
-            if before - missing <= NO_TURN_SHARE * far {
+            if before - missing <= MIN_SWEEP_GAIN * far {
                 break;
             }
         }
         None
     }
 
-    /// Up to three drives.
+    /// Whether a pose exists at a point and b, for up to three drives.
     fn is_there(&self, p: Vector, b: f64) -> bool {
         let mut any = false;
         self.each_pose(p, b, &mut |_| {
@@ -259,7 +261,7 @@ impl PoseSpace {
         any
     }
 
-    /// The plane of the first two joints, with all others held, and what its b lacks.
+    /// Returns the plane map of the first two joints with all others held, and the offset to add to its b, rad.
     pub(super) fn three(&self, held: &PerDrive) -> Option<(PlaneMap, f64)> {
         let n = self.drives();
         let (mut of, mut delta, mut count) = ([0; MAX_DRIVES], [0.0; MAX_DRIVES], 1);

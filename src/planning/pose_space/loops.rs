@@ -1,28 +1,29 @@
-//! [`Traced`]: the boundary of a workspace as closed lines.
+//! [`Traced`]: the boundary of a workspace as closed polygons.
 //!
-//! Where every end of the workspace on a circle goes on to the next circle, edges join them. Where the boundary changes,
-//! the ends on both sides of one circle are joined along it, two by two: between them lies what belongs to the workspace
-//! on one side only. So every end has two edges, one inwards and one outwards, and all lines close.
+//! Where every end of the workspace on a circle continues on the next circle, edges join them. Where the number or
+//! order of the ends changes, both neighbouring circles count as one, and their ends are joined along it in pairs.
+//! Between such a pair lies the part of the circle that belongs to the workspace on one side only. So every end has two
+//! edges, one inwards and one outwards, and all polygons close.
 
 use std::f64::consts::TAU;
 
 use super::rings::{Ring, Rings, Step};
 use crate::mechanics::planar::{Vector, unit};
 
-/// Points as near as this are one, as a share of the reach; so are loops that are nowhere wider.
-const SAME: f64 = 1e-10;
-/// A circle about B with a radius below this is B, as a share of the reach.
-const AT_BASE: f64 = 1e-6;
+/// Points within this fraction of the reach are equal; loops nowhere wider are dropped.
+const SAME_POINT: f64 = 1e-10;
+/// A circle about B with a radius below this fraction of the reach counts as B.
+const BASE_RADIUS: f64 = 1e-6;
 
-/// A boundary: loops with what they hold on their left.
+/// A boundary: loops with the workspace on their left.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Traced {
-    /// m².
+    /// Area of the workspace, m².
     pub area: f64,
     pub loops: Vec<Vec<[f64; 2]>>,
 }
 
-/// Where an edge leads to: the end there, whether it comes from its inner side, and by which way.
+/// An edge to another end: that end, whether the edge arrives from its inner side, and the points between.
 #[derive(Clone, Copy, Debug)]
 struct Link {
     to: usize,
@@ -32,24 +33,24 @@ struct Link {
 
 #[derive(Clone, Copy, Debug)]
 enum Way {
-    /// Points of a step, first to last, or back.
+    /// A range of the points of a step, forwards or backwards.
     Edge { step: usize, points: [usize; 2], back: bool },
-    /// Along a circle of this radius by this angle, m and rad.
+    /// Arc of a circle of radius r, m, by a signed angle, rad.
     Circle { r: f64, by: f64 },
 }
 
-/// An end of the workspace on a circle.
+/// A point where the workspace begins or ends on a circle.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     at: Vector,
     angle: f64,
     opens: bool,
-    /// Inwards and outwards.
+    /// Edges inwards and outwards.
     links: [Option<Link>; 2],
 }
 
 impl Rings {
-    /// The boundary that joins all ends.
+    /// Joins all ends to the boundary.
     pub fn traced(&self) -> Traced {
         let far = self.rings.last().map_or(0.0, |ring| ring.r);
         let mut all = All { of: self, nodes: Vec::new(), first: Vec::new(), circles: Vec::new() };
@@ -69,7 +70,7 @@ impl Rings {
                 _ => all.changes(Some(j), self.rings.get(j + 1).map(|_| j + 1)),
             }
         }
-        if self.rings.first().is_some_and(|ring| !ring.ends.is_empty() || ring.r > AT_BASE * far) {
+        if self.rings.first().is_some_and(|ring| !ring.ends.is_empty() || ring.r > BASE_RADIUS * far) {
             all.changes(None, Some(0));
         }
         let mut loops = all.walked();
@@ -79,12 +80,12 @@ impl Rings {
         };
         let area = loops.iter().map(|line| signed(line)).sum::<f64>() + self.beside;
         for line in &mut loops {
-            line.dedup_by(|p, last| (*p - *last).norm() <= SAME * far);
-            while line.len() > 1 && (line[0] - line[line.len() - 1]).norm() <= SAME * far {
+            line.dedup_by(|p, last| (*p - *last).norm() <= SAME_POINT * far);
+            while line.len() > 1 && (line[0] - line[line.len() - 1]).norm() <= SAME_POINT * far {
                 line.pop();
             }
         }
-        loops.retain(|line| line.len() > 2 && signed(line).abs() > 10.0 * SAME * far * far);
+        loops.retain(|line| line.len() > 2 && signed(line).abs() > 10.0 * SAME_POINT * far * far);
         let flat = |line: Vec<Vector>| line.into_iter().map(|p| [p.re, p.im]).collect();
         Traced { area, loops: loops.into_iter().map(flat).collect() }
     }
@@ -93,9 +94,9 @@ impl Rings {
 struct All<'a> {
     of: &'a Rings,
     nodes: Vec<Node>,
-    /// The first end of each circle.
+    /// Index of the first end of each circle.
     first: Vec<usize>,
-    /// Whole circles.
+    /// Boundary loops that are whole circles.
     circles: Vec<Vec<Vector>>,
 }
 
@@ -111,8 +112,8 @@ impl All<'_> {
         }
     }
 
-    /// Joins the ends on the outer side of a circle and on the inner side of another that is the same, along it; nothing
-    /// lies beyond the last one and inside of the first.
+    /// Joins the ends on the outer side of one circle and on the inner side of the next along that circle. Nothing lies
+    /// beyond the last circle or inside the first.
     fn changes(&mut self, inner: Option<usize>, outer: Option<usize>) {
         let empty = Ring::default();
         let ring = |j: Option<usize>| j.map_or(&empty, |j| &self.of.rings[j]);
@@ -149,19 +150,19 @@ impl All<'_> {
         }
     }
 
-    /// Points along a circle from one, without that and the last.
+    /// Adds points along a circular arc, without its ends.
     fn arc(&self, from: Vector, r: f64, by: f64, line: &mut Vec<Vector>) {
         let parts = (by.abs() * (r / (8.0 * self.of.chord)).sqrt()).ceil().min(1e5);
         let count = parts as usize;
         line.extend((1..count).map(|i| from * unit(by * i as f64 / parts)));
     }
 
-    /// All loops, with what they hold on their left.
+    /// Collects all loops, with the workspace on their left.
     fn walked(&mut self) -> Vec<Vec<Vector>> {
         let mut loops = std::mem::take(&mut self.circles);
         let mut seen = vec![false; self.nodes.len()];
         for start in 0..self.nodes.len() {
-            // Where it opens, outwards has the workspace on its left.
+            // From an opening end, the outward edge has the workspace on its left.
             let (mut at, mut outwards) = (start, self.nodes[start].opens);
             let mut line = Vec::new();
             while !seen[at] {

@@ -1,9 +1,10 @@
-//! The pose of a point and a b that is nearest to given relative angles.
+//! The pose of a point at a b that is nearest to given relative angles.
 //!
 //! # Method
-//! Least ½ Σ w_i (a_i − y_i)² over the poses at (p, b) within limits: sequential quadratic programming whose every step comes
-//! back onto p by Newton's iteration. A step is first sought with the curvature of p, ∂²L/∂a² = w + ν·∂²p/∂a², among the
-//! angles that are not held at their limits; where that does not bring the pose nearer, without the curvature, and shorter.
+//! Minimises ½ Σ w_i (a_i − y_i)² over the poses at (p, b) within the limits by sequential quadratic programming; after
+//! each step Newton's iteration restores p. A full Newton step uses the Hessian of the Lagrangian, including the second
+//! derivatives of p, in the angles that are not at their limits. If it does not improve the objective, shortened steps
+//! without second derivatives are tried.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -12,33 +13,33 @@ use super::continuation::within;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// Steps at most.
+/// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 100;
-/// The longest of them, rad.
-const MAX_STEP: f64 = 0.5;
-/// A step shorter than this is the last, rad.
-const LAST_STEP: f64 = 1e-11;
-/// How often a step is halved.
+/// Maximum step, rad.
+const MAX_STEP_RAD: f64 = 0.5;
+/// The iteration ends at steps below this, rad.
+const STEP_TOLERANCE_RAD: f64 = 1e-11;
+/// Maximum number of halvings of a step.
 const MAX_HALVINGS: usize = 12;
-/// What an angle without a weight weighs.
-const UNWEIGHTED: f64 = 1e-3;
-/// Angles that are held at their limits count as there up to this, rad.
-const HELD_SLACK: f64 = 1e-12;
+/// Added to each weight in steps without second derivatives, so that angles of weight 0 stay bounded.
+const WEIGHT_OFFSET: f64 = 1e-3;
+/// Tolerance of active limits, rad.
+const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
 
-/// What relative angles are drawn to.
+/// Preferred relative angles.
 pub(super) struct Wish {
-    /// y_i, rad.
+    /// Preferred angles y_i, rad.
     pub angles: PerDrive,
-    /// w_i.
+    /// Weights w_i.
     pub weight: PerDrive,
 }
 
-/// Relative angles, and a multiplier for p and each angle that is held.
+/// Size of the KKT system: relative angles, two multipliers for p and one for each angle.
 const KKT: usize = 2 * MAX_DRIVES + 2;
 
 impl PoseSpace {
-    /// Relative angles at b with the end effector on p, m, that have the least ½ Σ x_i², x_i the share of a range either
-    /// way from its middle; from a pose that is there.
+    /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², x_i being the distance of
+    /// a_i from the midpoint of its range over half the range. Starts from a pose at p and b.
     pub fn centred(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
         let half = |i: usize| match self.joints[i].free {
             true => f64::INFINITY,
@@ -49,7 +50,8 @@ impl PoseSpace {
         self.drawn((p, b), from, &Wish { angles: self.middle(), weight }, &bounds)
     }
 
-    /// The pose at p, m, and b, rad, beside one that is there, to which a wish draws it.
+    /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another
+    /// pose there.
     pub(super) fn drawn(
         &self,
         (p, b): (Vector, f64),
@@ -59,43 +61,47 @@ impl PoseSpace {
     ) -> PerDrive {
         let n = self.joints.len();
         let far = |a: &PerDrive| (0..n).map(|i| 0.5 * wish.weight[i] * (a[i] - wish.angles[i]).powi(2)).sum::<f64>();
-        let weight = PerDrive::from_fn(n, |i| wish.weight[i] + UNWEIGHTED);
+        let weight = PerDrive::from_fn(n, |i| wish.weight[i] + WEIGHT_OFFSET);
         let moved = |a: &PerDrive, share: f64, step: &PerDrive| {
             PerDrive::from_fn(n, |i| (a[i] + share * step[i]).clamp(windows[i][0], windows[i][1]))
         };
         let mut a = *from;
-        let mut now = far(&a);
+        let mut objective = far(&a);
         for _ in 0..MAX_ITERATIONS {
             let (place, columns) = self.columns(&self.lift(&a, b));
             let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
-            let range = within(windows, &a, MAX_STEP);
+            let range = within(windows, &a, MAX_STEP_RAD);
             let (step, nu) = Boxed { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
-            if step.max_abs() < LAST_STEP {
+            if step.max_abs() < STEP_TOLERANCE_RAD {
                 break;
             }
-            let held = |i: usize| step[i].abs() < HELD_SLACK && (range[i][0] > -HELD_SLACK || range[i][1] < HELD_SLACK);
+            let held = |i: usize| {
+                step[i].abs() < ACTIVE_TOLERANCE_RAD
+                    && (range[i][0] > -ACTIVE_TOLERANCE_RAD || range[i][1] < ACTIVE_TOLERANCE_RAD)
+            };
             let curved = self.curved((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
                 let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
-                step.max_abs() < MAX_STEP && (0..n).all(fits)
+                step.max_abs() < MAX_STEP_RAD && (0..n).all(fits)
             });
             let tries = curved.iter().map(|step| (step, 1.0));
             let shorter = (0..MAX_HALVINGS).map(|i| (&step, 0.5f64.powi(i as i32)));
             let better = tries.chain(shorter).find_map(|(step, share)| {
                 let there = self.solved(p, b, &moved(&a, share, step), windows)?;
                 let far = far(&there);
-                (far < now).then_some((there, far))
+                (far < objective).then_some((there, far))
             });
-            let Some((there, left)) = better else { break };
+            let Some((there, next_objective)) = better else { break };
             let moved = there.minus(&a).max_abs();
-            (a, now) = (there, left);
-            if moved < LAST_STEP {
+            (a, objective) = (there, next_objective);
+            if moved < STEP_TOLERANCE_RAD {
                 break;
             }
         }
         a
     }
 
-    /// The step of Newton's iteration on what has to vanish at the nearest pose, with some angles held.
+    /// Returns the Newton step of the optimality (KKT) conditions with some angles held; `None` if the system is
+    /// singular.
     fn curved(
         &self,
         (a, b): (&PerDrive, f64),
@@ -109,7 +115,7 @@ impl PoseSpace {
             true => self.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(i == j))), 0.0),
             false => PerDrive::zeros(0),
         });
-        // The multiplier pulls along c·ν, so the Lagrangian is ½ Σ w (a − y)² − ν·p, and ∂²p is −Σ c_k e_k.
+        // Sign convention: the Lagrangian is ½ Σ w (a − y)² − ν·p, and ∂²p is −Σ c_k e_k.
         let bends = PerDrive::from_fn(self.drives(), |k| dot(nu, self.tip[k] * unit(q[k])));
         let mut square = SMatrix::<f64, KKT, KKT>::identity();
         let mut side = SVector::<f64, KKT>::zeros();

@@ -1,36 +1,36 @@
-//! How far the end effector goes while b is held.
+//! The workspace of the end effector while b is held, as an outline.
 //!
-//! b only turns the workspace about B, so a point at a distance r belongs to it at the angles φ = (b − β)/Σλ for every
-//! β that reaches the point on the x axis. Its boundary is what the ends of these β make of r.
+//! b only turns the workspace about B. A point at a distance r therefore belongs to it at the angles φ = (b − β)/Σλ,
+//! for every β at which the point on the x axis can be reached. The ends of these sets of β, over r, are the boundary.
 
 use super::loops::Traced;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, dot, unit};
 use crate::planning::reactionless::Extent;
 
-/// A workspace of b: a region, or with two drives a curve.
+/// The workspace of a b: a region, or a curve for two drives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// m²; 0 with two drives.
+    /// Area, m²; 0 for two drives.
     pub area: f64,
     /// Length of the curve of two drives, m.
     pub length: f64,
-    /// Least and greatest x and y, m.
+    /// Bounds [x_min, x_max, y_min, y_max], m.
     pub extent: [f64; 4],
-    /// The boundary, each loop closed, outer ones counter-clockwise, m.
+    /// Boundary, m: closed loops, the outer ones counter-clockwise.
     pub loops: Vec<Vec<[f64; 2]>>,
     /// The curve of two drives, m.
     pub curve: Vec<[f64; 2]>,
 }
 
-/// Chords are as near to the boundary as this, m: together they leave out less than 1e-6 m² of a workspace with a
-/// boundary of 7 m.
-const CHORD: f64 = 2e-7;
-/// Chords of the curve of two drives, m for an arm of a metre.
-const CURVE_CHORD: f64 = 1e-5;
+/// Maximum deviation of chords from the boundary, m: the area error is below 1e-6 m² for a boundary of 7 m.
+const CHORD_TOLERANCE_M: f64 = 2e-7;
+/// Maximum deviation of chords from the curve of two drives, as a fraction of the reach.
+const CURVE_CHORD_TOLERANCE: f64 = 1e-5;
 
 impl Outline {
-    /// How far a point, m, is from the boundary, negative outside; of two drives how far from their curve.
+    /// Returns the distance of a point from the boundary, m, negative outside; for two drives the distance from their
+    /// curve.
     pub fn distance(&self, p: Vector) -> f64 {
         let at = |[x, y]: [f64; 2]| Vector::new(x, y);
         let beside = |from: [f64; 2], to: [f64; 2]| {
@@ -57,13 +57,14 @@ impl Outline {
 }
 
 impl PoseSpace {
-    /// The workspace of b.
+    /// Returns the workspace of b.
     pub fn outline(&self, b: f64) -> Outline {
-        self.outline_within(b, CHORD, &mut |_| true).unwrap_or_default()
+        self.outline_within(b, CHORD_TOLERANCE_M, &mut |_| true).unwrap_or_default()
     }
 
-    /// The same, with chords as near to the boundary as this, m; two drives have what they have.
-    /// Told how much is done, from 0 to 1, the caller says whether the rest is still wanted; `None` if it is not.
+    /// Returns the workspace with chords that deviate by at most `chord`, m, from the boundary; with one and two drives
+    /// `chord` has no effect. Progress from 0 to 1 is reported to `goes_on`; if that returns false, the result is
+    /// `None`.
     pub fn outline_within(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
         if let Ok(planes) = self.planes() {
             let (boundary, loops) = (planes.boundary(), planes.boundary().turned(b));
@@ -86,7 +87,7 @@ impl PoseSpace {
         })
     }
 
-    /// Two drives: where the end effector goes as the angle between them runs from limit to limit.
+    /// Two drives: the curve of the end effector as the relative angle runs between its limits.
     fn curve(&self, b: f64) -> Outline {
         let [low, high] = self.joints[0].limits;
         let place = |a: f64| self.place(&self.lift(&[a], b));
@@ -95,8 +96,8 @@ impl PoseSpace {
             let rate = self.lift(&[a + 1.0], b).0.minus(&q.0);
             (0..2).map(|k| self.tip[k] * rate[k] * unit(q[k])).sum::<Vector>().norm()
         };
-        // Chords by the curvature: |p″| is at most Σ |c|.
-        let turns = (high - low) * (self.farthest() / (8.0 * CURVE_CHORD * self.farthest().max(1e-3))).sqrt();
+        // Number of chords from the curvature: |p″| is at most Σ |c|.
+        let turns = (high - low) * (self.farthest() / (8.0 * CURVE_CHORD_TOLERANCE * self.farthest().max(1e-3))).sqrt();
         let parts = (turns.ceil() as usize).clamp(16, 4000) & !1;
         let at = |i: usize| low + (high - low) * i as f64 / parts as f64;
         let curve: Vec<[f64; 2]> = (0..=parts).map(|i| place(at(i))).map(|p| [p.re, p.im]).collect();

@@ -1,5 +1,5 @@
-//! [`Pattern`]: which joints stand at which limit, and what of the search for stationary poses that decides, whatever the
-//! point.
+//! [`Pattern`]: a choice of joints that are held at a limit, with all that follows from it for the search of stationary
+//! poses, independent of the point.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};
@@ -7,27 +7,27 @@ use std::sync::{Arc, OnceLock};
 use super::joint::Joint;
 use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
 
-/// Spaces in which a change of sign is looked for.
+/// Number of cells in which a sign change is sought.
 pub(super) const SPACES: usize = 24;
 
-/// Where it is looked for: t from 0 to π/2, ν = ν_most sin t.
+/// Returns the boundary of a cell: t from 0 to π/2, ν = ν_max sin t.
 pub(super) fn place(i: usize) -> f64 {
     FRAC_PI_2 * i as f64 / SPACES as f64
 }
 
-/// Where the slope at a place is taken: beside both ends, where it is nothing, or nothing by nothing.
+/// Returns where the slope at a cell boundary is evaluated: slightly inside at both ends, where the slope is 0 or 0/0.
 fn slope_place(i: usize) -> f64 {
-    const BESIDE: f64 = 1e-6;
-    place(i).clamp(BESIDE, FRAC_PI_2 - BESIDE)
+    const END_OFFSET: f64 = 1e-6;
+    place(i).clamp(END_OFFSET, FRAC_PI_2 - END_OFFSET)
 }
 
-/// Turns are found to this, in t.
+/// Tolerance of t of a turning point.
 const TURN_TOLERANCE: f64 = 1e-13;
 
-/// Joints that miss their limits by this much are looked at, rad.
-const LOOKED_AT_MISS: f64 = 1e-6;
+/// Tolerance of the joint limits in the preselection of cells, rad.
+const PRESELECTION_TOLERANCE_RAD: f64 = 1e-6;
 
-/// What of a joint is free.
+/// State of a joint: free, or held at its least or greatest angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum At {
     Free,
@@ -35,66 +35,66 @@ pub(super) enum At {
     Greatest,
 }
 
-/// The drives as compounds, with some joints held at a limit.
+/// The drives grouped into compounds, with some joints held at a limit.
 #[derive(Debug)]
 pub(super) struct Pattern {
-    /// Of each joint.
+    /// State of each joint.
     pub at: [At; MAX_DRIVES],
-    /// How many compounds.
+    /// Number of compounds.
     pub count: usize,
-    /// The compound of each drive, and how far the drive is turned within it, rad.
+    /// The compound of each drive, and the angle of the drive within it, rad.
     pub of: [usize; MAX_DRIVES],
     pub delta: [f64; MAX_DRIVES],
-    /// The angle of each compound's arm while its first drive is at 0, rad.
+    /// The angle of each compound's arm with its first drive at 0, rad.
     pub lean: [f64; MAX_DRIVES],
-    /// |L|, m.
+    /// Arm |L| of each compound, m.
     pub length: [f64; MAX_DRIVES],
-    /// Λ.
+    /// Λ of each compound.
     pub lambda: [f64; MAX_DRIVES],
-    /// The angle of each free joint while the compounds that it joins are turned alike, rad.
+    /// The angle of each free joint when its two compounds have equal angles, rad.
     pub shift: [f64; MAX_DRIVES],
-    /// Whether a joint is held that could leave its limit.
+    /// Whether a held joint has different limits, so that it can leave one.
     pub held: bool,
-    /// Three compounds and more: the greatest ν, m, and the compound that stands across there.
+    /// With three and more compounds: the greatest ν, m, and the compound whose cosine is 0 there.
     pub most: f64,
     pub across: usize,
-    /// For each choice of signs of the cosines.
+    /// The feasible choices of signs of the cosines.
     pub signs: Vec<Signs>,
 }
 
-/// |p|² of the stationary poses of a choice of signs, over t.
+/// |p|² of the stationary poses over t, for one choice of signs.
 #[derive(Debug)]
 pub(super) struct Signs {
-    /// Bit i − 1: whether the cosine of compound i is negative.
+    /// Bit i − 1 is set if the cosine of compound i is negative.
     pub bits: u32,
-    /// Bit i: whether the joints may be within their limits between place i and the next.
+    /// Bit i is set if the joints may be within their limits in cell i.
     pub cells: u32,
-    /// |p|² at each place, and the least and greatest within the cells, m².
+    /// |p|² at each cell boundary, and its least and greatest value within the feasible cells, m².
     pub values: [f64; SPACES + 1],
     pub least: f64,
     pub greatest: f64,
-    /// Where it turns back, in order: from one to the next it rises or falls. Within the cells exactly.
+    /// Turning points of |p|², ascending in t; between them it is monotone. Exact in feasible cells only.
     pub turns: Vec<Turn>,
 }
 
-/// Where |p|² turns back.
+/// A turning point of |p|².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// Between this place and the next.
+    /// The cell that contains it.
     pub cell: usize,
     pub t: f64,
-    /// m².
+    /// |p|² there, m².
     pub value: f64,
 }
 
-/// All that signs make |p|² and its slope of at a place: as [`Pattern::stretched`], and beside it.
+/// All that the choice of signs needs at a cell boundary: [`Pattern::stretched`] there, and the rates nearby.
 #[derive(Clone, Copy)]
 struct Place {
     at: (f64, [f64; MAX_DRIVES], Vector),
     rates: Rates,
 }
 
-/// |L_i| cos α_i and ν ΣΛ, m, and how they change with t, m.
+/// |L_i| cos α_i and ν ΣΛ, m, and their derivatives with respect to t, m.
 #[derive(Clone, Copy)]
 struct Rates {
     cos: [f64; MAX_DRIVES],
@@ -103,12 +103,12 @@ struct Rates {
     across: f64,
 }
 
-/// The patterns of a machine. They follow from the space that holds them alone, so they are made once, when they are first
-/// asked for; copies of it share them.
+/// Cache of the patterns of a machine, computed at the first use. They depend only on the space that holds them; its
+/// copies share them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Patterns(Arc<OnceLock<Vec<Pattern>>>);
 
-/// They follow from what else is compared.
+/// Patterns follow from the other fields that are compared.
 impl PartialEq for Patterns {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -126,7 +126,7 @@ fn all(tip: &[f64], lambda: &[f64], joints: &[Joint]) -> Vec<Pattern> {
     let mut at = [At::Free; MAX_DRIVES];
     loop {
         patterns.extend(Pattern::new(tip, lambda, joints, at));
-        // The next one, counting in threes.
+        // Next combination, counting in base 3.
         let Some(i) = (0..joints.len()).find(|i| at[*i] != At::Greatest) else { return patterns };
         at[..i].fill(At::Free);
         at[i] = if at[i] == At::Free { At::Least } else { At::Greatest };
@@ -134,7 +134,7 @@ fn all(tip: &[f64], lambda: &[f64], joints: &[Joint]) -> Vec<Pattern> {
 }
 
 impl Pattern {
-    /// None where b cannot be stationary, or another pattern is the same.
+    /// Returns `None` if b cannot be stationary, or if another pattern is equal.
     fn new(tip: &[f64], lambda: &[f64], joints: &[Joint], at: [At; MAX_DRIVES]) -> Option<Self> {
         let twice = |(at, joint): (&At, &Joint)| *at == At::Greatest && joint.limits[0] == joint.limits[1];
         if at.iter().zip(joints).any(twice) {
@@ -190,7 +190,7 @@ impl Pattern {
         let most = |i: &usize| c.length[*i] / c.lambda[*i].abs();
         c.across = (0..c.count).min_by(|x, y| most(x).total_cmp(&most(y)))?;
         c.most = most(&c.across);
-        // Where nothing bounds ν, no drive has a λ; where an arm is nothing, b never ends but at limits.
+        // If ν is unbounded, every Λ is 0; if ν_max is 0, an arm is 0 and b ends only at limits.
         if !(c.most.is_finite() && c.most > 0.0) {
             return None;
         }
@@ -205,8 +205,8 @@ impl Pattern {
         (!c.signs.is_empty()).then_some(c)
     }
 
-    /// Between which places, of which these are the angles with all cosines above 0, all joints may be within their
-    /// limits: what is not there is not for certain.
+    /// Returns the cells in which all joints may be within their limits, given the angles α at the cell boundaries for
+    /// positive cosines. A cell that is not returned is certainly infeasible.
     fn within(&self, joints: &[Joint], bits: u32, alpha: &[[f64; MAX_DRIVES]; SPACES + 1]) -> u32 {
         let at = |i: usize, place: usize| {
             let own = alpha[place][i];
@@ -216,14 +216,16 @@ impl Pattern {
         let may = |place: usize, side: f64| {
             free().all(|(i, (joint, _))| {
                 let [near, far] = joint.ends.map(|k| self.of[k]);
-                // Each angle rises or falls from one place to the next, so their difference lies between these.
+                // α is monotone within a cell, so the difference of two α lies between these bounds.
                 let [n, f] = [near, far].map(|k| [at(k, place), at(k, place + 1)]);
                 let [least, greatest] =
                     [f[0].min(f[1]) - n[0].max(n[1]), f[0].max(f[1]) - n[0].min(n[1])].map(|d| joint.sense * side * d);
                 let shift = self.shift[i] - joint.sense * (self.lean[far] - self.lean[near]);
-                let [low, high] =
-                    [least.min(greatest) + shift - LOOKED_AT_MISS, least.max(greatest) + shift + LOOKED_AT_MISS];
-                // The least of its values above the lower limit.
+                let [low, high] = [
+                    least.min(greatest) + shift - PRESELECTION_TOLERANCE_RAD,
+                    least.max(greatest) + shift + PRESELECTION_TOLERANCE_RAD,
+                ];
+                // The greatest range of the angle, less whole turns, that is above the lower limit.
                 let first = high - TAU * ((high - joint.limits[0]) / TAU).floor();
                 first - (high - low) <= joint.limits[1]
             })
@@ -248,7 +250,7 @@ impl Pattern {
             let ends = [cell, cell + 1];
             let [from, to] = ends.map(slope_place);
             let [rise, fall] = ends.map(|i| slopes[i]);
-            // Two turns between two places: where a cubic through both has them.
+            // A cell may hold two turning points: if the cubic through both values and slopes has them.
             let flat = 1.5 * (values[cell + 1] - values[cell]) / (to - from) - 0.25 * (rise + fall);
             let mut parts = [[(from, rise), (to, fall)]; 2];
             if rise * fall > 0.0 && flat * rise < 0.0 {
@@ -271,8 +273,8 @@ impl Pattern {
         Signs { bits, cells, values, least, greatest, turns }
     }
 
-    /// Where |p|² turns back between two t with slopes of opposite sign: by false position, each time with half of what an
-    /// end keeps.
+    /// Returns a turning point of |p|² between two t with slopes of opposite sign, by false position with the Illinois
+    /// modification.
     fn turn(&self, bits: u32, [mut from, mut to]: [(f64, f64); 2]) -> f64 {
         let mut kept = 0.0;
         for _ in 0..60 {
@@ -294,7 +296,7 @@ impl Pattern {
         0.5 * (from.0 + to.0)
     }
 
-    /// How |p|² changes with t, for all cosines above 0.
+    /// Returns the derivatives that make up the slope of |p|², with all cosines positive.
     fn rates(&self, t: f64) -> Rates {
         let (nu, cos, sum) = self.stretched(0, t);
         let turn = unit(t);
@@ -307,7 +309,7 @@ impl Pattern {
         Rates { cos, sum: sum.im, changes, across }
     }
 
-    /// ν, |L_i| cos α_i of all compounds, and (Σ |L_i| cos α_i, ν ΣΛ) at t.
+    /// Returns ν, |L_i| cos α_i of all compounds, and (Σ |L_i| cos α_i, ν ΣΛ) at t, all in m.
     pub fn stretched(&self, bits: u32, t: f64) -> (f64, [f64; MAX_DRIVES], Vector) {
         let turn = unit(t);
         let nu = self.most * turn.im;
@@ -322,7 +324,7 @@ impl Pattern {
         (nu, cos, sum)
     }
 
-    /// |p|² at t, and how fast it changes.
+    /// Returns |p|² at t and its derivative, m².
     pub fn square(&self, bits: u32, t: f64) -> (f64, f64) {
         let turn = unit(t);
         let nu = self.most * turn.im;

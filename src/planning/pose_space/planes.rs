@@ -1,5 +1,5 @@
-//! [`Planes`]: what three drives with limits of both relative angles have in closed form. A pose space keeps it as its
-//! kernel, and gives it out to those who want what only planes have: sheets, folds and change points.
+//! [`Planes`]: the closed forms of three drives with limits of both relative angles. A pose space holds them, and gives
+//! access to what only planes have: sheets, folds and change points.
 
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ pub struct Planes {
 }
 
 impl PartialEq for Planes {
-    /// The boundary follows from the map.
+    /// The boundary is not compared, as it follows from the map.
     fn eq(&self, other: &Self) -> bool {
         let Self { map, boundary: _, keep_off_change_points, is_reactionless } = self;
         (map, keep_off_change_points, is_reactionless)
@@ -28,10 +28,10 @@ impl PartialEq for Planes {
     }
 }
 
-/// Why a machine has no reactionless planes that can be drawn.
+/// Why a machine has no reactionless planes in closed form.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PlaneError {
-    /// Not three drives.
+    /// The machine has not three drives and two relative angles.
     #[error(
         "this machine has {} and {}: planes want three drives and two relative angles with limits, each an [[angle]] \
          with name, to, from, min and max",
@@ -39,82 +39,82 @@ pub enum PlaneError {
         counted(angles, "relative angle")
     )]
     Shape {
-        /// Drives of the machine.
+        /// Number of drives.
         drives: usize,
-        /// Its relative joint angles.
+        /// Number of relative angles.
         angles: usize,
     },
-    /// An angle that turns freely.
+    /// A relative angle has no limits.
     #[error(
         "the angle {0} has no limits: planes of three drives want limits of both angles, such as limits.{0}=0,3.1416"
     )]
     Unlimited(String),
-    /// λ depends on the pose, or is nothing.
+    /// λ depends on the pose, or is zero.
     #[error(transparent)]
     NoPoseConstant(NoPoseSpace),
-    /// The lengths, λ or limits give no plane coordinates.
+    /// Arms, λ or limits define no plane coordinates.
     #[error(transparent)]
     Map(#[from] NotAPlaneMap),
-    /// A space that goes the general way by choice.
+    /// The general method was requested.
     #[error("these poses are told apart by b alone, without planes")]
     LeftOut,
 }
 
 impl PlaneError {
-    /// Whether a machine of as many drives can have planes.
+    /// Whether a machine with this number of drives can have planes.
     pub fn is_mendable(&self) -> bool {
         !matches!(self, Self::Shape { drives, .. } if *drives != 3)
     }
 }
 
 impl Planes {
-    /// The planes of a machine, by the λ of its constant diagonal D_k = H_kk.
+    /// Returns the planes of a machine, with the λ of its constant diagonal D_k = H_kk.
     ///
     /// # Errors
-    /// If it has not three drives and two relative angles, or no b.
+    /// If it has not three drives and two relative angles with limits, or no b.
     pub(super) fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
         let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
         Ok(Self { boundary, map, keep_off_change_points: false, is_reactionless })
     }
 
-    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
+    /// Whether holding b keeps the base free of moments exactly; if not, it removes most of them.
     pub fn is_reactionless(&self) -> bool {
         self.is_reactionless
     }
 
-    /// The same planes, on which ways lead across change points or keep off them.
+    /// Returns the same planes whose paths keep off change points, or may cross them.
     #[must_use]
     pub(super) fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
         Self { keep_off_change_points, ..self }
     }
 
-    /// Whether ways keep off change points.
+    /// Whether paths keep off change points.
     pub fn keep_off_change_points(&self) -> bool {
         self.keep_off_change_points
     }
 
-    /// Whether something inside the limits can bar a way: a fold, or a change point to keep off.
+    /// Whether something within the limits can block a path: a fold, or a change point that is to be kept off.
     pub fn has_bars(&self) -> bool {
         self.keep_off_change_points || self.boundary.interior_singularity()
     }
 
-    /// Eqs (13)–(16).
+    /// Returns Eqs (13)–(16) of the machine.
     pub fn map(&self) -> &PlaneMap {
         &self.map
     }
 
-    /// The boundary of the workspace.
+    /// Returns the boundary of the workspace.
     pub fn boundary(&self) -> &Boundary {
         &self.boundary
     }
 
-    /// The pose that puts the end effector on p on the plane b, continuously from another.
+    /// Returns the pose that puts the end effector on p, m, on the plane b, continuously from another pose.
     pub fn follow(&self, p: Vector, b: f64, from: [f64; 2]) -> Option<[f64; 2]> {
         self.map.follow(p, b, from)
     }
 
-    /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
+    /// Returns the pose for a target p, m, on the plane b and the sheet of `from`, or the nearest feasible one.
     pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
         if let Some(a) = self.follow(p, b, from).filter(|a| self.is_open_way(from, *a)) {
             return (a, Reach::Inside);
@@ -134,12 +134,12 @@ impl Planes {
         if !other_sheet && self.is_open_way(from, edge) {
             return (edge, Reach::Outside { nearest: nearest.at, mending_b, shown_b, other_sheet });
         }
-        // Something lies between: as near as the straight way goes.
+        // Something blocks the straight line to it: as near as possible.
         let a = self.towards(p, b, from);
         (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, shown_b, other_sheet })
     }
 
-    /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
+    /// Returns the last pose that continues `from` on the plane b while the end effector moves straight to p.
     fn towards(&self, p: Vector, b: f64, from: [f64; 2]) -> [f64; 2] {
         let start = self.map.forward(from, b);
         let (mut a, mut t, mut step) = (from, 0.0, 0.125);
@@ -154,11 +154,11 @@ impl Planes {
         a
     }
 
-    /// Whether a straight line of joint space between two poses of one plane stays on one sheet: det keeps its sign. If
-    /// change points are to be kept off, the line also stays on one side of each.
+    /// Whether the straight line in joint space between two poses of one plane stays on one sheet, where det keeps its
+    /// sign. If change points are to be kept off, it must also stay on one side of each.
     pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
-        /// At least so many looks, and one for each tenth of a radian.
-        const LOOKS: i32 = 32;
+        /// Minimum number of samples; long lines have one for each 0.1 rad.
+        const MIN_SAMPLES: i32 = 32;
         if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {
             return false;
         }
@@ -168,21 +168,21 @@ impl Planes {
         let sheet = self.map.det(from);
         let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
         let far = (to[0] - from[0]).hypot(to[1] - from[1]);
-        // As a cast: limits keep it below a thousand.
-        let looks = LOOKS.max((10.0 * far) as i32);
+        // The cast is safe: limits keep it below a thousand.
+        let looks = MIN_SAMPLES.max((10.0 * far) as i32);
         (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
     }
 }
 
-/// Area of the workspace of each b of a machine with planes, m².
+/// Returns the workspace area of a machine with planes, m²; it is the same for each b.
 pub fn plane_area(machine: &Machine) -> Option<f64> {
     Some(Boundary::of(&plane_map(machine).ok()?).area())
 }
 
-/// Eqs (13)–(16) of a machine.
+/// Returns Eqs (13)–(16) of a machine.
 ///
 /// # Errors
-/// If it has not three drives and two relative angles, or no b.
+/// If it has not three drives and two relative angles with limits, or no b.
 pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
     let [first, second] = machine.angles() else { return Err(shape()) };

@@ -1,25 +1,27 @@
-//! Poses of a point on the set of a b: all where no freedom is left but elbows, the nearest one where more is.
+//! Poses of a point at a b: all of them if they are isolated, otherwise the one nearest to given angles.
 
 use super::continuation::{BRIEF, THOROUGH};
 use super::nearest::Wish;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// b of a pose of two drives may be off by this much, rad: what nine printed digits leave.
+/// Tolerance of b of two drives, as a fraction of Σλ: b printed with nine digits keeps it. The point may miss by the
+/// same fraction of the reach.
 const B_TOLERANCE: f64 = 1e-6;
-/// Poses of four drives and more to begin with, spread evenly over all ranges, and how many are gone on from.
-const SPREAD: usize = 32;
-const GONE_ON_FROM: usize = 12;
-/// Ways from critical poses at most, once a pose is found.
+/// With four and more drives: number of samples of all ranges, and of starts from which the nearest pose is sought.
+const START_SAMPLES: usize = 32;
+const MAX_DESCENTS: usize = 12;
+/// Maximum number of climbs from critical poses that is tried once a pose is found.
 const MAX_CLIMBS: usize = 32;
-/// Poses whose angles differ by less are one, rad.
-const SAME_POSE: f64 = 1e-6;
+/// Poses whose angles all differ by less than this are equal, rad.
+const SAME_POSE_RAD: f64 = 1e-6;
+/// Their square roots generate the sequence of samples.
 const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 
 impl PoseSpace {
-    /// Poses within the limits that put the end effector on `p`, m, at `b`, rad, which is not wrapped: with two and
-    /// three drives all of them, those nearest to the given relative angles first; with more the nearest one, by
-    /// Σ (a_i − near_i)².
+    /// Returns poses within the limits that put the end effector on `p`, m, at `b`, rad, which is not wrapped. With up
+    /// to three drives these are all poses, sorted by Σ (a_i − near_i)²; with more only the nearest one by that
+    /// measure.
     pub fn poses(&self, p: Vector, b: f64, near: &[f64]) -> Vec<DriveAngles> {
         let far = |a: &PerDrive| a.iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum::<f64>();
         let mut poses: Vec<(f64, PerDrive)> = match self.drives() {
@@ -30,15 +32,15 @@ impl PoseSpace {
         poses.iter().map(|(_, a)| self.lift(a, b)).collect()
     }
 
-    /// Relative angles of poses at `p`, m, and `b`, rad: with up to three drives all of them. With more, at least one of
-    /// each piece that these poses consist of, and others that are spread over it, in no order.
+    /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of at
+    /// least one pose in each connected component, and of further samples, in no order.
     pub fn sheets(&self, p: Vector, b: f64) -> Vec<PerDrive> {
         if let Some(map) = self.map() {
             return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();
         }
         let mut poses: Vec<PerDrive> = Vec::new();
         let mut take = |a: &PerDrive| {
-            let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME_POSE);
+            let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME_POSE_RAD);
             if is_new {
                 poses.push(*a);
             }
@@ -52,7 +54,7 @@ impl PoseSpace {
         poses
     }
 
-    /// Whether some pose within the limits puts the end effector on `p`, m, at `b`, rad.
+    /// Whether a pose within the limits puts the end effector on `p`, m, at `b`, rad.
     pub fn reaches(&self, p: Vector, b: f64) -> bool {
         if let Some(map) = self.map() {
             return !map.poses(p, b).is_empty();
@@ -70,8 +72,8 @@ impl PoseSpace {
         any
     }
 
-    /// Poses of four drives and more, while more are wanted: by climbing from critical poses, and by going there from all
-    /// over the ranges.
+    /// Visits poses of four and more drives until `take` returns false: by climbs from critical poses, and by Newton's
+    /// iteration from samples of all ranges.
     fn each_found(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let serves = |careful| self.reach_with(p, careful).is_ok_and(|set| set.contains(b));
         if !serves(false) && !serves(true) {
@@ -94,28 +96,28 @@ impl PoseSpace {
         self.each_spread(p, b, take);
     }
 
-    /// The same, from all over the ranges.
+    /// Visits the poses found from samples of all ranges until `take` returns false.
     pub(super) fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let windows = self.windows();
-        for a in (0..SPREAD).map(|i| self.spread(i)) {
+        for a in (0..START_SAMPLES).map(|i| self.spread(i)) {
             if self.solved(p, b, &a, &windows).is_some_and(|a| !take(&a)) {
                 return;
             }
         }
     }
 
-    /// Relative angles of an endless sequence that fills all ranges evenly.
+    /// Returns relative angles of an infinite sequence of samples that fills all ranges evenly.
     pub(in crate::planning) fn spread(&self, i: usize) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |j| {
             let [low, high] = self.joints[j].limits;
-            // Multiples of the square roots of primes.
+            // Fractional parts of multiples of square roots of primes.
             let share = ((i as f64 + 0.5) * PRIMES[j].sqrt()).fract();
             low + share * (high - low)
         })
     }
 
-    /// The pose of four drives and more that is nearest to given relative angles: the nearest of those to which the
-    /// nearest ones of every piece lead.
+    /// Returns the pose of four and more drives that is nearest to given relative angles: the best local minimum from
+    /// the nearest starts in all components.
     fn nearest_pose(&self, p: Vector, b: f64, near: &[f64]) -> Option<PerDrive> {
         let (n, windows) = (self.joints.len(), self.windows());
         let near = PerDrive::from_fn(n, |i| near[i]);
@@ -125,11 +127,11 @@ impl PoseSpace {
         let mut starts = self.sheets(p, b);
         starts.extend(self.solved(p, b, &own, &windows));
         starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
-        let drawn = starts.iter().take(GONE_ON_FROM).map(|a| self.drawn((p, b), a, &wish, &windows));
+        let drawn = starts.iter().take(MAX_DESCENTS).map(|a| self.drawn((p, b), a, &wish, &windows));
         drawn.min_by(|x, y| far(x).total_cmp(&far(y)))
     }
 
-    /// Relative angles of all poses of up to three drives, while more are wanted.
+    /// Visits the relative angles of all poses of up to three drives until `take` returns false.
     pub(super) fn each_pose(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         match self.drives() {
             1 => {
@@ -150,7 +152,7 @@ impl PoseSpace {
         }
     }
 
-    /// Two drives: a point leaves two elbows, each with its own b.
+    /// Visits the poses of two drives until `take` returns false: a point has two elbows, each with its own b.
     fn elbows(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let [l, m] = [self.tip[0], self.tip[1]];
         let cos = (p.norm_sqr() - l * l - m * m) / (2.0 * l * m);
@@ -168,7 +170,7 @@ impl PoseSpace {
             let mut angle = own - tau * ((own - low + 1e-9) / tau).floor();
             while angle <= high + 1e-9 {
                 let a = PerDrive::from([angle.clamp(low, high)]);
-                // The point is on this set if the pose with this angle is there at this b.
+                // The point belongs to this b if the pose with this angle and b reaches it.
                 let miss = (self.place(&self.lift(&a, b)) - p).norm();
                 if miss <= B_TOLERANCE * self.farthest() && !take(&a) {
                     return;

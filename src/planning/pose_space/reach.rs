@@ -1,4 +1,4 @@
-//! Which b reach a point.
+//! The b at which a point can be reached.
 
 use super::covered::Covered;
 use super::critical::Critical;
@@ -7,24 +7,25 @@ use super::space::{AT_BASE, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::reactionless::{BSet, NoReach};
 
-/// Values of b that come as near as this are one, rad: rounding.
-const SAME: f64 = 1e-10;
-/// Single b of two drives may be off by this share of Σλ, rad: half of what its poses may be off.
-const SINGLE_B: f64 = 0.5e-6;
-/// How far beside a distance, as a share of the reach: past what rounding and the slack of limits decide.
-const BESIDE: f64 = 4.1e-9;
+/// Critical values of b within this tolerance are equal, rad.
+const SAME_B_RAD: f64 = 1e-10;
+/// Tolerance of a single b of one and two drives, as a fraction of Σλ: half of that of their poses.
+const SINGLE_B_TOLERANCE: f64 = 0.5e-6;
+/// Offset to a neighbouring distance, as a fraction of the reach: beyond the effect of rounding and of the tolerance of
+/// limits.
+const NEIGHBOUR_OFFSET: f64 = 4.1e-9;
 
 impl PoseSpace {
-    /// All b at which the end effector can be on `p`, m, within the limits; with two drives each is an interval without
-    /// extent.
+    /// Returns all b at which the end effector can be on `p`, m, within the limits. With one and two drives each
+    /// interval is a single value.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there are none: the reason.
     pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
         self.reach_with(p, true)
     }
 
-    /// The same, with poses looked for with all care, or less: then b may be missing.
+    /// Does the same with a careful or a quick search for poses; a quick one may miss some b.
     pub(in crate::planning) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         if let Some(map) = self.map() {
             return map.reach(p);
@@ -40,13 +41,13 @@ impl PoseSpace {
         if set.is_empty() {
             return Err(NoReach::Limits);
         }
-        // b of a point that is turned about B turns with it.
+        // Turning a point about B by an angle adds Σλ times that angle to b.
         let turn = p.arg() * self.sum;
         let turned = set.intervals.iter().map(|[low, high]| [low + turn, high + turn]);
         Ok(BSet::union(turned.collect(), self.period()))
     }
 
-    /// Whether a point, m, lies in what is reached at b, rad, its edge included.
+    /// Whether a point, m, lies in the workspace of b, rad, or on its boundary.
     pub fn contains(&self, p: Vector, b: f64) -> bool {
         match self.planes() {
             Ok(planes) => planes.boundary().contains(p, b),
@@ -54,13 +55,13 @@ impl PoseSpace {
         }
     }
 
-    /// By how much single b of two points may differ and still be one, rad: one and two drives reach a point at single b,
-    /// which points share up to rounding.
+    /// Returns the tolerance within which two single values of b are equal, rad. With one and two drives, points have
+    /// single values of b that agree within rounding only.
     pub(in crate::planning) fn b_slack(&self) -> f64 {
-        if self.drives() < 3 { SINGLE_B * self.sum } else { 0.0 }
+        if self.drives() < 3 { SINGLE_B_TOLERANCE * self.sum } else { 0.0 }
     }
 
-    /// A pose of a point at the b nearest to a given one at which there is one.
+    /// Returns a pose of a point, m, at the feasible b nearest to the given one; `None` if there is none.
     pub fn near(&self, p: Vector, b: f64) -> Option<DriveAngles> {
         let set = self.reach(p).ok()?;
         let nearest = set.nearest(b)?;
@@ -68,11 +69,11 @@ impl PoseSpace {
         tries.iter().find_map(|b| self.poses(p, *b, &self.middle()).first().copied())
     }
 
-    /// The b of points at a distance from B, on the x axis.
+    /// Returns the b of points at a distance from B, m, for the point on the x axis.
     fn reach_of(&self, distance: f64, careful: bool) -> BSet {
         let period = self.period();
         if self.drives() == 1 {
-            // One arm goes round on its circle.
+            // A single arm only reaches its circle.
             let on = (distance - self.farthest()).abs() <= 1e-9 * self.farthest();
             let b = if self.tip[0] < 0.0 { 0.5 * period } else { 0.0 };
             return BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period };
@@ -86,9 +87,9 @@ impl PoseSpace {
         if self.criticals(distance, |c| work.ends.push(c)) {
             return self.joined(distance, &[], &mut work).set(period);
         }
-        // At distances to which straight arms just reach, and corners of limits, ends meet and none is told from another:
-        // as beside it.
-        let parts = [-BESIDE, BESIDE].map(|by| {
+        // At distances just reached by straight arms, or by corners of the limits, critical values coincide and cannot
+        // be distinguished: the union of the sets on both sides is taken.
+        let parts = [-NEIGHBOUR_OFFSET, NEIGHBOUR_OFFSET].map(|by| {
             let beside = (distance + by * self.farthest()).abs();
             work.ends.clear();
             self.criticals(beside, |c| work.ends.push(c));
@@ -97,12 +98,13 @@ impl PoseSpace {
         BSet::union(parts.concat(), period)
     }
 
-    /// What of the circle of b is covered at a distance from B, m, three drives and more. What was seen at distances
-    /// beside it saves looks. Where rounding decides it is moved by up to twice [`BESIDE`], and says where to.
+    /// Returns the feasible b at a distance from B, m, for three and more drives. Results at neighbouring distances
+    /// save searches for poses. If rounding affects the result, the distance is shifted by up to twice
+    /// [`NEIGHBOUR_OFFSET`]; it is returned too.
     pub(super) fn covered(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> (f64, Covered) {
         let mut at = distance;
         for by in [0.0, 1.0, -1.0, 2.0, -2.0] {
-            at = distance + by * BESIDE * self.farthest();
+            at = distance + by * NEIGHBOUR_OFFSET * self.farthest();
             work.ends.clear();
             if self.criticals(at, |c| work.ends.push(c)) {
                 break;
@@ -111,7 +113,8 @@ impl PoseSpace {
         (at, self.joined(at, beside, work))
     }
 
-    /// Joins the critical values: what lies between two is covered where a pose beside it goes there, or goes on.
+    /// Determines which gaps between critical values are feasible: by the critical poses beside them, by neighbouring
+    /// distances, or by a search for poses.
     fn joined(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> Covered {
         let period = self.period();
         work.looks.clear();
@@ -120,7 +123,7 @@ impl PoseSpace {
         }
         work.ends.sort_unstable_by(|x, y| x.b.total_cmp(&y.b));
         let joins = |c: &Critical, last: &mut Critical, apart: f64| {
-            let same = apart < SAME;
+            let same = apart < SAME_B_RAD;
             if same {
                 last.merge(c);
             }
@@ -128,7 +131,7 @@ impl PoseSpace {
         };
         let mut merged = work.ends.clone();
         merged.dedup_by(|c, last| joins(c, last, c.b - last.b));
-        // b goes round: the last one may be the first.
+        // b is periodic: the last value may equal the first.
         if let [first, .., last] = &mut merged[..]
             && joins(last, first, first.b + period - last.b)
         {
@@ -136,7 +139,7 @@ impl PoseSpace {
         }
         let n = merged.len();
         if n == 0 {
-            // b may go round and round without an end: near B the machine turns as a whole.
+            // Without critical values b may go round without end: near B the machine turns as a whole.
             let known = agreed(beside.iter().map(|seen| seen.whole())).filter(|_| beside.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
             return Covered { ends: Vec::new(), gaps: vec![whole], period };
@@ -147,11 +150,11 @@ impl PoseSpace {
         let mut empty = vec![false; n];
         for i in 0..n {
             let [from, to] = covered.edges(i);
-            if covered.gaps[i] || to - from <= SAME || self.drives() < 3 {
+            if covered.gaps[i] || to - from <= SAME_B_RAD || self.drives() < 3 {
                 continue;
             }
-            // Several sheets may lie over one b: whether another one goes on here is known from the same gap beside it, or
-            // asked of poses.
+            // Several sheets may overlap in b. Whether one covers this gap is known from the same gap at neighbouring
+            // distances, or from a search for poses.
             let seen = |seen: &Covered, all: bool| Some(seen.gaps[seen.gap(&covered, i, all)?]);
             let on_both_sides = beside.len() > 1 && beside.iter().all(|beside| seen(beside, false).is_some());
             let known = agreed(beside.iter().map(|beside| seen(beside, !on_both_sides)));
@@ -170,14 +173,14 @@ impl PoseSpace {
     }
 }
 
-/// What is written to at each distance, kept so that it is not made anew.
+/// Buffers reused at each distance.
 #[derive(Default)]
 pub(super) struct Work {
     ends: Vec<Critical>,
     pub looks: Looks,
 }
 
-/// What all say that know it.
+/// Returns the common value of all known ones; `None` if they disagree or there are none.
 fn agreed(known: impl Iterator<Item = Option<bool>>) -> Option<bool> {
     let mut all = known.flatten();
     let first = all.next()?;

@@ -1,4 +1,5 @@
-//! [`Rings`]: what of circles about B belongs to the workspace of a b, and how it goes on from each to the next.
+//! [`Rings`]: the parts of circles about B that belong to the workspace of a b, and how they continue from one circle
+//! to the next.
 
 use std::f64::consts::TAU;
 
@@ -8,34 +9,34 @@ use super::reach::Work;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, unit};
 
-/// Circles to begin with.
-const FIRST_CIRCLES: usize = 128;
-/// Of so many circles one is looked at without what is known of the one before.
-const AFRESH_EVERY: usize = 16;
-/// Circles between which the boundary changes are found to be as near as this, as a share of the reach: more than twice as
-/// far as one is moved.
-const FOUND: f64 = 2e-8;
-/// The most circles that are looked at, and the most points between them.
+/// Initial number of circles.
+const INITIAL_CIRCLES: usize = 128;
+/// One circle in this many is computed without the result of the previous one.
+const RESTART_EVERY: usize = 16;
+/// A change of the boundary is bracketed between circles at this distance, as a fraction of the reach: more than twice
+/// the shift of a circle.
+const CHANGE_BRACKET: f64 = 2e-8;
+/// Maximum number of circles, and of points between them.
 const MAX_RINGS: usize = 6000;
 const MAX_POINTS: usize = 400_000;
-/// Edges of a region do not run along a circle about B; between circles that are as near as [`FOUND`] its ends move by less
-/// than this where it begins, ceases, parts or meets, rad.
-const JUMP: f64 = 0.02;
-/// Halvings of an edge between two circles.
+/// Tolerance of the motion of the ends between the two circles about a change, rad. The boundary does not run along a
+/// circle about B, so a larger jump means that a circle is wrong.
+const JUMP_TOLERANCE_RAD: f64 = 0.02;
+/// Maximum number of bisections of an edge between two circles.
 const MAX_DEPTH: usize = 24;
-/// Ends as near as this, as a share of the reach, have an edge between them that bends one way.
-const CLOSE_ENDS_SHARE: f64 = 5e-3;
-/// A reach up to which chords are as near as they are asked for; beyond they grow with it, m.
-const LARGE: f64 = 5.0;
-/// A point of a curve may miss where a circle has its end by this, as a share of the reach.
-const MISSED: f64 = 1e-6;
+/// An edge whose ends are within this fraction of the reach is treated as an arc without inflection.
+const CLOSE_ENDS: f64 = 5e-3;
+/// Reach above which the tolerance of chords grows in proportion, m.
+const LARGE_REACH_M: f64 = 5.0;
+/// Tolerance between a curve's end and the end on a circle, as a fraction of the reach.
+const ENDPOINT_TOLERANCE: f64 = 1e-6;
 
-/// Where the workspace begins or ends on a circle, counter-clockwise.
+/// A point where the workspace begins or ends on a circle, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
-    /// From 0 to 2π, rad.
+    /// Angle from 0 to 2π, rad.
     pub angle: f64,
-    /// Whether it begins here.
+    /// Whether the workspace begins here.
     pub opens: bool,
     spot: Spot,
 }
@@ -43,16 +44,16 @@ pub(super) struct End {
 /// A circle about B.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ring {
-    /// m.
+    /// Radius, m.
     pub r: f64,
-    /// By angle: it begins and ends by turns.
+    /// Ends in order of their angles: opening and closing ones alternate.
     pub ends: Vec<End>,
-    /// Without ends: whether all of it belongs to the workspace.
+    /// If there are no ends: whether the whole circle belongs to the workspace.
     pub whole: bool,
 }
 
 impl Ring {
-    /// Whether its point at angle 0 belongs to the workspace.
+    /// Whether the point at angle 0 belongs to the workspace.
     pub fn starts_inside(&self) -> bool {
         self.ends.first().map_or(self.whole, |end| !end.opens)
     }
@@ -61,7 +62,7 @@ impl Ring {
         self.r * unit(self.ends[end].angle)
     }
 
-    /// The longest arc that only one of two circles has, rad.
+    /// Returns the longest arc that belongs to the workspace on one of two circles only, rad.
     fn apart(&self, other: &Self) -> f64 {
         let has = |ring: &Self, angle: f64| {
             let before = ring.ends.iter().rev().find(|end| end.angle <= angle).or(ring.ends.last());
@@ -77,7 +78,8 @@ impl Ring {
         arcs.map(|w| w[1] - w[0]).fold(0.0, f64::max)
     }
 
-    /// Which end of another circle continues the first of this one, if all do, in the same order.
+    /// Returns the index of the end on another circle that continues the first end of this one; `None` unless all ends
+    /// continue in the same order.
     fn turned_to(&self, other: &Self) -> Option<usize> {
         let n = self.ends.len();
         if n != other.ends.len() || (n == 0 && self.whole != other.whole) {
@@ -88,13 +90,13 @@ impl Ring {
     }
 }
 
-/// How the boundary goes on from a circle to the next.
+/// How the boundary continues from a circle to the next.
 #[derive(Clone, Debug)]
 pub(super) enum Step {
-    /// Every end goes on: the first one to this one of the next circle; the points between, those of each end up to an
-    /// index.
+    /// Every end continues: the first one to end `first` of the next circle. `points` lie between the circles; those of
+    /// end i go up to index `to[i]`.
     On { first: usize, points: Vec<Vector>, to: Vec<usize> },
-    /// It begins, ceases, parts or meets here: both circles are one.
+    /// The number or order of the ends changes: both circles count as one.
     Changes,
 }
 
@@ -102,30 +104,31 @@ pub(super) enum Step {
 #[derive(Clone, Debug)]
 pub(super) struct Rings {
     pub rings: Vec<Ring>,
-    /// One fewer.
+    /// One for each two neighbouring circles.
     pub steps: Vec<Step>,
-    /// What lies between the boundary and its chords, m².
+    /// Area between the boundary and its chords, m².
     pub beside: f64,
-    /// Chords are as near to circles as this, m.
+    /// Maximum deviation of chords from arcs of circles, m.
     pub chord: f64,
-    /// How much more than [`JUMP`] of all circles is covered on one side of them only, rad.
+    /// Sum of the jumps of the boundary in excess of [`JUMP_TOLERANCE_RAD`], rad; 0 if all circles are consistent.
     pub jumps: f64,
 }
 
 impl PoseSpace {
-    /// Circles through the workspace of b, with chords as near to its boundary as this, m. Told how much is done, from 0
-    /// to 1, the caller says whether the rest is still wanted; `None` if it is not.
+    /// Returns circles through the workspace of b, with chords that deviate by at most `chord`, m, from its boundary.
+    /// Progress from 0 to 1 is reported to `goes_on`; if that returns false, the result is `None`.
     pub(super) fn rings(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Rings> {
         let carried = self.rings_of(b, chord, [self.drives() > 3, false], goes_on)?;
         if carried.jumps == 0.0 || self.drives() == 3 {
             return Some(carried);
         }
-        // What went on from circle to circle was wrong somewhere.
+        // Some result that was carried from circle to circle was wrong.
         let afresh = self.rings_of(b, chord, [false, true], goes_on)?;
         Some(if afresh.jumps < carried.jumps { afresh } else { carried })
     }
 
-    /// The same; what is known of a circle may be carried on to the next, and poses may be looked for with all care.
+    /// Does the same; with `carries` results of a circle are reused for the next, with `careful` poses are searched for
+    /// carefully.
     fn rings_of(
         &self,
         b: f64,
@@ -135,8 +138,8 @@ impl PoseSpace {
     ) -> Option<Rings> {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
-        let at = |i: usize| near + span * if i == 0 { FOUND } else { i as f64 / FIRST_CIRCLES as f64 };
-        let chord = chord * (far / LARGE).max(1.0);
+        let at = |i: usize| near + span * if i == 0 { CHANGE_BRACKET } else { i as f64 / INITIAL_CIRCLES as f64 };
+        let chord = chord * (far / LARGE_REACH_M).max(1.0);
         let mut sweep = Sweep {
             space: self,
             b,
@@ -146,18 +149,18 @@ impl PoseSpace {
             done: Rings { rings: Vec::new(), steps: Vec::new(), beside: 0.0, chord, jumps: 0.0 },
         };
         sweep.work.looks.careful = careful;
-        let mut all: Vec<(f64, Covered)> = Vec::with_capacity(FIRST_CIRCLES + 1);
-        for i in 0..=FIRST_CIRCLES {
-            if !goes_on(0.5 * i as f64 / FIRST_CIRCLES as f64) {
+        let mut all: Vec<(f64, Covered)> = Vec::with_capacity(INITIAL_CIRCLES + 1);
+        for i in 0..=INITIAL_CIRCLES {
+            if !goes_on(0.5 * i as f64 / INITIAL_CIRCLES as f64) {
                 return None;
             }
-            let r = if i == FIRST_CIRCLES { far * (1.0 - FOUND) } else { at(i) };
-            let knows = carries && i % AFRESH_EVERY > 0;
+            let r = if i == INITIAL_CIRCLES { far * (1.0 - CHANGE_BRACKET) } else { at(i) };
+            let knows = carries && i % RESTART_EVERY > 0;
             let last = all.last().map(|(_, covered)| covered).filter(|_| knows);
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
         }
-        // What one of them knows of a part that several pass through all of them know.
+        // A component found on one circle exists on its neighbours too, as far as it extends.
         let circles = if carries { 1..all.len() } else { 0..0 };
         for i in circles.clone() {
             let (before, from) = all.split_at_mut(i);
@@ -170,7 +173,7 @@ impl PoseSpace {
         let mut all = all.into_iter();
         let mut from = all.next().map(|covered| sweep.ringed(covered))?;
         for (i, to) in all.enumerate() {
-            if !goes_on(0.5 + 0.5 * i as f64 / FIRST_CIRCLES as f64) {
+            if !goes_on(0.5 + 0.5 * i as f64 / INITIAL_CIRCLES as f64) {
                 return None;
             }
             let to = sweep.ringed(to);
@@ -186,14 +189,14 @@ struct Sweep<'a> {
     space: &'a PoseSpace,
     b: f64,
     work: Work,
-    /// Whether what is known of circles is carried on to those between them.
+    /// Whether results of circles are reused for those between them.
     carries: bool,
-    /// How many circles and points there may still be.
+    /// Remaining numbers of circles and of points.
     budget: [usize; 2],
     done: Rings,
 }
 
-/// Points of an edge between two circles, and what lies between it and their chords, m².
+/// Points of an edge between two circles, and the area between the edge and their chords, m².
 #[derive(Default)]
 struct Edge {
     points: Vec<Vector>,
@@ -211,7 +214,7 @@ impl Sweep<'_> {
     fn ringed(&self, (r, covered): (f64, Covered)) -> (Ring, Covered) {
         let n = covered.ends.len();
         let whole = covered.gaps.iter().all(|gap| *gap);
-        // Angles fall where b rises.
+        // The angle falls as b rises.
         let end = |i: usize| {
             let [before, after] = [covered.gaps[(i + n - 1) % n], covered.gaps[i]];
             let c = &covered.ends[i];
@@ -229,15 +232,15 @@ impl Sweep<'_> {
         ((self.b - b) / self.space.sum).rem_euclid(TAU)
     }
 
-    /// Notes a circle and what lies between it and the next, with circles between where the boundary changes.
+    /// Adds a circle and the step to the next one, with further circles between them if the boundary changes.
     fn between(&mut self, from: &(Ring, Covered), to: &(Ring, Covered)) {
         let far = self.space.farthest();
         if let Some(step) = self.step(&from.0, &to.0) {
             self.done.rings.push(from.0.clone());
             self.done.steps.push(step);
-        } else if to.0.r - from.0.r <= FOUND * far || self.budget[0] == 0 {
-            if to.0.r - from.0.r <= FOUND * far {
-                self.done.jumps += (from.0.apart(&to.0) - JUMP).max(0.0);
+        } else if to.0.r - from.0.r <= CHANGE_BRACKET * far || self.budget[0] == 0 {
+            if to.0.r - from.0.r <= CHANGE_BRACKET * far {
+                self.done.jumps += (from.0.apart(&to.0) - JUMP_TOLERANCE_RAD).max(0.0);
             }
             self.done.rings.push(from.0.clone());
             self.done.steps.push(Step::Changes);
@@ -248,7 +251,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// What lies between two circles if every end goes on from one to the other.
+    /// Returns the step between two circles if every end continues from one to the other.
     fn step(&mut self, from: &Ring, to: &Ring) -> Option<Step> {
         let first = from.turned_to(to)?;
         let n = from.ends.len();
@@ -257,7 +260,7 @@ impl Sweep<'_> {
             let j = (i + first) % n;
             let before = edge.beside;
             self.trace([end.spot, to.ends[j].spot], [from.at(i), to.at(j)], &mut edge)?;
-            // Outwards it has the workspace on its left where it opens.
+            // The edge of an opening end has the workspace on its left in outward direction.
             if !end.opens {
                 edge.beside = before - (edge.beside - before);
             }
@@ -273,9 +276,9 @@ impl Sweep<'_> {
         Some(r * unit(self.angle(b)))
     }
 
-    /// The points of a curve between two of its own; `None` if it does not join them within the limits.
+    /// Adds the points of a curve between two of its places; `None` if the curve does not join them within the limits.
     fn trace(&self, spots: [Spot; 2], ends: [Vector; 2], edge: &mut Edge) -> Option<()> {
-        let missed = MISSED * self.space.farthest();
+        let missed = ENDPOINT_TOLERANCE * self.space.farthest();
         for (spot, end) in spots.iter().zip(ends) {
             if (self.point(spot)? - end).norm() > missed {
                 return None;
@@ -285,7 +288,7 @@ impl Sweep<'_> {
         self.halved(&Spot { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
     }
 
-    /// The same between two places t, with the middle.
+    /// Does the same between two parameters t, given the middle, by bisection.
     fn halved(
         &self,
         middle: &Spot,
@@ -302,23 +305,23 @@ impl Sweep<'_> {
             let length = way.norm();
             if length > 0.0 { ((p - a) * way.conj()).im.abs() / length } else { (p - a).norm() }
         };
-        // Areas between the edge and one, two and four chords, extrapolated.
+        // Areas between the edge and one, two and four chords, by Richardson extrapolation.
         let area = |a: Vector, b: Vector, c: Vector| 0.5 * ((b - a).conj() * (c - a)).im;
         let two = area(start, q2, end);
         let apart = (end - start).norm();
-        // Between circles that lie close no chord is parted.
+        // Short edges between close circles need no points in between.
         let halves = [(q2 - start).norm(), (end - q2).norm()];
-        let near = apart <= CLOSE_ENDS_SHARE * self.space.farthest() && halves.iter().all(|d| *d <= 0.8 * apart);
+        let near = apart <= CLOSE_ENDS * self.space.farthest() && halves.iter().all(|d| *d <= 0.8 * apart);
         if near && off(q2, [start, end]) <= self.done.chord {
             edge.beside += two * 4.0 / 3.0;
             return Some(());
         }
         let [q1, q3] = [self.point(&quarters[0])?, self.point(&quarters[2])?];
-        // What is four times as short bends a sixteenth.
+        // A chord a quarter as long deviates a sixteenth as much.
         let bend = off(q2, [start, end]).max(off(q1, [start, q2])).max(off(q3, [q2, end]));
         let even = [(q1 - start).norm(), (q2 - q1).norm(), (q3 - q2).norm(), (end - q3).norm()];
         let straight = even.iter().all(|d| *d <= 2.0 * apart) && bend <= 16.0 * self.done.chord;
-        let tiny = even.iter().all(|d| *d <= FOUND * self.space.farthest());
+        let tiny = even.iter().all(|d| *d <= CHANGE_BRACKET * self.space.farthest());
         let spent = edge.points.len() >= self.budget[1];
         if straight || tiny || spent {
             let four = two + area(start, q1, q2) + area(q2, q3, end);

@@ -1,7 +1,7 @@
 //! [`PoseSpace`]: coordinates (a, b) of the poses of any machine that has a pose constant.
 //!
-//! Three drives with limits of both relative angles have [`Planes`], which know most in closed form: where a space has
-//! them, it answers by them. Which of the two ways answers is decided inside of this module only.
+//! Three drives with limits of both relative angles have [`Planes`], with most answers in closed form; such a space
+//! uses them. Only this module chooses between the two methods.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -14,53 +14,54 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::{PlaneMap, PlanePoint, WIDEST};
 
-/// A point as near to B as this, as a share of the reach, is B: the workspace turned about it.
+/// A point within this distance of the base pin B, as a fraction of the reach, is treated as B: turning the workspace
+/// does not move it.
 pub(super) const AT_BASE: f64 = 1e-12;
 
-/// The poses of a machine by its relative angles and b.
+/// The set of poses of a machine in coordinates (a, b): relative angles and pose constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseSpace {
     pub(super) tip: PerDrive,
     pub(super) lambda: PerDrive,
     pub(super) sum: f64,
-    /// Each after the joint that leads to its nearer drive.
+    /// Ordered as a tree: each comes after the joint that leads to its nearer drive.
     pub(super) joints: Box<[Joint]>,
     pub(super) lead: Lead,
     inertia: f64,
     is_reactionless: bool,
-    /// Of these arms and joints: a space of others has its own.
+    /// Cache for these arms and joints; a space with other ones needs its own.
     pub(super) patterns: Patterns,
-    /// What is known in closed form.
+    /// The closed forms, or why there are none.
     planes: Result<Arc<Planes>, PlaneError>,
 }
 
-/// What a hand that leads the end effector makes of the freedoms that are left.
+/// How redundant freedoms are used while the end effector is dragged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lead {
-    /// Every step takes the least kinetic energy.
+    /// Each step minimises the kinetic energy.
     #[default]
     LeastEnergy,
-    /// A drive keeps its angle, and so its links their orientation, while there is a way to.
+    /// A drive keeps its angle, and so its links their orientation, as long as that is feasible.
     Keep(usize),
-    /// Every step is the least by a weight; here its inverse, row by row.
+    /// Each step minimises a weighted norm; the matrix is the inverse of the weight, row by row.
     Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
-    /// The pose that is nearest to the middle of all ranges is gone to.
+    /// The pose moves to the one nearest to the midpoints of all ranges.
     Middle,
 }
 
 impl PoseSpace {
-    /// Of a machine whose D is constant, or nearly.
+    /// Returns the pose space of a machine whose inertia matrix D is constant, or nearly so.
     ///
     /// # Errors
-    /// Why it has no b.
+    /// If the machine has no b: the reason.
     pub fn of(machine: &Machine) -> Result<Self, NoPoseSpace> {
         Self::holding(machine, Planes::of(machine).map(Arc::new))
     }
 
-    /// The same by the way of any number of drives, for three drives too: the twin of their closed forms in tests.
+    /// Returns the pose space by the general method, also for three drives: tests compare it with the closed forms.
     ///
     /// # Errors
-    /// Why it has no b.
+    /// If the machine has no b: the reason.
     pub fn general(machine: &Machine) -> Result<Self, NoPoseSpace> {
         Self::holding(machine, Err(PlaneError::LeftOut))
     }
@@ -70,11 +71,11 @@ impl PoseSpace {
         Self::with(machine, inertia.lambda(), inertia.pose_inertia(), planes)
     }
 
-    /// The same by what each drive has to turn alone, H_kk, where D depends on the pose or is nothing: its b only tells
-    /// poses of a point apart.
+    /// Returns the pose space with λ from the inertia H_kk of each drive turning alone, for machines whose D depends on
+    /// the pose or is zero. Its b only distinguishes poses of the same point.
     ///
     /// # Errors
-    /// If the angles or arms give no coordinates.
+    /// If the relative angles or arms define no coordinates.
     pub fn nominal(machine: &Machine) -> Result<Self, NoPoseSpace> {
         let inertia = Inertia::of(machine);
         let h = inertia.diagonals();
@@ -92,7 +93,7 @@ impl PoseSpace {
         let reach: f64 = tip.iter().map(|c| c.abs()).sum();
         let mut joints = joints(machine)?;
         match &planes {
-            // Planes have checks of their own, and count angles as the machine does.
+            // Planes have checks of their own, and order the angles as the machine does.
             Ok(_) => joints.sort_by_key(|joint| joint.angle),
             Err(_) if sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) => {
                 return Err(NoPoseSpace::Sum { sum });
@@ -113,13 +114,13 @@ impl PoseSpace {
         })
     }
 
-    /// The same, led otherwise.
+    /// Returns the same space with another use of redundant freedoms.
     #[must_use]
     pub fn led(self, lead: Lead) -> Self {
         Self { lead, ..self }
     }
 
-    /// The same, with ways that lead across change points or keep off them, where it has planes.
+    /// Returns the same space whose paths keep off change points, or may cross them. Without planes it has no effect.
     #[must_use]
     pub fn keeping_off_change_points(self, keep_off: bool) -> Self {
         let kept = |planes: Arc<Planes>| match planes.keep_off_change_points() == keep_off {
@@ -129,90 +130,91 @@ impl PoseSpace {
         Self { planes: self.planes.map(kept), ..self }
     }
 
-    /// What only three drives with limits of both relative angles have: sheets, folds, change points and Eq. (16).
+    /// Returns the closed forms of three drives with limits of both relative angles: sheets, folds, change points and
+    /// Eq. (16).
     ///
     /// # Errors
-    /// Why there are none.
+    /// If there are none: the reason.
     pub fn planes(&self) -> Result<&Arc<Planes>, &PlaneError> {
         self.planes.as_ref()
     }
 
-    /// Eqs (13)–(16), where they answer.
+    /// Returns Eqs (13)–(16) in closed form, where available.
     #[inline]
     pub(super) fn map(&self) -> Option<&PlaneMap> {
         self.planes.as_ref().ok().map(|planes| planes.map())
     }
 
-    /// Every choice of limits and signs for which b can be stationary: made once, at the first point that is asked for.
+    /// Returns each choice of active limits and signs for which b can be stationary; computed at the first call.
     pub(super) fn patterns(&self) -> &[Pattern] {
         self.patterns.of(&self.tip, &self.lambda, &self.joints)
     }
 
-    /// Number of drives.
+    /// Returns the number of drives.
     pub fn drives(&self) -> usize {
         self.tip.len()
     }
 
-    /// c_k, m: the end effector is Σ_k c_k e^{iq_k}.
+    /// Returns c_k, m: the end effector is Σ_k c_k e^{iq_k}.
     pub fn tip(&self) -> &PerDrive {
         &self.tip
     }
 
-    /// λ_k.
+    /// Returns λ_k.
     pub fn lambda(&self) -> &PerDrive {
         &self.lambda
     }
 
-    /// Σλ.
+    /// Returns Σλ.
     pub fn lambda_sum(&self) -> f64 {
         self.sum
     }
 
-    /// n_B = −D_1 b̈, kg m².
+    /// Returns D_1, kg m²: the base moment is n_B = −D_1 b̈.
     pub fn inertia(&self) -> f64 {
         self.inertia
     }
 
-    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
+    /// Whether holding b keeps the base free of moments exactly; if not, it removes most of them.
     pub fn is_reactionless(&self) -> bool {
         self.is_reactionless
     }
 
-    /// The relative angles, n − 1 of them.
+    /// Returns the n − 1 relative angles.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// Whether what is reached while b is held is an area, whose points are reached by ranges of b; else it is a curve or
-    /// one place, and each point has its b.
+    /// Whether the workspace at fixed b is an area, and the b of a point form intervals. Otherwise it is a curve or a
+    /// point, and each point has single values of b.
     pub fn reaches_area(&self) -> bool {
         self.joints.len() > 1
     }
 
-    /// Whether the end effector can follow curves while b is held.
+    /// Checks whether the end effector can follow prescribed curves while b is held.
     ///
     /// # Errors
-    /// Why not.
+    /// If not: the reason.
     pub fn follows_curves(&self) -> Result<(), OwnWay> {
         if self.reaches_area() { Ok(()) } else { Err(OwnWay { drives: self.drives() }) }
     }
 
-    /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
+    /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
     pub fn period(&self) -> f64 {
         TAU * self.sum
     }
 
-    /// How far the arms reach at most, m.
+    /// Returns the greatest distance from the base that the arms reach, m.
     pub fn farthest(&self) -> f64 {
         self.tip.iter().map(|c| c.abs()).sum()
     }
 
-    /// How near the longest arm lets them come to the base, m.
+    /// Returns the least distance from the base, m: more than 0 if one arm is longer than all others together.
     pub fn nearest(&self) -> f64 {
         (2.0 * self.tip.max_abs() - self.farthest()).max(0.0)
     }
 
-    /// Drive angles of relative angles on b. Never wrapped.
+    /// Returns the drive angles of relative angles and b, rad. Never wrapped.
     pub fn lift(&self, a: &[f64], b: f64) -> DriveAngles {
         if let Some(map) = self.map() {
             return DriveAngles::from(map.lift(PlanePoint { a: [a[0], a[1]], b }));
@@ -223,7 +225,7 @@ impl PoseSpace {
         DriveAngles(q)
     }
 
-    /// Rates of the drives for rates of the relative angles and ḃ.
+    /// Returns the drive rates for rates of the relative angles and ḃ.
     pub fn lift_rates(&self, ad: &[f64], bd: f64) -> PerDrive {
         if let Some(map) = self.map() {
             return PerDrive::from(map.lift_rates([ad[0], ad[1]], bd));
@@ -237,7 +239,7 @@ impl PoseSpace {
         qd
     }
 
-    /// Rates of the relative angles for rates of the drives.
+    /// Returns the rates of the relative angles for drive rates.
     pub fn angle_rates(&self, qd: &[f64]) -> PerDrive {
         if let Some(map) = self.map() {
             return PerDrive::from(map.project_rates(qd).0);
@@ -248,17 +250,17 @@ impl PoseSpace {
         })
     }
 
-    /// Least and greatest value of a relative angle, rad; infinite where it turns freely.
+    /// Returns the bounds of a relative angle, rad; infinite if it turns freely.
     pub fn limits(&self, i: usize) -> [f64; 2] {
         self.joints[i].bounds()
     }
 
-    /// How far the workspace is turned at b, rad.
+    /// Returns the angle by which b turns the workspace, rad.
     pub fn turn(&self, b: f64) -> f64 {
         b / self.sum
     }
 
-    /// Drive angles with drive 1 at 0.
+    /// Returns the drive angles of relative angles with drive 1 at 0, rad.
     pub(super) fn unturned(&self, a: &[f64]) -> PerDrive {
         let mut q = PerDrive::zeros(self.drives());
         for (joint, a) in self.joints.iter().zip(a) {
@@ -267,7 +269,7 @@ impl PoseSpace {
         q
     }
 
-    /// Relative angles of a pose, in the order of [`joints`](Self::joints).
+    /// Returns the relative angles of a pose, rad, in the order of [`joints`](Self::joints).
     pub fn angles(&self, q: &[f64]) -> PerDrive {
         if let Some(map) = self.map() {
             return PerDrive::from(map.project(q).a);
@@ -275,22 +277,22 @@ impl PoseSpace {
         PerDrive::from_fn(self.joints.len(), |i| self.joints[i].of(q))
     }
 
-    /// b of a pose, rad.
+    /// Returns b of a pose, rad.
     pub fn b(&self, q: &[f64]) -> f64 {
         self.map().map_or_else(|| self.lambda.dot(q), |map| map.project(q).b)
     }
 
-    /// Relative angles and b of a pose, rad.
+    /// Returns the relative angles and b of a pose, rad.
     pub fn project(&self, q: &[f64]) -> (PerDrive, f64) {
         (self.angles(q), self.b(q))
     }
 
-    /// Rates of the relative angles and ḃ for rates of the drives.
+    /// Returns the rates of the relative angles and ḃ for drive rates.
     pub fn project_rates(&self, qd: &[f64]) -> (PerDrive, f64) {
         (self.angle_rates(qd), self.b(qd))
     }
 
-    /// The end effector of relative angles on b, m.
+    /// Returns the end effector of relative angles and b, m.
     pub fn forward(&self, a: &[f64], b: f64) -> Vector {
         match self.map() {
             Some(map) => map.forward([a[0], a[1]], b),
@@ -298,18 +300,19 @@ impl PoseSpace {
         }
     }
 
-    /// The end effector, m.
+    /// Returns the end effector of a pose, m.
     pub fn place(&self, q: &[f64]) -> Vector {
         self.tip.iter().zip(q).map(|(c, q)| *c * unit(*q)).sum()
     }
 
-    /// Relative angles in the middle of their limits, rad.
+    /// Returns the midpoints of the limits of all relative angles, rad.
     pub fn middle(&self) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |i| 0.5 * (self.joints[i].limits[0] + self.joints[i].limits[1]))
     }
 }
 
-/// The machine's angles as a tree that grows from drive 1; where they leave drives apart, a free joint between these.
+/// Orders the machine's relative angles as a tree from drive 1. Drives that they leave unconnected get a free joint to
+/// drive 1.
 fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
     let n = machine.drives();
     let mut joints: Vec<Joint> = Vec::with_capacity(n - 1);
@@ -342,7 +345,7 @@ fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
     }
 }
 
-/// Limits as they are; one turn about 0 where there are none.
+/// Returns the limits as they are, or [−π, π] if there are none.
 fn window(min: f64, max: f64) -> [f64; 2] {
     if min.is_finite() && max.is_finite() { [min, max] } else { [-PI, PI] }
 }

@@ -1,54 +1,54 @@
-//! Towards a point while b is held: the pose that a hand leads to, whatever freedoms are left.
+//! Inverse kinematics of a dragged end effector while b is held, for any number of redundant freedoms.
 //!
 //! # Method
-//! Of all small motions that bring the end effector nearer to a point and leave b as it is, the one with the least kinetic
-//! energy by the λ of the drives: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative
-//! angle that stands at a limit and would pass it; μ (Levenberg, Marquardt) acts on the point only and grows while a
-//! step brings nothing. Where the point cannot be reached, how the ends of the arms curve counts too: Newton's
-//! iteration for the least |p − Σ c_k e^{iq_k}|², whose second derivatives are CᵀC and (p − Σ c e)·c_k e_k on the diagonal,
-//! ends at a pose that is as near as can be.
+//! Each step moves the end effector towards the point, keeps b, and minimises the kinetic energy by the λ of the
+//! drives: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative angle at a limit that the
+//! step would violate. The damping μ (Levenberg, Marquardt) acts on the rows of the point only, and grows while steps
+//! are rejected. If the point is out of reach, Newton's iteration minimises |p − Σ c_k e^{iq_k}|². Its second
+//! derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a nearest pose.
 
 use super::space::{Lead, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
 
-/// Rows of C: two of the point, one of b, one a relative angle, and one of a drive that does not turn.
-const ROWS: usize = KEPT + 1;
-const KEPT: usize = 3 + MAX_DRIVES - 1;
-/// The most steps.
+/// Rows of C: two for the point, one for b, one for each relative angle, and the last one for a drive that keeps its
+/// angle.
+const ROWS: usize = KEPT_ROW + 1;
+const KEPT_ROW: usize = 3 + MAX_DRIVES - 1;
+/// Maximum number of steps.
 const MAX_STEPS: usize = 80;
-/// The longest of them, rad.
-const MAX_STEP: f64 = 0.3;
-/// Nearer to the point than this share of the reach is at it.
-const AT_SHARE: f64 = 1e-13;
-/// μ to begin with, a share of the square of the reach.
-const FIRST_DAMPING: f64 = 1e-8;
-/// μ at which it is given up, a share of the square of the reach.
-const LAST_DAMPING: f64 = 1e4;
-/// A step that brings less than this share is the last.
-const MIN_GAIN_SHARE: f64 = 1e-12;
+/// Maximum step, rad.
+const MAX_STEP_RAD: f64 = 0.3;
+/// Residual below which the point is reached, as a fraction of the reach.
+const RESIDUAL_TOLERANCE: f64 = 1e-13;
+/// Initial damping μ, as a fraction of the squared reach.
+const INITIAL_DAMPING: f64 = 1e-8;
+/// Damping μ above which the iteration ends, as a fraction of the squared reach.
+const MAX_DAMPING: f64 = 1e4;
+/// The iteration ends at a step that reduces the residual by less than this fraction of the reach.
+const MIN_GAIN: f64 = 1e-12;
 
-/// Steps of Newton's iteration at most.
+/// Maximum number of Newton steps.
 const MAX_NEWTON_STEPS: usize = 60;
-/// The shortest of them, rad.
-const MIN_NEWTON_STEP: f64 = 1e-10;
-/// Nearer than this share of the reach, a point that was out of it may be in it.
-const ALMOST_SHARE: f64 = 0.01;
+/// Newton's iteration ends at steps below this, rad.
+const NEWTON_TOLERANCE_RAD: f64 = 1e-10;
+/// Residual, as a fraction of the reach, below which the point may have come within reach.
+const RETRY_BELOW: f64 = 0.01;
 
 type Rows = SMatrix<f64, ROWS, MAX_DRIVES>;
-/// Δq, and a multiplier for b and each relative angle.
+/// Size of the KKT system: Δq, and a multiplier for b and each relative angle.
 const KKT: usize = 2 * MAX_DRIVES;
 
 impl PoseSpace {
-    /// Relative angles at b that put the end effector on p, m, or as near as can be from there, gone to from others; and
-    /// how far that is, m.
+    /// Returns relative angles at b with the end effector on p, m, or as near as possible, starting from others; and
+    /// its distance from p, m.
     pub fn toward(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let gone = self.gone(p, b, from, None);
-        if gone.1 <= AT_SHARE * self.farthest() { gone } else { self.settled(p, b, gone) }
+        if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.settled(p, b, gone) }
     }
 
-    /// The same with the drive that is to [keep](Lead::Keep) its angle at that angle, or gone on to the
-    /// [middle](Lead::Middle) of all ranges, where it is [led](Self::led) so.
+    /// Does the same for a space [led](Self::led) to [keep](Lead::Keep) the angle of a drive, or to approach the
+    /// [middle](Lead::Middle) of all ranges; `None` for other spaces.
     pub fn toward_led(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
             Lead::Keep(kept) => Some(self.gone(p, b, from, Some(kept))),
@@ -64,56 +64,56 @@ impl PoseSpace {
         let reach = self.farthest();
         let mut a = self.clamped(from);
         let mut q = self.lift(&a, b);
-        let mut off = (self.place(&q) - p).norm();
-        let mut mu = FIRST_DAMPING;
+        let mut distance = (self.place(&q) - p).norm();
+        let mut mu = INITIAL_DAMPING;
         let mut locked = [false; MAX_DRIVES];
         for _ in 0..MAX_STEPS {
-            if off <= AT_SHARE * reach {
+            if distance <= RESIDUAL_TOLERANCE * reach {
                 break;
             }
             let Some(step) = self.step(p, &q, &locked, kept, mu) else { break };
             let next = self.angles(&q.0.plus(1.0, &step));
-            // An angle that would pass its limit stays there, and the others do without it.
+            // An angle that would violate its limit is locked there, and the step is repeated without it.
             if let Some(i) = self.passed(&a, &next, &locked) {
                 locked[i] = true;
                 continue;
             }
             let next = self.clamped(&next);
             let there = self.lift(&next, b);
-            let left = (self.place(&there) - p).norm();
-            if left < off {
-                let brought = off - left;
-                (a, q, off) = (next, there, left);
+            let next_distance = (self.place(&there) - p).norm();
+            if next_distance < distance {
+                let gain = distance - next_distance;
+                (a, q, distance) = (next, there, next_distance);
                 (mu, locked) = (0.2 * mu, [false; MAX_DRIVES]);
-                if brought < MIN_GAIN_SHARE * reach {
+                if gain < MIN_GAIN * reach {
                     break;
                 }
             } else {
                 mu *= 8.0;
-                if mu > LAST_DAMPING {
+                if mu > MAX_DAMPING {
                     break;
                 }
             }
         }
-        (a, off)
+        (a, distance)
     }
 
-    /// The same for a point that was out of reach of the pose beside it, at a b near to this one.
+    /// Does the same for a point that was out of reach at a nearby b, starting from the pose there.
     pub fn toward_beside(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let a = self.clamped(from);
-        let off = (self.place(&self.lift(&a, b)) - p).norm();
-        let settled = self.settled(p, b, (a, off));
-        if settled.1 > ALMOST_SHARE * self.farthest() {
+        let distance = (self.place(&self.lift(&a, b)) - p).norm();
+        let settled = self.settled(p, b, (a, distance));
+        if settled.1 > RETRY_BELOW * self.farthest() {
             return settled;
         }
         let gone = self.toward(p, b, from);
         if gone.1 < settled.1 { gone } else { settled }
     }
 
-    /// The pose beside another one that is as near to p as can be, and how far that is, m.
-    fn settled(&self, p: Vector, b: f64, (mut a, mut off): (PerDrive, f64)) -> (PerDrive, f64) {
+    /// Returns the local minimum of the distance from p, and that distance, m.
+    fn settled(&self, p: Vector, b: f64, (mut a, mut distance): (PerDrive, f64)) -> (PerDrive, f64) {
         let mut q = self.lift(&a, b);
-        let mut mu = FIRST_DAMPING;
+        let mut mu = INITIAL_DAMPING;
         let mut locked = [false; MAX_DRIVES];
         for _ in 0..MAX_NEWTON_STEPS {
             let step = self.curved_step(p, &q, &locked, mu);
@@ -126,25 +126,25 @@ impl PoseSpace {
                 }
                 let next = self.clamped(&next);
                 let there = self.lift(&next, b);
-                let left = (self.place(&there) - p).norm();
-                if left < off {
-                    (a, q, off) = (next, there, left);
+                let next_distance = (self.place(&there) - p).norm();
+                if next_distance < distance {
+                    (a, q, distance) = (next, there, next_distance);
                     (mu, locked) = (0.1 * mu, [false; MAX_DRIVES]);
-                    if size < MIN_NEWTON_STEP {
+                    if size < NEWTON_TOLERANCE_RAD {
                         break;
                     }
                     continue;
                 }
             }
             mu *= 8.0;
-            if size < MIN_NEWTON_STEP || mu > LAST_DAMPING {
+            if size < NEWTON_TOLERANCE_RAD || mu > MAX_DAMPING {
                 break;
             }
         }
-        (a, off)
+        (a, distance)
     }
 
-    /// The first angle that stands at a limit and would pass it.
+    /// Returns the first angle at a limit that a step would violate.
     fn passed(&self, a: &PerDrive, next: &PerDrive, locked: &[bool; MAX_DRIVES]) -> Option<usize> {
         let passes = |i: &usize| {
             let [low, high] = self.joints[*i].bounds();
@@ -153,7 +153,7 @@ impl PoseSpace {
         (0..self.joints.len()).find(passes)
     }
 
-    /// Δq of Newton's step, as long as is allowed at most.
+    /// Returns the Newton step Δq, limited in length; `None` if the system is singular.
     fn curved_step(&self, p: Vector, q: &DriveAngles, locked: &[bool; MAX_DRIVES], mu: f64) -> Option<PerDrive> {
         let (n, reach) = (self.drives(), self.farthest());
         let arm = |k: usize| unit(q[k]) * (self.tip[k] / reach);
@@ -179,11 +179,11 @@ impl PoseSpace {
         }
         let step = square.lu().solve(&r)?;
         let size = step.rows(0, n).amax();
-        let short = if size > MAX_STEP { MAX_STEP / size } else { 1.0 };
+        let short = if size > MAX_STEP_RAD { MAX_STEP_RAD / size } else { 1.0 };
         size.is_finite().then(|| PerDrive::from_fn(n, |k| short * step[k]))
     }
 
-    /// Δq of one step, as long as is allowed at most.
+    /// Returns the damped step Δq, limited in length; `None` if the system is singular.
     fn step(
         &self,
         p: Vector,
@@ -205,9 +205,9 @@ impl PoseSpace {
             (c[(3 + i, joint.ends[0])], c[(3 + i, joint.ends[1])]) = (-1.0, 1.0);
         }
         if let Some(kept) = kept {
-            c[(KEPT, kept)] = 1.0;
+            c[(KEPT_ROW, kept)] = 1.0;
         }
-        // A drive that turns nothing costs nothing: a little keeps the step finite.
+        // A drive without inertia has no weight; a small one keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
         let light = match &self.lead {
             Lead::Weighed(inverse) => {
@@ -223,17 +223,17 @@ impl PoseSpace {
         for i in 0..ROWS {
             if i < 2 {
                 square[(i, i)] += mu;
-            } else if (i == KEPT && kept.is_none()) || (3..KEPT).contains(&i) && !locked[i - 3] {
+            } else if (i == KEPT_ROW && kept.is_none()) || (3..KEPT_ROW).contains(&i) && !locked[i - 3] {
                 square[(i, i)] = 1.0;
             }
         }
         let step = light * square.lu().solve(&r)?;
         let size = step.amax();
-        let short = if size > MAX_STEP { MAX_STEP / size } else { 1.0 };
+        let short = if size > MAX_STEP_RAD { MAX_STEP_RAD / size } else { 1.0 };
         size.is_finite().then(|| PerDrive::from_fn(n, |k| short * step[k]))
     }
 
-    /// Relative angles within their limits.
+    /// Clamps relative angles to their limits.
     pub fn clamped(&self, a: &[f64]) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |i| {
             let [low, high] = self.joints[i].bounds();
