@@ -2,13 +2,13 @@
 
 use super::plane::SLACK;
 
-/// Intervals that come as near as this are one, rad: rounding.
-const TOUCH: f64 = 1e-11;
+/// Intervals separated by less than this are merged, rad.
+const MERGE_TOLERANCE_RAD: f64 = 1e-11;
 
 /// A set of pose constants: disjoint closed intervals on the circle of b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BSet {
-    /// [b_min, b_max] in order, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0,
+    /// [b_min, b_max] ascending, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0,
     /// period].
     pub intervals: Vec<[f64; 2]>,
     /// Circumference of the circle, 2π Σλ, rad.
@@ -16,7 +16,7 @@ pub struct BSet {
 }
 
 impl BSet {
-    /// A union of intervals [low, high], wherever on the real line they lie.
+    /// Returns the union of intervals [low, high] anywhere on the real line, rad.
     pub(in crate::planning) fn union(mut parts: Vec<[f64; 2]>, period: f64) -> Self {
         for part in &mut parts {
             let width = (part[1] - part[0]).min(period);
@@ -27,30 +27,30 @@ impl BSet {
         let mut intervals: Vec<[f64; 2]> = Vec::new();
         for part in parts {
             match intervals.last_mut() {
-                Some(last) if part[0] <= last[1] + TOUCH => last[1] = last[1].max(part[1]),
+                Some(last) if part[0] <= last[1] + MERGE_TOLERANCE_RAD => last[1] = last[1].max(part[1]),
                 _ => intervals.push(part),
             }
         }
-        // The last may run past the seam, into the first.
+        // The last interval may extend beyond the period, into the first.
         if let Some(mut last) = intervals.pop() {
-            let past = |first: &[f64; 2], last: [f64; 2]| first[0] + period <= last[1] + TOUCH;
+            let past = |first: &[f64; 2], last: [f64; 2]| first[0] + period <= last[1] + MERGE_TOLERANCE_RAD;
             let mut swallowed = 0;
             while intervals.get(swallowed).is_some_and(|first| past(first, last)) {
                 last[1] = last[1].max(intervals[swallowed][1] + period);
                 swallowed += 1;
             }
             intervals.drain(..swallowed);
-            intervals.push(if last[1] - last[0] >= period - TOUCH { [0.0, period] } else { last });
+            intervals.push(if last[1] - last[0] >= period - MERGE_TOLERANCE_RAD { [0.0, period] } else { last });
         }
         Self { intervals, period }
     }
 
-    /// Whether no b is left.
+    /// Whether the set contains no b.
     pub fn is_empty(&self) -> bool {
         self.intervals.is_empty()
     }
 
-    /// The b that all sets have in common; they must be of one period. No sets have nothing in common.
+    /// Returns the intersection of sets of one period; of no sets, the empty set.
     pub fn overlap(sets: &[Self]) -> Self {
         let Some((first, others)) = sets.split_first() else {
             return Self { intervals: Vec::new(), period: 0.0 };
@@ -60,7 +60,7 @@ impl BSet {
             let mut parts = Vec::new();
             for s in &common.intervals {
                 for t in &set.intervals {
-                    // Both begin in [0, period) and end before 2 period.
+                    // Both begin in [0, period) and end before 2 periods.
                     for turn in [-period, 0.0, period] {
                         let part = [s[0].max(t[0] + turn), s[1].min(t[1] + turn)];
                         if part[0] <= part[1] {
@@ -73,7 +73,7 @@ impl BSet {
         })
     }
 
-    /// Whether a b lies in the set, whole turns and [`SLACK`] aside.
+    /// Whether the set contains b, modulo the period and within [`SLACK`].
     pub fn contains(&self, b: f64) -> bool {
         self.intervals.iter().any(|[low, high]| {
             let past = wrap(b - low, self.period);
@@ -81,7 +81,7 @@ impl BSet {
         })
     }
 
-    /// The same set with each interval lifted by whole periods to where it is nearest to b.
+    /// Returns the set with each interval shifted by whole periods to where it is nearest to b.
     #[must_use]
     pub fn near(&self, b: f64) -> Self {
         let lift = |[low, high]: [f64; 2]| {
@@ -91,15 +91,16 @@ impl BSet {
         Self { intervals: self.intervals.iter().map(|i| lift(*i)).collect(), period: self.period }
     }
 
-    /// b moved towards the middle of the interval of the set that it lies in or beside, by a share of the way: what a
-    /// pose at an end of an interval needs where rounding takes it away.
+    /// Moves b towards the middle of the interval that contains it or is nearest, by a fraction of the distance. Poses
+    /// at the end of an interval may be infeasible within rounding.
     pub fn inwards(&self, b: f64, share: f64) -> f64 {
         let middles = self.near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
         let nearest = middles.min_by(|x, y| ((x.0 - b).abs() - x.1).total_cmp(&((y.0 - b).abs() - y.1)));
         nearest.map_or(b, |(middle, _)| b + share * (middle - b))
     }
 
-    /// The b of the set, lifted by whole turns, that is nearest on the real line; `b` itself if it lies in the set.
+    /// Returns the value of the set, shifted by whole periods, that is nearest to b on the real line; b itself if the
+    /// set contains it.
     pub fn nearest(&self, b: f64) -> Option<f64> {
         let step = |[low, high]: &[f64; 2]| {
             let (past, width) = (wrap(b - low, self.period), high - low);
@@ -110,9 +111,9 @@ impl BSet {
     }
 }
 
-/// b give or take whole turns, in [0, period).
+/// Returns b modulo the period, in [0, period).
 pub(super) fn wrap(b: f64, period: f64) -> f64 {
     let wrapped = b.rem_euclid(period);
-    // −1e-20 comes out as the period itself.
+    // rem_euclid returns the period itself for −1e-20.
     if wrapped < period { wrapped } else { 0.0 }
 }

@@ -1,12 +1,13 @@
 //! The exact boundary of a reactionless workspace.
 //!
-//! All points that the end effector reaches on a plane b = const within the limits of a_1 and a_2. Its boundary is a
-//! subset of the images of the limits and of det ∂(x, y)/∂(a_1, a_2) = 0; b only turns it, by b* = b/Σλ, (15), (16).
+//! The workspace is the set of all points that the end effector reaches on a plane b = const within the limits of a_1
+//! and a_2. Its boundary is a subset of the images of the limits and of det ∂(x, y)/∂(a_1, a_2) = 0; b only turns it,
+//! by b* = b/Σλ, (15), (16).
 //!
-//! How many poses reach a point changes by one across the image of a limit and by two across a fold. Oriented so that
-//! the more poses are on the left, these images are a cycle whose winding number about a point counts its poses.
-//! Cut where they cross each other, the parts with no pose on their right are the boundary: outer loops run
-//! counter-clockwise, holes clockwise. Areas follow by Green's theorem along the true curves.
+//! The number of poses of a point changes by one across the image of a limit and by two across a fold. Oriented with
+//! the side of more poses on the left, these images are a cycle whose winding number about a point is its number of
+//! poses. The images are split where they intersect. The parts with no pose on their right are the boundary: outer
+//! loops run counter-clockwise, holes clockwise. Areas follow by Green's theorem along the exact curves.
 //!
 //! | quantity | unit |
 //! |---|---|
@@ -37,8 +38,8 @@ use span::Surface;
 use super::PlaneMap;
 use crate::mechanics::planar::{Vector, cross, dot, unit};
 
-/// Limits this near to each other leave a curve, not an area, rad.
-const THIN: f64 = 1e-9;
+/// A region narrower than this has no area, only a curve, rad.
+const MIN_WIDTH_RAD: f64 = 1e-9;
 
 /// The boundary of a reactionless workspace, computed once for all b.
 #[derive(Clone, Debug)]
@@ -51,7 +52,7 @@ pub struct Boundary {
     area: f64,
     sheet_area: f64,
     interior_singularity: bool,
-    /// Without area: its outline is all there is.
+    /// The workspace has no area; the loops are a curve traversed back and forth.
     flat: bool,
 }
 
@@ -65,34 +66,35 @@ pub struct Extent {
     pub y_max: f64,
 }
 
-/// A point of the boundary near a point outside.
+/// The boundary point at which the end effector stays for a target outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The point of the boundary, turned by b, m.
+    /// The boundary point, turned by b, m.
     pub at: Vector,
     /// Its plane coordinates, rad.
     pub a: [f64; 2],
-    /// What stops the end effector there.
+    /// The limit or fold that blocks the end effector there.
     pub curve: BoundaryCurve,
-    /// m.
+    /// Distance from the target, m.
     pub distance: f64,
 }
 
 impl Boundary {
-    /// The boundary of the workspace within the map's limits.
+    /// Returns the boundary of the workspace within the map's limits.
     ///
-    /// Where limits coincide with a straight fold they are drawn in by 4e-10 rad. Nodes of folds, which only machines of special proportions have, are exact
-    /// to 1e-10 m; where such proportions make whole curves coincide, loops may be incomplete.
+    /// Limits that coincide with a straight fold are moved inwards by 4e-10 rad. Nodes of folds, which only occur in
+    /// machines of special proportions, are exact to 1e-10 m. If such proportions make whole curves coincide, loops may
+    /// be incomplete.
     pub fn of(map: &PlaneMap) -> Self {
         let on = Surface::of(map);
         let region = Region::limits(&on);
         Self::over(on, &region)
     }
 
-    /// The boundary of what the poses of a region reach.
+    /// Returns the boundary of the image of a region.
     fn over(on: Surface, region: &Region) -> Self {
         let size: f64 = on.map.c().iter().map(|c| c.abs()).sum();
-        if region.is_thin(THIN) || on.det.scale() <= 1e-14 * size * size {
+        if region.is_thin(MIN_WIDTH_RAD) || on.det.scale() <= 1e-14 * size * size {
             return Self::curve(on, region);
         }
         let mut spans = region.edge_spans(&on);
@@ -116,7 +118,7 @@ impl Boundary {
         Self { on, cycle, strands, loops, cusps, area, sheet_area, interior_singularity, flat: false }
     }
 
-    /// A workspace without area: there and back along the edges.
+    /// Returns a workspace without area: its outline, traversed back and forth.
     fn curve(on: Surface, region: &Region) -> Self {
         let spans = region.outline(&on);
         let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
@@ -134,27 +136,27 @@ impl Boundary {
         }
     }
 
-    /// The closed curves that bound the workspace, the largest first, never none.
+    /// Returns the closed curves that bound the workspace, at least one, sorted by descending area.
     pub fn loops(&self) -> &[BoundaryLoop] {
         &self.loops
     }
 
-    /// Of the points that can be reached, m².
+    /// Returns the area of the workspace, m².
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// ∫ |det ∂(x, y)/∂(a_1, a_2)| da, each point as often as there are poses, m².
+    /// Returns ∫ |det ∂(x, y)/∂(a_1, a_2)| da, m²: the area in which each point counts once for each of its poses.
     pub fn sheet_area(&self) -> f64 {
         self.sheet_area
     }
 
-    /// Whether det = 0 somewhere between the limits.
+    /// Whether det = 0 somewhere strictly within the limits.
     pub fn interior_singularity(&self) -> bool {
         self.interior_singularity
     }
 
-    /// Vertices of all loops, turned by b, m.
+    /// Returns the vertices of all loops, turned by b, m.
     pub fn turned(&self, b: f64) -> Vec<Vec<[f64; 2]>> {
         let turn = unit(self.on.map.turn(b));
         let point = |v: &Vertex| {
@@ -164,15 +166,15 @@ impl Boundary {
         self.loops.iter().map(|l| l.vertices().iter().map(point).collect()).collect()
     }
 
-    /// Bounds in x and y of the workspace turned by b.
+    /// Returns the bounds in x and y of the workspace turned by b, m.
     pub fn extent(&self, b: f64) -> Extent {
         let turn = unit(self.on.map.turn(b));
-        // The component of p along w is what grows in direction w once the workspace is turned.
+        // A direction w of the turned workspace is w turned back in the unturned one.
         let most = |x: f64, y: f64| self.support(Vector::new(x, y) * turn.conj());
         Extent { x_min: -most(-1.0, 0.0), x_max: most(1.0, 0.0), y_min: -most(0.0, -1.0), y_max: most(0.0, 1.0) }
     }
 
-    /// Largest component along a unit vector.
+    /// Support function: returns the largest component along a unit vector, m.
     fn support(&self, w: Vector) -> f64 {
         let vertices = || self.loops.iter().flat_map(|l| l.vertices());
         let mut best = vertices().map(|v| dot(v.at, w)).fold(f64::NEG_INFINITY, f64::max);
@@ -192,7 +194,7 @@ impl Boundary {
         best
     }
 
-    /// Whether p, m, can be reached on the plane b; the boundary itself can.
+    /// Whether p, m, lies in the workspace of the plane b or on its boundary.
     pub fn contains(&self, p: Vector, b: f64) -> bool {
         self.contains_unturned(p * unit(-self.on.map.turn(b)))
     }
@@ -215,10 +217,10 @@ impl Boundary {
         winding > 0
     }
 
-    /// Where the end effector waits for a target p outside, on the plane b: the nearest point of the boundary that is
-    /// connected with where it is now, `from`, m, downhill all the way along one loop.
+    /// Returns the boundary point at which the end effector stays for a target p outside, on the plane b: a local
+    /// minimum of the distance from p, m, that is reached from the present position `from`, m, downhill along one loop.
     ///
-    /// From inside, it goes straight towards p until the boundary stops it, then along the boundary.
+    /// If `from` is inside, the end effector first moves straight towards p up to the boundary, then along it.
     pub fn nearest(&self, p: Vector, b: f64, from: Vector) -> Nearest {
         let turn = unit(self.on.map.turn(b));
         let (p, from) = (p * turn.conj(), from * turn.conj());
@@ -253,7 +255,7 @@ impl Boundary {
         Nearest { at: at * turn, a: self.on.map.clamp(a), curve, distance: (at - p).norm() }
     }
 
-    /// The chord nearest to a point: loop and vertex.
+    /// Returns the chord nearest to a point, as indices of loop and vertex.
     fn closest(&self, p: Vector) -> (usize, usize) {
         let mut best = (f64::INFINITY, (0, 0));
         for (k, l) in self.loops.iter().enumerate() {
@@ -267,7 +269,8 @@ impl Boundary {
         best.1
     }
 
-    /// The chord where the way from a point inside, straight to p, first leaves the workspace: loop and vertex.
+    /// Returns the chord through which the straight line from an inner point to p first leaves the workspace, as
+    /// indices of loop and vertex.
     fn exit(&self, from: Vector, p: Vector) -> Option<(usize, usize)> {
         if !self.contains_unturned(from) {
             return None;
@@ -282,7 +285,7 @@ impl Boundary {
                 }
                 let n = cross(way, b - a);
                 let (t, s) = (cross(a - from, b - a) / n, cross(a - from, way) / n);
-                // Outwards is to the right of the boundary.
+                // The outside is on the right of the boundary.
                 let leaves = n > 0.0 && (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s);
                 if leaves && best.is_none_or(|(least, _)| t < least) {
                     best = Some((t, (k, i)));
@@ -293,7 +296,7 @@ impl Boundary {
     }
 }
 
-/// Squared distance of p from a chord.
+/// Returns the squared distance of p from a chord, m².
 fn from_chord([a, b]: [Vector; 2], p: Vector) -> f64 {
     let along = b - a;
     let share = (dot(p - a, along) / along.norm_sqr()).clamp(0.0, 1.0);
@@ -301,14 +304,14 @@ fn from_chord([a, b]: [Vector; 2], p: Vector) -> f64 {
     (a + share * along - p).norm_sqr()
 }
 
-/// Where a function falls through 0 between two points, if it is ≥ 0 at the first and ≤ 0 at the second.
+/// Returns a zero of a function between two points, if it is ≥ 0 at the first and ≤ 0 at the second.
 fn falling_zero(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
     let (mut low, mut high) = (from, to);
     let (mut at_low, mut at_high) = (f(low), f(high));
     if !(at_low >= 0.0 && at_high <= 0.0) {
         return None;
     }
-    // Regula falsi, Illinois: superlinear, never leaves the bracket.
+    // Regula falsi with the Illinois modification: superlinear, and never leaves the bracket.
     for _ in 0..60 {
         if at_low == at_high {
             break;

@@ -1,20 +1,20 @@
-//! Change points: where two drives are parallel, sin(q_k − q_l) = 0, and the linkage goes flat.
+//! Change points: two drives are parallel, sin(q_k − q_l) = 0, and the linkage is flat.
 //!
-//! q_l − q_k = n · a + δ with n of −1, 0 and 1, whatever b: in (a_1, a_2) the change points of a pair are straight
-//! lines half a turn apart, and the half turns of q_l − q_k tell the side of a pose. Pin forces grow without bound
-//! towards them; the torques do not.
+//! q_l − q_k = n · a + δ with components of n in {−1, 0, 1}, independent of b. In (a_1, a_2) the change points of a
+//! pair are therefore straight lines, half a turn of q_l − q_k apart. The number of half turns identifies the side of a
+//! pose. Pin forces grow without bound towards change points; the torques do not.
 
 use std::f64::consts::PI;
 
 use super::plane::{AngleLimit, PlaneMap};
 
-/// The pairs (k, l) of drives, counted from 0, in whose order sides are given.
+/// The pairs (k, l) of drives, counted from 0, in the order of sides and sines.
 pub const PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 
-/// Poses this near to a change point are on it, rad.
+/// Poses this near to a change point count as on it, rad.
 pub(super) const TOUCH: f64 = 1e-9;
 
-/// q_l − q_k = n · a + δ.
+/// The difference q_l − q_k = n · a + δ of a pair of drives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
     pub n: [f64; 2],
@@ -32,12 +32,12 @@ impl Difference {
         self.n[0] * a[0] + self.n[1] * a[1] + self.delta
     }
 
-    /// n · a at so many half turns.
+    /// Returns n · a at a number of half turns, rad.
     pub fn level(&self, half_turns: f64) -> f64 {
         half_turns * PI - self.delta
     }
 
-    /// Least and greatest within limits.
+    /// Returns the least and greatest difference within limits, rad.
     pub fn range(&self, limits: [AngleLimit; 2]) -> [f64; 2] {
         let ends = |j: usize| [self.n[j] * limits[j].min, self.n[j] * limits[j].max];
         let [first, second] = [ends(0), ends(1)];
@@ -47,10 +47,10 @@ impl Difference {
         ]
     }
 
-    /// The ends, within limits, of the line at so many half turns.
+    /// Returns the ends, within limits, of the line at a number of half turns; `None` if it lies outside.
     pub fn segment(&self, limits: [AngleLimit; 2], half_turns: f64) -> Option<[[f64; 2]; 2]> {
         let level = self.level(half_turns);
-        // The coordinate that runs along it: a_2 where a_1 is constant, else a_1.
+        // The coordinate that parametrises the line: a_2 if a_1 is constant, else a_1.
         let run = usize::from(self.n[1] == 0.0);
         let (slope, other) = (self.n[run], 1 - run);
         let point = |y: f64| {
@@ -69,19 +69,20 @@ impl Difference {
 }
 
 impl PlaneMap {
-    /// sin(q_l − q_k) of each pair of [`PAIRS`], the same for every b: 0 at a change point, its sign the side.
+    /// Returns sin(q_l − q_k) of each pair of [`PAIRS`], the same for every b: 0 at a change point; its sign is the
+    /// side.
     #[inline]
     pub fn sines(&self, a: [f64; 2]) -> [f64; 3] {
         [0, 1, 2].map(|pair| Difference::of(self, pair).at(a).sin())
     }
 
-    /// How well force passes through the parallelograms: min |sin(q_k − q_l)|, 0 at a change point.
+    /// Returns min |sin(q_k − q_l)|, which measures how well the parallelograms transmit forces: 0 at a change point.
     pub fn least_transmission(&self, a: [f64; 2]) -> f64 {
         self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
     }
 
-    /// The side of a pose for each pair of [`PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. Two poses with equal sides are
-    /// joined by a straight line in (a_1, a_2) that crosses no change point.
+    /// Returns the side of a pose for each pair of [`PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line in
+    /// (a_1, a_2) between two poses with equal sides crosses no change point.
     pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
         [0, 1, 2].map(|pair| (Difference::of(self, pair).at(a) / PI).floor() as i32)
     }

@@ -1,13 +1,13 @@
-//! Numbers with few decimals that still do what the exact number does: what is proposed must work as printed.
+//! Numbers rounded to few decimals that remain feasible: a proposed value must work as printed.
 
 use std::fmt;
 
 use super::b_set::BSet;
 
-/// Beyond so many decimals nobody types a number.
+/// Maximum number of decimals that are printed.
 pub const MOST_DECIMALS: usize = 12;
 
-/// The number that its printed form reads as.
+/// A number equal to its printed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimal {
     value: f64,
@@ -15,21 +15,21 @@ pub struct Decimal {
 }
 
 impl Decimal {
-    /// The nearest number with so many decimals.
+    /// Returns the nearest number with this number of decimals.
     pub fn nearest(x: f64, decimals: usize) -> Self {
         let decimals = decimals.min(MOST_DECIMALS);
-        // Adding 0 takes the sign from −0.
+        // Adding 0 turns −0 into 0.
         Self { value: format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0, decimals }
     }
 
-    /// The next number with as many decimals, so many steps on.
+    /// Returns the number that is `steps` units of the last decimal greater.
     #[must_use]
     pub fn stepped(self, steps: i32) -> Self {
         Self::nearest(self.value + f64::from(steps) * 10f64.powi(-(self.decimals as i32)), self.decimals)
     }
 
-    /// The number with the fewest decimals, `least` at least, near x that passes a test: the nearest one, or one
-    /// beside it. `None` if none with up to `MOST_DECIMALS` does.
+    /// Returns a number near x that passes a test, with the fewest decimals, but at least `least`: the nearest one or
+    /// one of its neighbours. `None` if none with up to `MOST_DECIMALS` passes.
     pub fn that(x: f64, least: usize, passes: impl Fn(f64) -> bool) -> Option<Self> {
         (least..=MOST_DECIMALS).find_map(|decimals| {
             let nearest = Self::nearest(x, decimals);
@@ -38,12 +38,12 @@ impl Decimal {
         })
     }
 
-    /// What a reader of its printed form gets.
+    /// Returns the value of the printed form.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// How many decimals are printed.
+    /// Returns the number of printed decimals.
     pub fn decimals(&self) -> usize {
         self.decimals
     }
@@ -57,21 +57,22 @@ impl fmt::Display for Decimal {
 }
 
 impl BSet {
-    /// A b of the set, or an end of it, with the fewest decimals, `least` at least, that keep it in the set.
+    /// Returns a number near b, with the fewest decimals, but at least `least`, that the set contains.
     pub fn decimal(&self, b: f64, least: usize) -> Option<Decimal> {
         let inside = |[low, high]: [f64; 2], b: f64| low <= b && b <= high;
         let sets = self.near(b).intervals;
         Decimal::that(b, least, |x| sets.iter().any(|s| inside(*s, x)))
     }
 
-    /// `b from 2.2158 to 2.6610 rad`: ends rounded inwards, so that they themselves will do.
+    /// Describes the set: `b from 2.2158 to 2.6610 rad`, with the ends rounded inwards, so that they are in the set.
     pub fn in_words(&self) -> String {
         let ranges: Vec<String> = self.intervals.iter().map(|[low, high]| between(*low, *high)).collect();
         format!("b {} rad", ranges.join(" or "))
     }
 }
 
-/// `from 2.216 to 2.661`: the ends of a range rounded inwards, with as many decimals as leave something of it.
+/// Describes an interval: `from 2.216 to 2.661`, with its ends rounded inwards to as many decimals as keep it
+/// non-empty.
 pub fn between(low: f64, high: f64) -> String {
     let ends = (4..=MOST_DECIMALS).find_map(|decimals| {
         let [mut from, mut to] = [low, high].map(|x| Decimal::nearest(x, decimals));
@@ -90,8 +91,8 @@ pub fn between(low: f64, high: f64) -> String {
     }
 }
 
-/// A length, m, as it is said: with the decimals that are asked for, in powers of ten where these show
-/// less than two digits of it.
+/// Formats a length, m, with this number of decimals, or in scientific notation if these would show fewer than two
+/// digits.
 pub fn metres(x: f64, decimals: usize) -> String {
     match x.abs() {
         small if small != 0.0 && small < 10f64.powi(1 - decimals as i32) => format!("{x:.3e}"),
@@ -100,7 +101,7 @@ pub fn metres(x: f64, decimals: usize) -> String {
     }
 }
 
-/// Two lengths that differ, m, with as many decimals as show it.
+/// Formats two lengths, m, with as many decimals as distinguish them.
 pub fn metres_apart(x: f64, y: f64) -> [String; 2] {
     let differ = |decimals: usize| {
         let both = [x, y].map(|x| metres(x, decimals));

@@ -1,4 +1,4 @@
-//! How well a pose moves and pushes: three numbers of its Jacobians, in closed form.
+//! Measures of how a pose transmits motion and force, from its Jacobians in closed form.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -9,32 +9,32 @@
 use super::plane::PlaneMap;
 use crate::mechanics::planar::{Units, Vector, cross};
 
-/// Three measures of a pose, the same for every b.
+/// Three measures of a pose, independent of b.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dexterity {
-    /// |det ∂(x, y)/∂(a_1, a_2)| at constant b: the area of workspace per area of (a_1, a_2), 0 on a fold, m².
+    /// |det ∂(x, y)/∂(a_1, a_2)| at constant b: the ratio of areas in the workspace and in (a_1, a_2), 0 on a fold, m².
     pub det: f64,
-    /// √det(J Jᵀ) = σ_1 σ_2 = √(Σ_{k<l} (j_k × j_l)²), with b free: 0 where all arms are in line, m².
+    /// √det(J Jᵀ) = σ_1 σ_2 = √(Σ_{k<l} (j_k × j_l)²), with b free: 0 if all arms are in line, m².
     pub manipulability: f64,
-    /// σ_1 = √(½ (Σ|j_k|² + |Σ j_k²|)), j_k as complex numbers: the greatest |τ| = |Jᵀ F| that a unit force F at the
-    /// end effector asks of the drives, whatever its direction, N m/N.
+    /// σ_1 = √(½ (Σ|j_k|² + |Σ j_k²|)), j_k as complex numbers: the greatest |τ| = |Jᵀ F| over all unit forces F at the
+    /// end effector, N m/N.
     pub worst_torque_per_force: f64,
 }
 
 impl PlaneMap {
-    /// The dexterity of a pose.
+    /// Returns the dexterity of a pose.
     pub fn dexterity(&self, a: [f64; 2]) -> Dexterity {
         self.dexterity_of(self.arms(a))
     }
 
-    /// The same from the unit vectors e(q_k) of its drives: turning them all changes nothing.
+    /// Returns the dexterity from the unit vectors e(q_k) of the drives: a common turn has no effect.
     pub fn dexterity_at(&self, e: &Units) -> Dexterity {
         self.dexterity_of([0, 1, 2].map(|k| self.c()[k] * e[k]))
     }
 
     fn dexterity_of(&self, arms: [Vector; 3]) -> Dexterity {
         let [first, second] = self.columns(&arms);
-        // A quarter turn of all arms changes neither.
+        // Arms instead of j_k: a common quarter turn does not change these.
         let pair = |k: usize, l: usize| cross(arms[k], arms[l]).powi(2);
         let squares: Vector = arms.iter().map(|j| j * j).sum();
         let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();

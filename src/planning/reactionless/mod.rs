@@ -1,7 +1,7 @@
-//! The geometry of reactionless planes: pose constants, workspaces, and everything that follows from (13)–(16).
+//! The geometry of reactionless planes: pose constants, workspaces, and all that follows from (13)–(16).
 //!
-//! For three coaxial drives with two relative joint angles, everything about a plane b = const follows from a handful
-//! of numbers, a [`PlaneMap`]: it knows no masses and no links.
+//! For three coaxial drives with two relative joint angles, the geometry of a plane b = const follows from a few
+//! numbers, a [`PlaneMap`]; masses and links do not enter.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -9,7 +9,7 @@
 //! | c_k | the end effector is p = Σ_k c_k e^{i q_k}, (14) | m |
 //! | λ_k | b = Σ_k λ_k q_k, (13) | 1 |
 //! | a_1, a_2 | relative joint angles q_to − q_from + offset | rad |
-//! | b* | b/Σλ: turns the whole workspace, (15) | rad |
+//! | b* | b/Σλ, the angle by which b turns the workspace, (15) | rad |
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
 mod b_set;

@@ -1,4 +1,4 @@
-//! Points of joint space in plane coordinates (a_1, a_2, b), the map to the end effector, and its inverse on a plane.
+//! Plane coordinates (a_1, a_2, b) of joint space, the map to the end effector, and its inverse on a plane.
 
 use std::f64::consts::TAU;
 
@@ -17,24 +17,24 @@ pub struct AngleLimit {
 }
 
 impl AngleLimit {
-    /// Whether an angle lies within, give or take `slack`, rad.
+    /// Whether an angle lies within the bounds widened by `slack`, rad.
     pub fn contains(&self, angle: f64, slack: f64) -> bool {
         angle >= self.min - slack && angle <= self.max + slack
     }
 }
 
-/// a = q_to − q_from + offset; drives counted from 0.
+/// Definition of a relative angle: a = q_to − q_from + offset, with drives counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleDefinition {
     /// The drive whose angle is added.
     pub to: usize,
     /// The drive whose angle is subtracted.
     pub from: usize,
-    /// rad.
+    /// Constant offset, rad.
     pub offset: f64,
 }
 
-/// A point of joint space by its relative angles and its pose constant.
+/// A point of joint space in plane coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanePoint {
     /// (a_1, a_2), rad.
@@ -43,7 +43,7 @@ pub struct PlanePoint {
     pub b: f64,
 }
 
-/// Eqs (13)–(16) of one machine.
+/// Eqs (13)–(16) of a machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMap {
     c: [f64; 3],
@@ -59,7 +59,7 @@ pub struct PlaneMap {
 /// Why a machine has no plane coordinates.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NotAPlaneMap {
-    /// The two relative angles do not tell all three drives apart.
+    /// The two relative angles do not determine the differences of all three drives.
     #[error(
         "the relative joint angles do not determine the pose on a plane: want two angles that join all three drives"
     )]
@@ -67,7 +67,7 @@ pub enum NotAPlaneMap {
     /// A number is not finite, or Σλ is zero.
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
     OutOfRange,
-    /// Windings are counted one by one, so there must be few.
+    /// The range of an angle holds too many whole turns, which are counted one by one.
     #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, WIDEST)]
     TooWide {
         /// Which angle: 0 for a_1, 1 for a_2.
@@ -75,39 +75,39 @@ pub enum NotAPlaneMap {
         /// max − min, rad.
         width: f64,
     },
-    /// Too small or too large for squares and cubes of it.
+    /// The reach is too small or too large for its squares and cubes in floating point.
     #[error("the arms reach {reach:.3e} m: want a reach of 1e-9 to 1e9 m")]
     Size {
-        /// Σ |c_k|, m.
+        /// Reach Σ |c_k|, m.
         reach: f64,
     },
-    /// Rounding of the longest arm would hide what the shorter ones do.
+    /// Rounding errors of the longest arm would exceed the effect of the shorter ones.
     #[error(
         "the arms are {:.3e}, {:.3e} and {:.3e} m long, with λ {:.3e}, {:.3e} and {:.3e}: a reactionless workspace \
          so much narrower than its radius is lost in rounding; want arms of more equal length",
         .arms[0], .arms[1], .arms[2], .lambda[0], .lambda[1], .lambda[2]
     )]
     Uneven {
-        /// |c_k|, m.
+        /// Arm lengths |c_k|, m.
         arms: [f64; 3],
         /// λ_k.
         lambda: [f64; 3],
     },
 }
 
-/// Below this share of the square of the reach, |det| is too small for curves to be told apart.
-const LEAST_DET: f64 = 1e-5;
-/// And below this one it is 0.
-const NO_DET: f64 = 1e-15;
+/// Below this fraction of the squared reach, |det| is too small for curves to be distinguished.
+const MIN_DET: f64 = 1e-5;
+/// Below this fraction, |det| is treated as zero.
+const ZERO_DET: f64 = 1e-15;
 
-/// Limits are at most this far apart, rad: eight turns and a little, as four either way are.
+/// Maximum distance of limits, rad: slightly more than eight turns, so that ±4 turns are allowed.
 pub const WIDEST: f64 = 50.4;
 
 impl PlaneMap {
-    /// Checks the numbers and derives u and v.
+    /// Returns the map of these numbers after checks.
     ///
     /// # Errors
-    /// If (a_1, a_2, b) does not determine q.
+    /// If a number is out of range, or (a_1, a_2, b) does not determine q.
     pub fn new(
         c: [f64; 3],
         lambda: [f64; 3],
@@ -139,54 +139,54 @@ impl PlaneMap {
             return Err(NotAPlaneMap::Size { reach });
         }
         let unit = if reach > 0.0 { reach.log2().floor().exp2() } else { 1.0 };
-        // |det| reaches this share of the square of the reach; of what turns as one arm it is 0 but for rounding.
+        // Maximum of |det| as a fraction of the squared reach; 0 within rounding if arms turn as one.
         let pair = |[k, l]: [usize; 2]| (c[k] * c[l] * (u[k][0] * u[l][1] - u[k][1] * u[l][0])).abs();
         let most = [[0, 1], [1, 2], [0, 2]].map(pair).into_iter().fold(0.0, f64::max) / (reach * reach);
-        if (NO_DET..LEAST_DET).contains(&most) {
+        if (ZERO_DET..MIN_DET).contains(&most) {
             return Err(NotAPlaneMap::Uneven { arms: c.map(f64::abs), lambda });
         }
         Self { c, lambda, angles, limits, lambda_sum, u, v, unit }.with_limits(limits)
     }
 
-    /// c_k, m.
+    /// Returns the arms c_k, m.
     pub fn c(&self) -> [f64; 3] {
         self.c
     }
 
-    /// λ_k.
+    /// Returns λ_k.
     pub fn lambda(&self) -> [f64; 3] {
         self.lambda
     }
 
-    /// Σλ.
+    /// Returns Σλ.
     pub fn lambda_sum(&self) -> f64 {
         self.lambda_sum
     }
 
-    /// u_k.
+    /// Returns u_k.
     pub fn u(&self) -> [[f64; 2]; 3] {
         self.u
     }
 
-    /// v_k, rad.
+    /// Returns v_k, rad.
     pub fn v(&self) -> [f64; 3] {
         self.v
     }
 
-    /// How a_1 and a_2 are defined.
+    /// Returns the definitions of a_1 and a_2.
     pub fn angles(&self) -> [AngleDefinition; 2] {
         self.angles
     }
 
-    /// Bounds of a_1 and a_2.
+    /// Returns the bounds of a_1 and a_2.
     pub fn limits(&self) -> [AngleLimit; 2] {
         self.limits
     }
 
-    /// The same map within other bounds.
+    /// Returns the same map with other bounds.
     ///
     /// # Errors
-    /// If they are no bounds, or more than [`WIDEST`] apart.
+    /// If they are not finite and ordered, or more than [`WIDEST`] apart.
     pub fn with_limits(mut self, limits: [AngleLimit; 2]) -> Result<Self, NotAPlaneMap> {
         for (angle, AngleLimit { min, max }) in limits.into_iter().enumerate() {
             if !(min.is_finite() && max.is_finite() && min <= max) {
@@ -200,36 +200,36 @@ impl PlaneMap {
         Ok(self)
     }
 
-    /// A power of two near the reach of the arms, m: what rounding and tolerances are measured by.
+    /// Returns a power of two near the reach of the arms, m: the unit of tolerances.
     pub(crate) fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
+    /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
     pub fn period(&self) -> f64 {
         TAU * self.lambda_sum
     }
 
-    /// b* = b/Σλ, the turn of the workspace, rad, (15).
+    /// Returns b* = b/Σλ, the angle of the workspace, rad, (15).
     pub fn turn(&self, b: f64) -> f64 {
         b / self.lambda_sum
     }
 
-    /// Drive angles of a point: q_k = b* + u_k · a + v_k, (15). Never wrapped.
+    /// Returns the drive angles of a point, rad: q_k = b* + u_k · a + v_k, (15). Never wrapped.
     #[inline]
     pub fn lift(&self, at: PlanePoint) -> [f64; 3] {
         let turn = self.turn(at.b);
         [0, 1, 2].map(|k| turn + self.local(k, at.a))
     }
 
-    /// Rates of the drives for rates (ȧ_1, ȧ_2) and ḃ.
+    /// Returns the drive rates for rates (ȧ_1, ȧ_2) and ḃ.
     #[inline]
     pub fn lift_rates(&self, ad: [f64; 2], bd: f64) -> [f64; 3] {
         let turn = self.turn(bd);
         [0, 1, 2].map(|k| turn + self.u[k][0] * ad[0] + self.u[k][1] * ad[1])
     }
 
-    /// Plane coordinates of drive angles; the inverse of [`lift`](Self::lift).
+    /// Returns the plane coordinates of drive angles; the inverse of [`lift`](Self::lift).
     #[inline]
     pub fn project(&self, q: &[f64]) -> PlanePoint {
         PlanePoint {
@@ -238,7 +238,7 @@ impl PlaneMap {
         }
     }
 
-    /// (ȧ_1, ȧ_2) and ḃ for rates of the drives.
+    /// Returns (ȧ_1, ȧ_2) and ḃ for drive rates.
     pub fn project_rates(&self, qd: &[f64]) -> ([f64; 2], f64) {
         let ad = self.angles.map(|a| qd[a.to] - qd[a.from]);
         (ad, self.lambda.iter().zip(qd).map(|(l, q)| l * q).sum())
@@ -249,41 +249,41 @@ impl PlaneMap {
         self.u[k][0] * a[0] + self.u[k][1] * a[1] + self.v[k]
     }
 
-    /// c_k e^{i (u_k · a + v_k)}: the arms before the workspace is turned.
+    /// Returns c_k e^{i (u_k · a + v_k)}, m: the arms at b = 0.
     #[inline]
     pub fn arms(&self, a: [f64; 2]) -> [Vector; 3] {
         [0, 1, 2].map(|k| self.c[k] * unit(self.local(k, a)))
     }
 
-    /// The end effector before the workspace is turned, m; b = 0 of (16).
+    /// Returns the end effector at b = 0 of (16), m.
     #[inline]
     pub fn forward_unturned(&self, a: [f64; 2]) -> Vector {
         self.arms(a).iter().sum()
     }
 
-    /// The end effector, m, (16).
+    /// Returns the end effector, m, (16).
     #[inline]
     pub fn forward(&self, a: [f64; 2], b: f64) -> Vector {
         self.forward_unturned(a) * unit(self.turn(b))
     }
 
-    /// ∂p/∂a_1 and ∂p/∂a_2 before the workspace is turned, m.
+    /// Returns ∂p/∂a_1 and ∂p/∂a_2 at b = 0, m, for arms at b = 0.
     #[inline]
     pub fn columns(&self, arms: &[Vector; 3]) -> [Vector; 2] {
         let i = Complex::new(0.0, 1.0);
         [0, 1].map(|j| i * (0..3).map(|k| arms[k] * self.u[k][j]).sum::<Vector>())
     }
 
-    /// det ∂(x, y)/∂(a_1, a_2), m²: a sum of sines of the angles between the arms, the same for every b.
+    /// Returns det ∂(x, y)/∂(a_1, a_2), m²: a sum of sines of the angles between the arms, the same for every b.
     #[inline]
     pub fn det(&self, a: [f64; 2]) -> f64 {
         let [first, second] = self.columns(&self.arms(a));
         cross(first, second)
     }
 
-    /// The pose on the plane b that puts the end effector on p, reached continuously from the pose `from`: Newton's
-    /// iteration in (a_1, a_2), which must stay on the sheet where det keeps its sign and within the limits.
-    /// `None` where it cannot.
+    /// Returns the pose on the plane b that puts the end effector on p, m, continuously from the pose `from`. Newton's
+    /// iteration in (a_1, a_2) must stay on one sheet, where det keeps its sign, and end within the limits; otherwise
+    /// the result is `None`.
     pub fn follow(&self, p: Vector, b: f64, from: [f64; 2]) -> Option<[f64; 2]> {
         let goal = p * unit(-self.turn(b));
         let mut a = from;
@@ -301,7 +301,7 @@ impl PlaneMap {
             if !length.is_finite() {
                 return None;
             }
-            // Long steps leave the sheet; half a radian at a time does not skip one.
+            // Steps are limited to 0.5 rad, so that they do not skip to another sheet.
             let scale = (0.5 / length).min(1.0);
             a = [a[0] + scale * step[0], a[1] + scale * step[1]];
             if length < 1e-14 || (length < 1e-9 && gap.norm_sqr() < 1e-28 * self.unit * self.unit) {
@@ -313,11 +313,11 @@ impl PlaneMap {
         (miss < 1e-11 * self.unit && inside && self.det(a) * sheet >= 0.0).then(|| self.clamp(a))
     }
 
-    /// The nearest pose within the limits.
+    /// Returns the nearest pose within the limits.
     pub fn clamp(&self, a: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| a[i].clamp(self.limits[i].min, self.limits[i].max))
     }
 }
 
-/// Joint limits count as kept when they are passed by no more than this, rad: the rounding of an inverse at the edge.
+/// Tolerance of joint limits, rad: the rounding error of the inverse kinematics at the boundary.
 pub const SLACK: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! The inverse of (16): all poses that put the end effector on a point of a plane b = const.
 //!
-//! Source: (13)–(16). The curve of poses that keep the end effector on the point is cut into arcs along which b is
-//! monotone, so each pose is bracketed before it is polished, and none is missed.
+//! Source: (13)–(16). The curve of poses that keep the end effector on the point is split into arcs along which b is
+//! monotone. So each pose is bracketed before Newton's iteration refines it, and none is missed.
 
 use std::fmt;
 use std::ops::Deref;
@@ -10,24 +10,25 @@ use super::plane::{PlaneMap, PlanePoint, SLACK};
 use super::quadrilateral::{Quadrilateral, Site};
 use crate::mechanics::planar::{Vector, cross, unit};
 
-/// Poses that fit without memory of their own: many more than there are within one turn of each angle.
+/// Number of poses stored without heap memory: many more than exist within one turn of each angle.
 const INLINE: usize = 64;
 
-/// b may pass a fold by this much and still meet it, rad; a flat pose may miss the point by this share of the reach.
-const AT_FOLD: f64 = 1e-12;
+/// Tolerance of b at a fold, rad; also that of the position of a flat pose, as a fraction of the reach.
+const FOLD_TOLERANCE: f64 = 1e-12;
 
-/// What keeping the limits may cost: the end effector misses the point by no more than this share of the reach.
-const CLAMPED: f64 = 10.0 * SLACK;
+/// Tolerance of the position of poses clamped to the limits, as a fraction of the reach.
+const CLAMPED_TOLERANCE: f64 = 10.0 * SLACK;
 
-/// Poses nearer to each other than this are one, rad: where two meet at a fold, rounding tells them apart by its root.
-const SAME: f64 = 1e-7;
+/// Poses nearer to each other than this are equal, rad: where two merge at a fold, their difference is of the order of
+/// the square root of the rounding error.
+const SAME_POSE_RAD: f64 = 1e-7;
 
-/// All poses of a point on a plane, in order of a_1. Reads as a slice.
+/// All poses of a point on a plane, sorted by a_1; dereferences to a slice.
 #[derive(Clone)]
 pub struct Poses {
     len: usize,
     few: [PlanePoint; INLINE],
-    /// All of them, once they are more than fit; only limits of many turns have so many.
+    /// All of them, if they are more than fit inline; only limits of many turns allow so many.
     many: Vec<PlanePoint>,
 }
 
@@ -61,9 +62,11 @@ impl Poses {
         if self.many.is_empty() { &mut self.few[..self.len] } else { &mut self.many }
     }
 
-    /// Takes in a pose; of two that are the same, the one with the smaller miss.
+    /// Adds a pose; of two equal ones it keeps the one with the smaller residual.
     fn push(&mut self, a: [f64; 2], miss: impl Fn([f64; 2]) -> f64) {
-        let same = |pose: &&mut PlanePoint| (pose.a[0] - a[0]).abs() < SAME && (pose.a[1] - a[1]).abs() < SAME;
+        let same = |pose: &&mut PlanePoint| {
+            (pose.a[0] - a[0]).abs() < SAME_POSE_RAD && (pose.a[1] - a[1]).abs() < SAME_POSE_RAD
+        };
         if let Some(pose) = self.all().iter_mut().find(same) {
             if miss(a) < miss(pose.a) {
                 pose.a = a;
@@ -91,12 +94,12 @@ impl Poses {
 }
 
 impl PlaneMap {
-    /// All poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: every elbow, every
-    /// sheet.
+    /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: each elbow and
+    /// each sheet.
     ///
-    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits count as kept when passed by [`SLACK`]; the poses
-    /// returned keep them. Empty where there is none: [`reach`](Self::reach) says why. Poses that form a continuum (an
-    /// end effector that two of the arms do not move) are not listed.
+    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits may be exceeded by [`SLACK`]; the poses returned
+    /// keep them. The result is empty if there is no pose; [`reach`](Self::reach) gives the reason. Poses that form a
+    /// continuum (the end effector is moved by one arm only) are not listed.
     pub fn poses(&self, p: Vector, b: f64) -> Poses {
         let mut poses = Poses::new(b);
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
@@ -112,28 +115,28 @@ impl PlaneMap {
             }
         };
         if curve.is_at_base() {
-            curve.triangles(|a| push(self.polished(p, b, a), CLAMPED));
+            curve.triangles(|a| push(self.polished(p, b, a), CLAMPED_TOLERANCE));
         } else {
             let period = self.period();
             curve.arcs(|arc| {
                 let [low, high] = if arc.from.b < arc.to.b { [arc.from.b, arc.to.b] } else { [arc.to.b, arc.from.b] };
-                let first = ((low - AT_FOLD - b) / period).ceil();
-                // Counted, for a sum of turns stands still where b is huge.
-                let turns = ((high - low + 2.0 * AT_FOLD) / period) as usize + 1;
+                let first = ((low - FOLD_TOLERANCE - b) / period).ceil();
+                // By index, since adding periods one by one has no effect if b is huge.
+                let turns = ((high - low + 2.0 * FOLD_TOLERANCE) / period) as usize + 1;
                 let lifted = (0..=turns).map(|i| b + (first + i as f64) * period);
-                for b_there in lifted.take_while(|b| *b <= high + AT_FOLD) {
+                for b_there in lifted.take_while(|b| *b <= high + FOLD_TOLERANCE) {
                     let Site { alpha, beta, .. } = curve.solve(arc, b_there);
-                    push(self.polished(p, b, curve.relative_angles(alpha, beta)), CLAMPED);
+                    push(self.polished(p, b, curve.relative_angles(alpha, beta)), CLAMPED_TOLERANCE);
                 }
             });
-            // The curve is singular where the arms are flat, and rounding may keep it off such a pose.
-            curve.flat(|a| push(a, AT_FOLD));
+            // The curve is singular at flat poses, and rounding may make it miss such a pose.
+            curve.flat(|a| push(a, FOLD_TOLERANCE));
         }
         poses.sort();
         poses
     }
 
-    /// Newton's iteration for the last digits; the start where it leads away, at a fold.
+    /// Refines a pose by Newton's iteration; returns the last iterate before it leaves the start, as near a fold.
     fn polished(&self, p: Vector, b: f64, start: [f64; 2]) -> [f64; 2] {
         let goal = p * unit(-self.turn(b));
         let mut a = start;

@@ -1,10 +1,10 @@
-//! The quadrilateral that a point closes with the three arms: the curve of poses that keep the end effector on the
-//! point (its self-motion), cut into arcs along which b is monotone.
+//! The quadrilateral of the three arms and the vector from B to a point. Its configurations are the curve of poses that
+//! keep the end effector on the point (the self-motion), split into arcs along which b is monotone.
 //!
-//! Turned so that the arm both relative angles share lies on the real axis, the curve is the level line
-//! |m + x e^{iα} + y e^{iβ}| = |p|. For each α the law of cosines gives two β, so it consists of two graphs,
-//! and b along them is closed form and free of jumps. All cuts are closed form too: where α turns back, where the curve
-//! crosses the joint limits, and the folds det = 0, whose cos α are the roots of a cubic.
+//! In a frame in which the arm that both relative angles share lies on the real axis, the curve is the level set |m + x
+//! e^{iα} + y e^{iβ}| = |p|. For each α the law of cosines gives two β, so the curve consists of two graphs, along
+//! which b has a closed form without jumps. The split points have closed forms too. They are the turning points of α,
+//! the intersections with the joint limits, and the folds det = 0, whose cos α are the roots of a cubic.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -33,38 +33,38 @@ use lifts::lifts;
 use super::plane::{AngleLimit, PlaneMap};
 use crate::mechanics::planar::{Vector, unit};
 
-/// A point whose distance misses the reach of the arms by less than this share of it counts as reached: rounding.
+/// Tolerance of the distance of a point at the limits of the reach, as a fraction of the reach.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// The arms of a [`PlaneMap`] and a point.
+/// The arms of a [`PlaneMap`], and a point.
 #[derive(Clone, Debug)]
 pub(super) struct Quadrilateral {
     m: f64,
     x: f64,
     y: f64,
     r: f64,
-    /// λ of the arms m, x, y.
+    /// λ of the arms m, x and y.
     lambda: [f64; 3],
     lambda_sum: f64,
     /// b = b_0 − Σλ arg w + λ_x α + λ_y β.
     b_0: f64,
     /// Bounds of α and β.
     limits: [AngleLimit; 2],
-    /// Which a_i is α, and which β.
+    /// Index of the relative angle that α is, and of the one that β is.
     index: [usize; 2],
-    /// α = sign a + shift, β likewise.
+    /// α = sign a + shift, and the same for β.
     sign: [f64; 2],
     shift: [f64; 2],
 }
 
-/// The angle by which a side v is bent from a side u when they sum to a length t, in [0, π].
+/// Returns the angle between sides u and v whose vector sum has length t, in [0, π].
 fn bend(u: f64, v: f64, t: f64) -> f64 {
     let [open, closed] = [(u + v - t) * (u + v + t), (t - u + v) * (t + u - v)].map(|n| n.max(0.0).sqrt());
     2.0 * open.atan2(closed)
 }
 
 impl Quadrilateral {
-    /// The quadrilateral of a point, limits widened by `slack`.
+    /// Returns the quadrilateral of a point, m, with limits widened by `slack`, rad.
     pub fn new(map: &PlaneMap, p: Vector, slack: f64) -> Self {
         let (c, lambda, angles) = (map.c(), map.lambda(), map.angles());
         let shared =
@@ -89,7 +89,7 @@ impl Quadrilateral {
             r if r < near && r >= near - rounding => near,
             r => r,
         };
-        // The closed form wants arm y long, and z nowhere 0.
+        // For the closed form, arm y should be the longer one, and z should not vanish.
         let clearance = |x: usize| (m - l[x]).abs().max((r - l[1 - x]).abs());
         let x = usize::from(l[0] > l[1]);
         let flipped = clearance(x) < 1e-6 * far && clearance(1 - x) > clearance(x) && l[x] > 1e-3 * far;
@@ -112,7 +112,7 @@ impl Quadrilateral {
         }
     }
 
-    /// (a_1, a_2) of (α, β).
+    /// Returns (a_1, a_2) of (α, β).
     pub fn relative_angles(&self, alpha: f64, beta: f64) -> [f64; 2] {
         let mut a = [0.0; 2];
         for (i, angle) in [alpha, beta].into_iter().enumerate() {
@@ -129,17 +129,17 @@ impl Quadrilateral {
         self.m + self.x + self.y
     }
 
-    /// Whether the point is B itself, where every b is as good as any other.
+    /// Whether the point is B itself, whose poses exist at every b.
     pub fn is_at_base(&self) -> bool {
         self.r <= ROUNDING * self.size()
     }
 
-    /// Whether arms that span `length` reach the point.
+    /// Whether arms whose vector sum has this length reach the point.
     fn is_level(&self, length: f64) -> bool {
         (length.abs() - self.r).abs() <= 10.0 * ROUNDING * self.size()
     }
 
-    /// All (a_1, a_2) within the limits that are (α, β) give or take whole turns.
+    /// Visits all (a_1, a_2) within the limits that equal (α, β) modulo whole turns.
     fn within_limits(&self, alpha: f64, beta: f64, mut visit: impl FnMut([f64; 2])) {
         for alpha in lifts(alpha, self.limits[0]) {
             for beta in lifts(beta, self.limits[1]) {
@@ -148,13 +148,13 @@ impl Quadrilateral {
         }
     }
 
-    /// z where arm x points along e.
+    /// Returns z with arm x along the unit vector e.
     #[inline]
     fn side(&self, e: Vector) -> Vector {
         Vector::new(self.m + self.x * e.re, self.x * e.im)
     }
 
-    /// z and its argument, without jumps in α unless z passes through 0.
+    /// Returns z and its argument, continuous in α unless z passes through 0.
     #[inline]
     fn z(&self, alpha: f64) -> (Vector, f64) {
         let e = unit(alpha);
@@ -164,7 +164,7 @@ impl Quadrilateral {
         (z, arg)
     }
 
-    /// The point of a graph at α; `cos_gamma` where it is known to be ±1.
+    /// Returns the point of a graph at α; `cos_gamma` is given where it is known to be ±1.
     #[inline]
     fn at(&self, alpha: f64, sigma: f64, cos_gamma: Option<f64>) -> Site {
         let (z, arg_z) = self.z(alpha);
@@ -179,11 +179,11 @@ impl Quadrilateral {
         Site { alpha, beta, b }
     }
 
-    /// γ where z is so long, and its sine and cosine.
+    /// Returns γ for a length ρ of z, and its sine and cosine.
     #[inline]
     fn gamma(&self, rho: f64) -> (f64, f64, f64) {
         let (y, r) = (self.y, self.r);
-        // Half-angle form of the law of cosines: keeps its digits where the quadrilateral is nearly flat.
+        // Half-angle form of the law of cosines: accurate where the quadrilateral is nearly flat.
         let open = ((rho + y - r) * (rho + y + r)).max(0.0);
         let closed = ((r - rho + y) * (r + rho - y)).max(0.0);
         let sum = open + closed;
@@ -195,14 +195,14 @@ impl Quadrilateral {
         }
     }
 
-    /// β of the point of a graph at α, where its b is not asked for.
+    /// Returns β of the point of a graph at α, without its b.
     #[inline]
     fn beta(&self, alpha: f64, sigma: f64) -> f64 {
         let (z, arg_z) = self.z(alpha);
         arg_z + sigma * self.gamma(z.norm_sqr().sqrt()).0
     }
 
-    /// The point of a graph where it passes through (α, β), b from both and therefore to full precision.
+    /// Returns the point of a graph at a known (α, β), so that b has full precision.
     fn through(&self, alpha: f64, beta: f64, sigma: f64) -> Site {
         let near = self.at(alpha, sigma, None);
         let beta = beta + TAU * ((near.beta - beta) / TAU).round();

@@ -1,8 +1,7 @@
-//! Which planes contain a point: the pose constants at which it can be reached, and the self-motion between them, Fig.
-//! 3.
+//! The planes that contain a point: the pose constants at which it can be reached, and the self-motion between them,
+//! Fig. 3.
 //!
-//! Source: (13)–(16). Two points are joined by a reactionless path if and only if their sets overlap; the same for any
-//! number of points.
+//! Source: (13)–(16). Points are joined by a reactionless path if and only if their sets of b have a common element.
 
 use thiserror::Error;
 
@@ -12,27 +11,27 @@ use super::plane::{PlaneMap, PlanePoint, SLACK};
 use super::quadrilateral::{Arc, Quadrilateral, ROUNDING, Site};
 use crate::mechanics::planar::Vector;
 
-/// At corners of the limits and where the arms are flat, rounding of the point moves the curve by its root: a pose
-/// there belongs to a curve that passes as near as this, rad.
-const CUT_OFF: f64 = 1e-6;
+/// At corners of the limits, and where the arms are flat, a rounding error of the point moves the curve by its square
+/// root. A pose there belongs to a curve that passes within this distance, rad.
+const BRANCH_TOLERANCE_RAD: f64 = 1e-6;
 
-/// Why no b reaches a point.
+/// Why a point cannot be reached at any b.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoReach {
-    /// Beyond full stretch.
+    /// The point is beyond full stretch.
     #[error("the point is {} m from the base, but the arms reach only {} m", metres_apart(*.distance, *.farthest)[0], metres_apart(*.distance, *.farthest)[1])]
     TooFar {
-        /// m.
+        /// Distance from the base, m.
         distance: f64,
-        /// m.
+        /// Greatest distance that the arms reach, m.
         farthest: f64,
     },
-    /// Within the hole that the longest arm leaves.
+    /// The point is too near to the base: one arm is longer than all others together.
     #[error("the point is {} m from the base, but the arms cannot come nearer than {} m", metres_apart(*.distance, *.nearest)[0], metres_apart(*.distance, *.nearest)[1])]
     TooNear {
-        /// m.
+        /// Distance from the base, m.
         distance: f64,
-        /// m.
+        /// Least distance that the arms reach, m.
         nearest: f64,
     },
     /// The arms are long enough, but the relative angles would pass their limits.
@@ -40,19 +39,19 @@ pub enum NoReach {
     Limits,
 }
 
-/// The poses that hold a point, within the limits.
+/// The poses within the limits with the end effector on a point.
 enum SelfMotion {
-    /// These (a_1, a_2) hold the point at every b: it is B.
+    /// The point is B: these (a_1, a_2) hold it at every b.
     EveryB(Vec<[f64; 2]>),
-    /// b runs along arcs. Besides, (a_1, a_2) that rounding may have cut off from them.
+    /// Arcs along which b varies; and (a_1, a_2) at their ends that rounding may have removed from them.
     Curve(Quadrilateral, Vec<Arc>, Vec<[f64; 2]>),
 }
 
 impl PlaneMap {
-    /// All b at which the end effector can be on `p`, m, within the limits: every elbow, every sheet.
+    /// Returns all b at which the end effector can be on `p`, m, within the limits, over all elbows and sheets.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there are none: the reason.
     pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
         let period = self.period();
         Ok(match self.curve(p)? {
@@ -61,7 +60,7 @@ impl PlaneMap {
                 let span = |arc: &Arc| [arc.from.b.min(arc.to.b), arc.from.b.max(arc.to.b)];
                 points.iter().fold(BSet::union(arcs.iter().map(span).collect(), period), |set, &a| {
                     let b = self.b_of(p, a);
-                    let near = set.nearest(b).filter(|near| (b - near).abs() < CUT_OFF).unwrap_or(b);
+                    let near = set.nearest(b).filter(|near| (b - near).abs() < BRANCH_TOLERANCE_RAD).unwrap_or(b);
                     if near == b && set.contains(b) {
                         return set;
                     }
@@ -73,8 +72,8 @@ impl PlaneMap {
         })
     }
 
-    /// Each stretch of the b that reach `p`, m, from least to greatest, in no order, some within others, less what rounding
-    /// may have cut off: for those who ask whether b is among them often, of many points.
+    /// Visits intervals of b at which `p`, m, can be reached, unsorted and possibly overlapping; parts removed by
+    /// rounding are missing. Faster than [`reach`](Self::reach) for tests at many points.
     pub(in crate::planning) fn spans(&self, p: Vector, mut take: impl FnMut([f64; 2])) {
         if self.within_reach(p).is_err() {
             return;
@@ -98,11 +97,11 @@ impl PlaneMap {
         }
     }
 
-    /// The self-motion that holds the end effector on `p`, m: each connected branch as a polyline, closed if its first
-    /// and last poses are the same; Fig. 3 is q_1 over b of it. Empty if no b reaches the point.
+    /// Returns the self-motion that holds the end effector on `p`, m: each connected branch as a polyline, closed if
+    /// its first and last poses are equal; Fig. 3 shows q_1 over b. Empty if the point cannot be reached at any b.
     ///
-    /// b is continuous along a branch and first lies in [0, period). A branch has `samples` points, closer towards
-    /// its ends, and besides them every point where b turns back; a branch without extent is one point.
+    /// b is continuous along a branch and starts in [0, period). A branch has `samples` points, denser towards its
+    /// ends, plus each point where b turns back; a branch of zero length is one point.
     pub fn self_motion(&self, p: Vector, samples: usize) -> Vec<Vec<PlanePoint>> {
         let samples = samples.max(2);
         match self.curve(p) {
@@ -114,7 +113,7 @@ impl PlaneMap {
             Ok(SelfMotion::Curve(curve, arcs, points)) => {
                 let mut lines: Vec<Vec<PlanePoint>> =
                     branches(arcs).iter().map(|branch| self.polyline(&curve, branch, samples)).collect();
-                let near = |s: [f64; 2], t: [f64; 2]| (s[0] - t[0]).hypot(s[1] - t[1]) < CUT_OFF;
+                let near = |s: [f64; 2], t: [f64; 2]| (s[0] - t[0]).hypot(s[1] - t[1]) < BRANCH_TOLERANCE_RAD;
                 for a in points {
                     if !lines.iter().flatten().any(|at| near(at.a, a)) {
                         lines.push(vec![PlanePoint { a, b: wrap(self.b_of(p, a), self.period()) }]);
@@ -125,13 +124,12 @@ impl PlaneMap {
         }
     }
 
-    /// b of the pose that (a_1, a_2) has when the workspace is turned so that the end effector is on `p`, whole turns
-    /// aside.
+    /// Returns b of the pose with (a_1, a_2) and the end effector on `p`, modulo the period, rad.
     fn b_of(&self, p: Vector, a: [f64; 2]) -> f64 {
         self.lambda_sum() * (p * self.forward_unturned(a).conj()).arg()
     }
 
-    /// Whether the arms are long enough for `p`, and not too long.
+    /// Checks whether the arms alone allow the distance of `p` from the base.
     fn within_reach(&self, p: Vector) -> Result<(), NoReach> {
         let lengths = self.c().map(f64::abs);
         let (distance, farthest) = (p.norm(), lengths.iter().sum::<f64>());
@@ -148,7 +146,7 @@ impl PlaneMap {
 
     fn curve(&self, p: Vector) -> Result<SelfMotion, NoReach> {
         self.within_reach(p)?;
-        // A point on the edge of the workspace may miss the limits by rounding.
+        // A point on the workspace boundary may violate the limits by rounding.
         for slack in [0.0, SLACK] {
             let curve = Quadrilateral::new(self, p, slack);
             if curve.is_at_base() {
@@ -176,7 +174,7 @@ impl PlaneMap {
         let period = self.period();
         let mut line: Vec<PlanePoint> = Vec::with_capacity(samples + branch.len() + 1);
         let put = |site: Site, line: &mut Vec<PlanePoint>| {
-            // Arcs agree on b to whole turns.
+            // The b of consecutive arcs agree modulo the period.
             let b = match line.last() {
                 Some(last) => site.b + period * ((last.b - site.b) / period).round(),
                 None => wrap(site.b, period),
@@ -206,7 +204,7 @@ impl PlaneMap {
     }
 }
 
-/// An arc of a branch, and in which sense the branch runs through it.
+/// An arc of a branch, and the sense in which the branch traverses it.
 struct Step {
     arc: Arc,
     forwards: bool,
@@ -231,9 +229,9 @@ impl Step {
     }
 }
 
-/// Arcs joined end to end.
+/// Joins arcs end to end to branches.
 fn branches(mut arcs: Vec<Arc>) -> Vec<Vec<Step>> {
-    // Rounding can leave a point beside an arc that begins there.
+    // Rounding can leave a single point beside an arc that begins there.
     let meets = |s: &Site, t: &Site| (s.alpha - t.alpha).abs().max((s.beta - t.beta).abs()) < 1e-9;
     let lone = |i: usize, arcs: &[Arc]| {
         let point = arcs[i].from;

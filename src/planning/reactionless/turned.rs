@@ -1,19 +1,19 @@
-//! One drive turned by hand on a plane b = const: the other drives go along as little as they can.
+//! Dragging one drive on a plane b = const: the other drives turn as little as possible.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q_k = b* + u_k · a + v_k | angle of drive k on the plane, (15) | rad |
-//! | M = Σ λ_l u_l u_lᵀ | metric of kinetic energy on the plane: D_l = D_1 λ_l | |
+//! | M = Σ λ_l u_l u_lᵀ | metric of kinetic energy on the plane, as D_l = D_1 λ_l | |
 //!
-//! Of all poses of the plane with a given q_k, the nearest to a pose a in M is a + M⁻¹u_k Δq_k / (u_kᵀ M⁻¹ u_k). Where
-//! it breaks a joint limit, the nearest along the same line of equal q_k within the limits; where q_k cannot be had, the
-//! corner of the limits that comes nearest to it.
+//! Of all poses of the plane with a given q_k, a + M⁻¹u_k Δq_k / (u_kᵀ M⁻¹ u_k) is nearest to a pose a in the metric M.
+//! If it violates a joint limit, the pose moves along the line of equal q_k to the limits. If q_k is infeasible, the
+//! pose is at the corner of the limits whose q_k is nearest.
 
 use super::plane::{PlaneMap, PlanePoint};
 
 impl PlaneMap {
-    /// Least and greatest angle of a drive on the plane b within the joint limits, rad.
+    /// Returns the least and greatest angle of a drive on the plane b within the joint limits, rad.
     pub fn range_of(&self, drive: usize, b: f64) -> [f64; 2] {
         let (w, limits) = (self.u()[drive], self.limits());
         let middle = self.turn(b) + self.v()[drive];
@@ -24,8 +24,8 @@ impl PlaneMap {
         })
     }
 
-    /// The pose (a_1, a_2) of the plane b at which a drive is at an angle, rad, and that is nearest to another pose
-    /// within the limits; as near to that angle as the limits let it.
+    /// Returns the pose (a_1, a_2) of the plane b within the limits that has a drive at a given angle, rad, or as near
+    /// to it as feasible, and that is nearest to another pose.
     pub fn turned(&self, drive: usize, angle: f64, b: f64, from: [f64; 2]) -> [f64; 2] {
         let (w, limits) = (self.u()[drive], self.limits());
         let along = self.along(w);
@@ -33,12 +33,12 @@ impl PlaneMap {
         let at = |a: [f64; 2]| self.lift(PlanePoint { a, b })[drive];
         let share = w[0] * along[0] + w[1] * along[1];
         if share == 0.0 {
-            // The plane does not turn it.
+            // The drive does not move on the plane.
             return self.clamp(from);
         }
         let step = (angle.clamp(low, high) - at(from)) / share;
         let nearest = [0, 1].map(|i| from[i] + step * along[i]);
-        // What keeps the angle within the limits, as lengths along the line of equal angle.
+        // Bounds of the step along the line of equal q_k that keep the limits.
         let line = [-w[1], w[0]];
         let mut room = [f64::NEG_INFINITY, f64::INFINITY];
         for i in 0..2 {
@@ -47,12 +47,12 @@ impl PlaneMap {
                 room = [room[0].max(ends[0].min(ends[1])), room[1].min(ends[0].max(ends[1]))];
             }
         }
-        // At a corner rounding may leave no room: then its middle is the corner.
+        // At a corner the interval may be empty by rounding: its midpoint is the corner.
         let s = if room[0] <= room[1] { 0.0_f64.clamp(room[0], room[1]) } else { 0.5 * (room[0] + room[1]) };
         self.clamp([0, 1].map(|i| nearest[i] + s * line[i]))
     }
 
-    /// M⁻¹ w, but for a factor; w itself where λ make no metric.
+    /// Returns M⁻¹ w up to a factor; w itself if M is not positive definite.
     fn along(&self, w: [f64; 2]) -> [f64; 2] {
         let (u, lambda) = (self.u(), self.lambda());
         let m = |i: usize, j: usize| (0..3).map(|l| lambda[l] * u[l][i] * u[l][j]).sum::<f64>();
