@@ -1,4 +1,4 @@
-//! Spans cut where they cross each other, the number of poses on both sides of each part, and parts joined into loops.
+//! Arrangement of the spans: their intersections, the number of poses on both sides of each part, and loops of parts.
 
 use std::collections::VecDeque;
 
@@ -7,21 +7,21 @@ use super::cycle::Cycle;
 use super::span::{Span, Surface};
 use crate::mechanics::planar::{Vector, cross, dot};
 
-/// Parts of a span this near to each other, as a part of the span, are one cut.
-const SAME_CUT_SHARE: f64 = 1e-11;
-/// Ends this near to each other are joined, as a share of the unit of the map; so are the next two lengths.
-const JOINED_SHARE: f64 = 1e-9;
-/// Curves still entangled at this length touch without crossing.
-const SHORTEST: f64 = 1e-9;
-/// Pairs of parts looked at before two spans count as running along each other.
+/// Intersections on a span are equal if their parameters differ by less than this.
+const INTERSECTION_TOLERANCE: f64 = 1e-11;
+/// Ends within this distance are joined, as a fraction of the unit of the map; so are the next two lengths.
+const JOIN_TOLERANCE: f64 = 1e-9;
+/// Parts below this length whose chords are still not separated touch without crossing.
+const MIN_LENGTH: f64 = 1e-9;
+/// Maximum number of pairs of parts that are tested for two spans; beyond it, the spans are taken to overlap.
 const MAX_PAIRS: usize = 3000;
-/// What is left of [`MAX_PAIRS`] when it is time to see whether they do.
-const PAIRS_LEFT_AT_CHECK: usize = MAX_PAIRS - 100;
-/// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
-/// the reach, they do not cross.
-const TOUCH_SHARE: f64 = 1e-4;
-/// Points this near to a curve lie on it.
-const ON_CURVE: f64 = 1e-11;
+/// Number of remaining pairs at which the spans are tested for an overlap.
+const OVERLAP_CHECK_AT: usize = MAX_PAIRS - 100;
+/// Curves with a common end touch there, or enclose a sliver of negligible area: crossings within this distance of the
+/// end are ignored, as a fraction of the reach.
+const TOUCH_RADIUS: f64 = 1e-4;
+/// Points within this distance of a curve lie on it, as a fraction of the unit of the map.
+const ON_CURVE_TOLERANCE: f64 = 1e-11;
 
 /// A part of a span.
 #[derive(Clone, Copy, Debug)]
@@ -31,18 +31,18 @@ pub(super) struct Portion {
     pub to: f64,
 }
 
-/// A curve from crossing to crossing: the same number of poses all along each side.
+/// A curve between two intersections, with a constant number of poses on each side.
 #[derive(Clone, Debug)]
 pub(super) struct Strand {
     pub parts: Vec<Portion>,
-    /// Poses that reach the points on its left.
+    /// Number of poses of the points on its left.
     pub left: i32,
-    /// Poses that reach the points on its right.
+    /// Number of poses of the points on its right.
     pub right: i32,
 }
 
 impl Strand {
-    /// Whether it bounds the points that at least `n` poses reach.
+    /// Whether it bounds the set of points with at least `n` poses.
     pub fn bounds(&self, n: i32) -> bool {
         self.left >= n && self.right < n
     }
@@ -52,9 +52,9 @@ pub(super) struct Arrangement<'a> {
     on: &'a Surface,
     cycle: &'a Cycle,
     spans: &'a [Span],
-    /// m.
+    /// Distance from a common end within which crossings are ignored, m.
     tip: f64,
-    /// m.
+    /// Unit of the map, m.
     unit: f64,
 }
 
@@ -86,20 +86,21 @@ impl Part {
 impl<'a> Arrangement<'a> {
     pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
         let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
-        Self { on, cycle, spans: &cycle.spans, tip: TOUCH_SHARE * reach, unit: on.map.unit() }
+        Self { on, cycle, spans: &cycle.spans, tip: TOUCH_RADIUS * reach, unit: on.map.unit() }
     }
 
-    /// All curves, cut where they cross each other.
+    /// Returns all curves, split at their intersections.
     pub fn strands(&self) -> Vec<Strand> {
         let strand = |parts: Vec<Portion>| {
-            // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
+            // The longest parts first: short ones may lie in a sliver that is too narrow to separate its sides.
             let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (self.chord(p), p)).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0));
             let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
             let first = verdicts.next().unwrap_or(Err([0; 2]));
-            // Where curves coincide no sample is clean, and the first must do.
-            let [left, right] =
-                first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean);
+            // If curves coincide no sample is valid, and the first one is taken.
+            let [left, right] = first
+                .or_else(|unresolved| verdicts.find_map(Result::ok).ok_or(unresolved))
+                .unwrap_or_else(|unresolved| unresolved);
             Strand { parts, left, right }
         };
         let mut strands: Vec<Strand> = self.uncrossed().into_iter().map(strand).collect();
@@ -107,7 +108,7 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Sides that no sample told apart, by those of the strands around.
+    /// Determines the sides that no sample separated from those of the neighbouring strands.
     fn settle(&self, strands: &mut [Strand]) {
         let weight = |s: &Strand| self.spans[s.parts[0].span].weight();
         if strands.iter().all(|s| s.left - s.right == weight(s)) {
@@ -116,7 +117,7 @@ impl<'a> Arrangement<'a> {
         let mut nodes: Vec<Vector> = Vec::new();
         let mut node = |p: &Portion, t: f64| {
             let at = self.on.at(&self.spans[p.span], t);
-            nodes.iter().position(|n| (n - at).norm() < JOINED_SHARE * self.unit).unwrap_or_else(|| {
+            nodes.iter().position(|n| (n - at).norm() < JOIN_TOLERANCE * self.unit).unwrap_or_else(|| {
                 nodes.push(at);
                 nodes.len() - 1
             })
@@ -142,27 +143,27 @@ impl<'a> Arrangement<'a> {
         (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
     }
 
-    /// All curves from crossing to crossing.
+    /// Splits all curves at their intersections.
     fn uncrossed(&self) -> Vec<Vec<Portion>> {
         let mut strands: Vec<Vec<Portion>> = Vec::new();
         let mut open = false;
-        for (i, mut cuts) in self.cuts().into_iter().enumerate() {
+        for (i, mut intersections) in self.intersections().into_iter().enumerate() {
             let span = &self.spans[i];
-            let free = |end: f64| !cuts.iter().any(|t| (t - end).abs() < 1e-7);
+            let free = |end: f64| !intersections.iter().any(|t| (t - end).abs() < 1e-7);
             let follows = i > 0 && {
                 let last = &self.spans[i - 1];
                 last.ends[1] == span.ends[0] && last.curve == span.curve
             };
             let (joined, open_after) = (open && follows && free(0.0), free(1.0));
-            cuts.push(0.0);
-            cuts.push(1.0);
-            cuts.sort_by(f64::total_cmp);
-            cuts.dedup_by(|next, last| *next - *last < SAME_CUT_SHARE);
-            // The exact ends survive the merging.
-            if let Some(last) = cuts.last_mut() {
+            intersections.push(0.0);
+            intersections.push(1.0);
+            intersections.sort_by(f64::total_cmp);
+            intersections.dedup_by(|next, last| *next - *last < INTERSECTION_TOLERANCE);
+            // The exact end is kept.
+            if let Some(last) = intersections.last_mut() {
                 *last = 1.0;
             }
-            for (n, w) in cuts.windows(2).enumerate() {
+            for (n, w) in intersections.windows(2).enumerate() {
                 let portion = Portion { span: i, from: w[0], to: w[1] };
                 match strands.last_mut() {
                     Some(strand) if n == 0 && joined => strand.push(portion),
@@ -174,12 +175,13 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// How many poses reach the left side of a part, and how many its right; an error where another curve is too close
-    /// to be sure.
+    /// Returns the number of poses on the left and on the right of a part; an error with the last sample if another
+    /// curve is too close.
     fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
-        let (mut unclean, mut alike) = ([0; 2], 0);
-        // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
+        let (mut unresolved, mut alike) = ([0; 2], 0);
+        // Offsets small enough that no other curve lies between, even near a tangency. If one does, other offsets and
+        // places are tried.
         for reach in [1e-11, 1e-12, 1e-9].map(|share| share * self.unit) {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
                 let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
@@ -192,26 +194,26 @@ impl<'a> Arrangement<'a> {
                 if sides[0] - sides[1] == span.weight() {
                     return Ok(sides);
                 }
-                // The same all along: another curve coincides.
-                alike = if sides == unclean { alike + 1 } else { 0 };
-                unclean = sides;
+                // The same result at several places: another curve coincides.
+                alike = if sides == unresolved { alike + 1 } else { 0 };
+                unresolved = sides;
                 if alike == 3 {
-                    return Err(unclean);
+                    return Err(unresolved);
                 }
             }
         }
-        Err(unclean)
+        Err(unresolved)
     }
 
-    /// The parts of strands that bound the points which at least `n` poses reach.
+    /// Returns the parts of strands that bound the points with at least `n` poses.
     pub fn level(&self, strands: &[Strand], n: i32) -> Vec<Portion> {
         self.without_doubles(strands.iter().filter(|s| s.bounds(n)).flat_map(|s| &s.parts))
     }
 
-    /// Curves that coincide bound the workspace once.
+    /// Removes duplicates: coinciding curves count once.
     fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
         let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
-        let near = |a: Vector, b: Vector| (a - b).norm() < JOINED_SHARE * self.unit;
+        let near = |a: Vector, b: Vector| (a - b).norm() < JOIN_TOLERANCE * self.unit;
         let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
         for &portion in portions {
             let [from, to] = ends(&portion);
@@ -226,9 +228,9 @@ impl<'a> Arrangement<'a> {
         kept.into_iter().map(|(portion, _)| portion).collect()
     }
 
-    /// For each span, where it is crossed.
-    fn cuts(&self) -> Vec<Vec<f64>> {
-        let mut cuts = vec![Vec::new(); self.spans.len()];
+    /// Returns the parameters of the intersections of each span.
+    fn intersections(&self) -> Vec<Vec<f64>> {
+        let mut intersections = vec![Vec::new(); self.spans.len()];
         let mut order: Vec<usize> = (0..self.spans.len()).collect();
         order.sort_by(|&i, &j| self.cycle.bounds[i].low.re.total_cmp(&self.cycle.bounds[j].low.re));
         let mut work = VecDeque::new();
@@ -242,13 +244,13 @@ impl<'a> Arrangement<'a> {
                 if b.low.im > a.high.im || b.high.im < a.low.im || self.continues(i, j) {
                     continue;
                 }
-                self.cross(i, j, &mut cuts, &mut work);
+                self.cross(i, j, &mut intersections, &mut work);
             }
         }
-        cuts
+        intersections
     }
 
-    /// Whether one span goes on where the other ends, on the same curve, without turning back: they do not cross.
+    /// Whether one span continues the other on the same curve without turning back: then they do not intersect.
     fn continues(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.spans[i], &self.spans[j]);
         let joined = a.ends[1] == b.ends[0] || b.ends[1] == a.ends[0];
@@ -260,16 +262,16 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    fn cross(&self, i: usize, j: usize, cuts: &mut [Vec<f64>], work: &mut VecDeque<(Part, Part)>) {
+    fn cross(&self, i: usize, j: usize, intersections: &mut [Vec<f64>], work: &mut VecDeque<(Part, Part)>) {
         let (a, b) = (&self.spans[i], &self.spans[j]);
         work.clear();
         work.push_back((Part::of(a), Part::of(b)));
         let tip = a.ends.into_iter().zip(a.at).find(|(end, _)| b.ends.contains(end)).map(|(_, at)| at);
-        let mut patience = MAX_PAIRS;
+        let mut remaining_pairs = MAX_PAIRS;
         while let Some((pa, pb)) = work.pop_front() {
-            patience -= 1;
-            if patience == 0 || (patience == PAIRS_LEFT_AT_CHECK && self.run_along(i, j)) {
-                self.overlap(i, j, cuts);
+            remaining_pairs -= 1;
+            if remaining_pairs == 0 || (remaining_pairs == OVERLAP_CHECK_AT && self.run_along(i, j)) {
+                self.overlap(i, j, intersections);
                 return;
             }
             let at_tip = |tip: Vector| pa.at.iter().chain(&pb.at).all(|p| (p - tip).norm_sqr() < self.tip * self.tip);
@@ -282,14 +284,14 @@ impl<'a> Arrangement<'a> {
             }
             let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
             let (la, lb) = (va.norm(), vb.norm());
-            // Straight enough to cross once at most?
+            // Are both parts straight enough to intersect at most once?
             let bend = 5.0 * (da / la + db / lb);
             if bend < 0.5 && cross(va, vb).abs() > bend * la * lb {
                 if let Some([t, s]) = self.meet(a, b, &pa, &pb) {
-                    cuts[i].push(t);
-                    cuts[j].push(s);
+                    intersections[i].push(t);
+                    intersections[j].push(s);
                 }
-            } else if la.max(lb) > SHORTEST * self.unit || da + db > SHORTEST * self.unit {
+            } else if la.max(lb) > MIN_LENGTH * self.unit || da + db > MIN_LENGTH * self.unit {
                 if la + da > lb + db {
                     pa.halves(self.on, a).into_iter().for_each(|half| work.push_back((half, pb)));
                 } else {
@@ -299,7 +301,8 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// Newton's iteration for P_A(t) = P_B(s) from where the chords meet; within both parts or not at all.
+    /// Solves P_A(t) = P_B(s) by Newton's iteration from the intersection of the chords; `None` if the solution is
+    /// outside either part.
     fn meet(&self, a: &Span, b: &Span, pa: &Part, pb: &Part) -> Option<[f64; 2]> {
         let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
         let (ta, tb) = (pa.range[1] - pa.range[0], pb.range[1] - pb.range[0]);
@@ -307,12 +310,12 @@ impl<'a> Arrangement<'a> {
         let n = cross(va, vb);
         let mut t = pa.range[0] + (cross(gap, vb) / n).clamp(0.0, 1.0) * ta;
         let mut s = pb.range[0] + (cross(gap, va) / n).clamp(0.0, 1.0) * tb;
-        // Both parts are nearly straight: a solution well outside is none.
+        // Both parts are nearly straight, so the iterates stay close to them.
         let near = |x: f64, [low, high]: [f64; 2]| {
             let margin = 0.1 * (high - low);
             x.clamp((low - margin).max(0.0), (high + margin).min(1.0))
         };
-        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME_CUT_SHARE && x <= r[1] + SAME_CUT_SHARE;
+        let within = |x: f64, r: [f64; 2]| x >= r[0] - INTERSECTION_TOLERANCE && x <= r[1] + INTERSECTION_TOLERANCE;
         for _ in 0..16 {
             let (ja, jb) = (self.on.jet(a, t), self.on.jet(b, s));
             let gap = jb.at - ja.at;
@@ -330,33 +333,33 @@ impl<'a> Arrangement<'a> {
         (meets && within(t, pa.range) && within(s, pb.range)).then_some([t, s])
     }
 
-    /// Cuts of two spans that run along each other: each where the other begins or ends.
-    fn overlap(&self, i: usize, j: usize, cuts: &mut [Vec<f64>]) {
+    /// Splits two overlapping spans, each at the ends of the other.
+    fn overlap(&self, i: usize, j: usize, intersections: &mut [Vec<f64>]) {
         for (one, other) in [(i, j), (j, i)] {
             for end in self.spans[one].at {
                 let (t, gap) = self.foot(&self.spans[other], end);
-                if gap < JOINED_SHARE * self.unit {
-                    cuts[other].push(t);
+                if gap < JOIN_TOLERANCE * self.unit {
+                    intersections[other].push(t);
                 }
             }
         }
     }
 
-    /// Whether two spans share a stretch: two points, and those between.
+    /// Whether two spans overlap: two common points, and common points between them.
     fn run_along(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.spans[i], &self.spans[j]);
-        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE * self.unit;
+        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE_TOLERANCE * self.unit;
         let ends = [0.0, 1.0].into_iter().filter(|&t| on_both(t));
         let others =
             b.at.into_iter()
                 .map(|end| self.foot(a, end))
-                .filter(|(_, gap)| *gap < ON_CURVE * self.unit)
+                .filter(|(_, gap)| *gap < ON_CURVE_TOLERANCE * self.unit)
                 .map(|(t, _)| t);
         let (low, high) = ends.chain(others).fold((1.0_f64, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
         high - low > 1e-6 && [0.5, 0.3, 0.8].into_iter().all(|share| on_both(low + share * (high - low)))
     }
 
-    /// The parameter of the point of a span that is nearest to another, and their distance.
+    /// Returns the parameter of the nearest point of a span, and its distance from p, m.
     fn foot(&self, span: &Span, p: Vector) -> (f64, f64) {
         let mut t = 0.5;
         for _ in 0..40 {
@@ -374,7 +377,8 @@ impl<'a> Arrangement<'a> {
         (t, (self.on.at(span, t) - p).norm())
     }
 
-    /// Joins parts end to start; where there is a choice, the leftmost turn keeps loops from crossing themselves.
+    /// Joins parts end to start. Of several continuations it takes the leftmost turn, so that loops do not cross
+    /// themselves.
     pub fn chain(&self, portions: Vec<Portion>) -> Vec<Vec<Portion>> {
         let at = |p: &Portion, share: f64| self.on.at(&self.spans[p.span], p.from + share * (p.to - p.from));
         let starts: Vec<Vector> = portions.iter().map(|p| at(p, 0.0)).collect();
@@ -388,7 +392,7 @@ impl<'a> Arrangement<'a> {
             let mut chain = vec![portions[first]];
             used[first] = true;
             let mut last = first;
-            while (ends[last] - starts[first]).norm() > JOINED_SHARE * self.unit {
+            while (ends[last] - starts[first]).norm() > JOIN_TOLERANCE * self.unit {
                 let along = ends[last] - at(&portions[last], 0.95);
                 let turn = |k: usize| {
                     let next = at(&portions[k], 0.05) - starts[k];
@@ -396,9 +400,10 @@ impl<'a> Arrangement<'a> {
                 };
                 let gap = |k: usize| (starts[k] - ends[last]).norm();
                 let free = || (0..portions.len()).filter(|&k| !used[k]);
-                let joined =
-                    free().filter(|&k| gap(k) <= JOINED_SHARE * self.unit).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
-                // Only rounding near a tangency leaves a gap; the nearest start closes it.
+                let joined = free()
+                    .filter(|&k| gap(k) <= JOIN_TOLERANCE * self.unit)
+                    .max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
+                // Rounding leaves gaps only near a tangency; the nearest start closes them.
                 let near = || free().filter(|&k| gap(k) < 1e-5 * self.unit).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
                 let Some(next) = joined.or_else(near) else { break };
                 used[next] = true;
@@ -411,7 +416,7 @@ impl<'a> Arrangement<'a> {
     }
 }
 
-/// Whether two chords, each thickened by its share of `slack`, keep apart.
+/// Whether two chords are separated by more than `slack`, m.
 fn apart(a: [Vector; 2], b: [Vector; 2], slack: f64) -> bool {
     let out = |p: f64, q: f64, r: f64, s: f64| p.min(q) > r.max(s) + slack || r.min(s) > p.max(q) + slack;
     if out(a[0].re, a[1].re, b[0].re, b[1].re) || out(a[0].im, a[1].im, b[0].im, b[1].im) {

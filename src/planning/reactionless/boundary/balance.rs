@@ -1,22 +1,22 @@
-//! What lies on the sides of curves in slivers too thin to be sampled: it follows from the curves that they meet.
+//! Numbers of poses on the sides of curves in slivers that are too thin to be sampled, from the curves around them.
 //!
-//! The curves that bound the points of at least n poses are closed: at each node as many of them end as begin. Where a
-//! fold cuts off a corner of the limits, the sides of the long curves around are known and this leaves few answers for
-//! the short ones between. Of these the one nearest to what was sampled beside the sliver is right, since of two curves
-//! in one sliver the longer also runs where the other does not.
+//! The curves that bound the points of at least n poses are closed: at each node as many of them end as begin. If a
+//! fold cuts off a corner of the limits, the sides of the long curves around it are known. This leaves few solutions
+//! for the short curves between. The one nearest to the samples beside the sliver is right, since of two curves in one
+//! sliver the longer also runs where the other does not.
 
-/// More curves than these are not told apart: only machines whose curves coincide have as many.
-const MAX_CURVES: usize = 12;
-/// Choices looked at.
-const PATIENCE: usize = 20_000;
+/// Maximum number of unresolved curves; only machines with coinciding curves have more.
+const MAX_UNCLEAR: usize = 12;
+/// Maximum number of choices that are tried.
+const MAX_CHOICES: usize = 20_000;
 
-/// A curve from node to node.
+/// A curve between two nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub ends: [usize; 2],
-    /// How many more poses reach its left side than its right.
+    /// Number of poses on its left minus that on its right.
     pub weight: i32,
-    /// Poses to its left and to its right, as sampled.
+    /// Sampled numbers of poses on its left and on its right.
     pub sides: [i32; 2],
     pub length: f64,
 }
@@ -26,20 +26,21 @@ impl Course {
         self.sides[0] - self.sides[1] != self.weight
     }
 
-    /// By how much the sides differ from those sampled if `right` is right, all along.
+    /// Returns the change against the samples if `right` is the number of poses on the right, weighted by the length.
     fn change(&self, right: i32) -> f64 {
         let off = [right + self.weight, right].into_iter().zip(self.sides).map(|(to, from)| (to - from).abs());
         self.length * f64::from(off.sum::<i32>())
     }
 }
 
-/// The sides of all courses, those that were unclear such that every level closes; as they were if none do.
+/// Resolves the sides of unclear courses such that the curves of every level close; leaves them unchanged if that is
+/// impossible.
 pub(super) fn settle(courses: &mut [Course]) {
     let mut unclear: Vec<usize> = (0..courses.len()).filter(|&i| courses[i].is_unclear()).collect();
-    if unclear.is_empty() || unclear.len() > MAX_CURVES {
+    if unclear.is_empty() || unclear.len() > MAX_UNCLEAR {
         return;
     }
-    // The longest first: they cost most, so that the search ends early.
+    // The longest first: they contribute most to the change, so that branches are pruned early.
     unclear.sort_by(|&i, &j| courses[j].length.total_cmp(&courses[i].length));
     let levels = courses.iter().flat_map(|c| c.sides).max().unwrap_or(0).max(0) as usize + 3;
     let nodes = courses.iter().flat_map(|c| c.ends).max().map_or(0, |last| last + 1);
@@ -49,7 +50,7 @@ pub(super) fn settle(courses: &mut [Course]) {
         open: vec![0; nodes],
         chosen: vec![0; unclear.len()],
         best: None,
-        patience: PATIENCE,
+        remaining_choices: MAX_CHOICES,
     };
     for course in courses.iter().filter(|c| !c.is_unclear()) {
         search.put(course, course.sides[1], 1);
@@ -57,7 +58,7 @@ pub(super) fn settle(courses: &mut [Course]) {
     for &i in &unclear {
         courses[i].ends.into_iter().for_each(|node| search.open[node] += 1);
     }
-    // Nodes that do not close without the unclear ones are nothing that these could mend.
+    // If a node does not close where no unclear course ends, there is no solution.
     let touched = |node: usize| unclear.iter().any(|&i| courses[i].ends.contains(&node));
     if (0..nodes).any(|node| !touched(node) && !search.closes(node)) {
         return;
@@ -73,14 +74,14 @@ pub(super) fn settle(courses: &mut [Course]) {
 
 struct Search {
     levels: usize,
-    /// For each node and level, how many more courses begin there than end.
+    /// For each node and level, the number of courses that begin there minus that of those that end.
     net: Vec<i32>,
-    /// Courses at each node that are still to choose.
+    /// Number of undecided courses at each node.
     open: Vec<usize>,
     chosen: Vec<i32>,
-    /// Change, and the right side of each.
+    /// The least change, and the number of poses on the right of each course.
     best: Option<(f64, Vec<i32>)>,
-    patience: usize,
+    remaining_choices: usize,
 }
 
 impl Search {
@@ -96,10 +97,10 @@ impl Search {
     }
 
     fn from(&mut self, list: &[Course], place: usize, change: f64) {
-        if self.patience == 0 || self.best.as_ref().is_some_and(|(least, _)| change >= *least) {
+        if self.remaining_choices == 0 || self.best.as_ref().is_some_and(|(least, _)| change >= *least) {
             return;
         }
-        self.patience -= 1;
+        self.remaining_choices -= 1;
         let Some(course) = list.get(place) else {
             self.best = Some((change, self.chosen.clone()));
             return;
@@ -107,7 +108,7 @@ impl Search {
         let most = course.sides[0].max(course.sides[1]) + 1;
         let least = (course.sides[0].min(course.sides[1]) - course.weight).max(0);
         course.ends.into_iter().for_each(|node| self.open[node] -= 1);
-        // From the most poses down: where nothing else decides, a sliver is reached once more, not once less.
+        // The highest numbers first: among equal changes, a sliver has one pose more rather than one less.
         for right in (least..=most).rev() {
             self.put(course, right, 1);
             self.chosen[place] = right;

@@ -1,9 +1,9 @@
-//! The weighted cycle of all spans, whose winding number about a point counts the poses that reach it.
+//! The weighted cycle of all spans, whose winding number about a point is its number of poses.
 
 use super::span::{Span, Surface};
 use crate::mechanics::planar::Vector;
 
-/// Rows that spans are sorted into, so that a ray meets few of them.
+/// Number of rows in y into which spans are sorted, so that a ray is tested against few of them.
 const ROWS: usize = 64;
 
 /// Axis-parallel bounds of a span, m.
@@ -17,16 +17,16 @@ pub(super) struct CycleBounds {
 pub(super) struct Cycle {
     pub spans: Vec<Span>,
     pub bounds: Vec<CycleBounds>,
-    /// Where each row begins in `members`, and one more.
+    /// Index in `members` at which each row begins, and the end of the last row.
     rows: Vec<u32>,
-    /// Spans by row, each in all rows that it passes through.
+    /// Indices of spans by row; a span is in all rows that it passes through.
     members: Vec<u32>,
     low: f64,
     per_metre: f64,
 }
 
 impl Cycle {
-    /// `unit` is that of the map, m.
+    /// Returns the cycle of spans; `unit` is that of the map, m.
     pub fn of(spans: Vec<Span>, unit: f64) -> Self {
         let bounds: Vec<CycleBounds> = spans
             .iter()
@@ -61,12 +61,13 @@ impl Cycle {
         cycle
     }
 
-    /// As a cast: below the first row is the first, NaN too.
+    /// Returns the row of a y, m. The cast maps values below the first row, and NaN, to row 0.
     fn row(&self, y: f64) -> usize {
         (((y - self.low) * self.per_metre) as usize).min(ROWS - 1)
     }
 
-    /// How many poses reach p: the winding number of the weighted cycle. On a curve, the number is that of a side.
+    /// Returns the number of poses of p, m, as the winding number of the weighted cycle; on a curve, that of one of its
+    /// sides.
     pub fn poses_at(&self, on: &Surface, p: Vector) -> i32 {
         let row = self.row(p.im);
         let mut count = 0;

@@ -1,14 +1,15 @@
 //! det ∂(x, y)/∂(a_1, a_2) as a sum of three sines, its gradient, and its zeros in closed form.
 //!
-//! With K_kl = (u_k × u_l) c_k c_l, det = Σ_{k<l} K_kl sin((u_l − u_k) · a + v_l − v_k): two relative angles that join
-//! three drives make each u_l − u_k a vector of integers, so that every term is a sine in a_1, in a_2 or in a sum.
+//! With K_kl = (u_k × u_l) c_k c_l, det = Σ_{k<l} K_kl sin((u_l − u_k) · a + v_l − v_k). As two relative angles connect
+//! three drives, each u_l − u_k has integer components, so that every term is a sine of a_1, of a_2, or of their sum or
+//! difference.
 
 use std::f64::consts::TAU;
 
 use crate::mechanics::planar::{Vector, cross};
 use crate::planning::reactionless::PlaneMap;
 
-/// Limits that coincide with a straight fold are drawn in by this, rad: they then have a sheet beside them.
+/// Limits that coincide with a straight fold are moved inwards by this, rad, so that a sheet lies beside them.
 pub(super) const INSET: f64 = 4e-10;
 
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +35,7 @@ impl Determinant {
         Self { terms: [term(0, 1), term(1, 2), term(0, 2)] }
     }
 
-    /// Largest |K_kl|, m²: the scale of the determinant.
+    /// Returns the largest |K_kl|, m²: the scale of the determinant.
     pub fn scale(&self) -> f64 {
         self.terms.iter().fold(0.0, |m, t| m.max(t.k.abs()))
     }
@@ -53,8 +54,8 @@ impl Determinant {
         g
     }
 
-    /// (C, S, Q) with det = C + S sin y + Q cos y along the line `from` + y `way`: one coordinate, or one of their sums
-    /// or differences that a term depends on, is constant along it.
+    /// Returns (C, S, Q) with det = C + S sin y + Q cos y along the line `from` + y `way`. Along the line, one
+    /// coordinate or the sum or difference in one of the terms must be constant.
     fn along(&self, from: [f64; 2], way: [f64; 2]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for t in &self.terms {
@@ -70,7 +71,8 @@ impl Determinant {
         sum
     }
 
-    /// The y, in one turn, at which the determinant is 0 on the line `from` + y `way`.
+    /// Returns the two y in [0, 2π) at which the determinant is 0 on the line `from` + y `way`; `None` if there are
+    /// none.
     pub fn zeros(&self, from: [f64; 2], way: [f64; 2]) -> Option<[f64; 2]> {
         let [c, s, q] = self.along(from, way);
         let radius = s.hypot(q);
@@ -87,7 +89,7 @@ impl Determinant {
     }
 }
 
-/// The line on which angle `fixed` is `x`, by the other angle: `from` and `way`.
+/// Returns the line on which angle `fixed` is `x`, as a point `from` and a direction `way`.
 pub(super) fn upright(fixed: usize, x: f64) -> [[f64; 2]; 2] {
     let (mut from, mut way) = ([0.0; 2], [0.0; 2]);
     from[fixed] = x;

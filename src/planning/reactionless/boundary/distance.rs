@@ -1,17 +1,17 @@
-//! How far a point is from the boundary.
+//! Distance of a point from the boundary.
 
 use super::arrangement::Portion;
 use super::{Boundary, from_chord};
 use crate::mechanics::planar::{Vector, unit};
 
-/// Distances are exact to this share of the unit of the map.
-const EXACT: f64 = 2e-10;
-/// Halvings of a chord's portion: each brings the chord four times nearer to the curve.
-const DEPTH: usize = 14;
+/// Tolerance of distances, as a fraction of the unit of the map.
+const DISTANCE_TOLERANCE: f64 = 2e-10;
+/// Maximum number of bisections of a chord's portion; each reduces the chord's deviation to a quarter.
+const MAX_DEPTH: usize = 14;
 
 impl Boundary {
-    /// The distance of p, m, from the boundary of the workspace of b, m: positive inside, negative outside, 0 on it.
-    /// Along the true curves, exact to 1e-9 of the reach. Negative infinity if p is no point.
+    /// Returns the distance of p, m, from the boundary of the workspace of b, m: positive inside, negative outside, 0
+    /// on it. It refers to the exact curves, with an error below 1e-9 of the reach. Returns −∞ if p or b is not finite.
     pub fn distance(&self, p: Vector, b: f64) -> f64 {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return f64::NEG_INFINITY;
@@ -23,13 +23,14 @@ impl Boundary {
         }
         for (portion, ends, gap, slack) in self.gaps(p) {
             if gap - slack < least {
-                self.refine(p, portion, ends, DEPTH, &mut least);
+                self.refine(p, portion, ends, MAX_DEPTH, &mut least);
             }
         }
         if self.contains_unturned(p) { least } else { -least }
     }
 
-    /// For each chord: its portion, its ends, its distance from p, and how far the curve may be from it.
+    /// Returns for each chord its portion, its ends, its distance from p, and the maximum deviation of the curve from
+    /// it, m.
     fn gaps(&self, p: Vector) -> impl Iterator<Item = (Portion, [Vector; 2], f64, f64)> {
         self.loops.iter().flat_map(move |l| {
             l.portions().iter().enumerate().map(move |(i, &portion)| {
@@ -43,13 +44,13 @@ impl Boundary {
         self.cycle.spans[portion.span].deviation * (portion.to - portion.from).powi(2) + 1e-15 * self.on.map.unit()
     }
 
-    /// Branch and bound: only halves that may come nearer than what is known are looked into.
+    /// Branch and bound: only halves that may be nearer than the known distance are refined.
     fn refine(&self, p: Vector, portion: Portion, ends: [Vector; 2], depth: usize, least: &mut f64) {
         let (gap, slack) = (from_chord(ends, p).sqrt(), self.slack(&portion));
         if gap - slack >= *least {
             return;
         }
-        if slack < EXACT * self.on.map.unit() || depth == 0 {
+        if slack < DISTANCE_TOLERANCE * self.on.map.unit() || depth == 0 {
             *least = least.min(gap);
             return;
         }

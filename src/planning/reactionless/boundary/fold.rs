@@ -1,8 +1,8 @@
-//! The curves det = 0 within the limits, in spans.
+//! The curves det = 0 within the limits, as spans.
 //!
-//! A quadtree over (a_1, a_2): where the curve crosses the sides of a cell is known in closed form. A cell crossed
-//! twice holds one span. No closed curve hides inside a cell: each passes through two of the points where all arms
-//! are in line, which are π apart.
+//! A quadtree over (a_1, a_2): the intersections of the curve with the sides of a cell have a closed form. A cell with
+//! two of them holds one span. No closed curve lies inside a cell: each passes through two points at which all arms are
+//! in line, and these are π apart.
 
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -10,22 +10,23 @@ use std::f64::consts::TAU;
 use super::determinant::upright;
 use super::span::{BoundaryCurve, Span, Surface};
 
-/// Cells and spans are no longer than this, rad.
-const STEP: f64 = 0.35;
-/// Zeros this near to a corner of the limits, rad, are the corner's.
-const CORNER: f64 = 1e-10;
-/// Halvings of a cell before what is left of a node counts as straight: 1e-5 rad off a fold moves the image by 1e-10 m.
-const DEPTH: usize = 15;
+/// Maximum size of cells and spans, rad.
+const MAX_STEP_RAD: f64 = 0.35;
+/// Zeros within this distance of a corner of the limits are treated as the corner, rad.
+const CORNER_TOLERANCE_RAD: f64 = 1e-10;
+/// Maximum number of bisections of a cell; then the rest of a node is treated as straight: 1e-5 rad off a fold moves
+/// the image by 1e-10 m.
+const MAX_DEPTH: usize = 15;
 
-/// Where cells begin and where they are cut, for each angle.
-const OFFSET: [f64; 2] = [0.381_966, 0.276_393];
-const CUT: [f64; 2] = [0.471_404, 0.524_579];
+/// Offset of the grid lines, and place at which cells are split, for each angle, as fractions of a cell.
+const GRID_OFFSET: [f64; 2] = [0.381_966, 0.276_393];
+const SPLIT: [f64; 2] = [0.471_404, 0.524_579];
 
-/// A side of a cell: where det = 0 crosses it, in the coordinate that varies.
+/// A side of a cell: the coordinates at which det = 0 intersects it.
 #[derive(Clone, Debug, Default)]
 struct Side(Vec<f64>);
 
-/// Sides: a_2 least, a_2 greatest, a_1 least, a_1 greatest.
+/// A cell, with the sides a_2 least, a_2 greatest, a_1 least, a_1 greatest.
 #[derive(Clone, Debug)]
 struct Cell {
     low: [f64; 2],
@@ -33,22 +34,22 @@ struct Cell {
     sides: [Side; 4],
 }
 
-/// Curves of det = 0.
+/// The curves det = 0.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Folds {
     pub spans: Vec<Span>,
-    /// (a_1, a_2) where the image turns back.
+    /// (a_1, a_2) of the cusps of the image.
     pub cusps: Vec<[f64; 2]>,
 }
 
-/// Zeros of det on the line where angle `fixed` is `x`, with the other angle within `range`, ascending.
+/// Returns the zeros of det on the line where angle `fixed` is `x`, with the other angle within `range`, ascending.
 pub(super) fn zeros(on: &Surface, fixed: usize, x: f64, range: [f64; 2]) -> Vec<f64> {
     zeros_on(on, upright(fixed, x), range)
 }
 
-/// Zeros of det on the line `from` + y `way`, y within `range`, ascending.
+/// Returns the zeros of det on the line `from` + y `way`, with y within `range`, ascending.
 pub(super) fn zeros_on(on: &Surface, [from, way]: [[f64; 2]; 2], range: [f64; 2]) -> Vec<f64> {
-    let [least, most] = [range[0] + CORNER, range[1] - CORNER];
+    let [least, most] = [range[0] + CORNER_TOLERANCE_RAD, range[1] - CORNER_TOLERANCE_RAD];
     let mut found = Vec::new();
     for zero in on.det.zeros(from, way).into_iter().flatten() {
         let mut y = zero + TAU * ((least - zero) / TAU).ceil();
@@ -61,22 +62,22 @@ pub(super) fn zeros_on(on: &Surface, [from, way]: [[f64; 2]; 2], range: [f64; 2]
     found
 }
 
-/// The lines of the grid. Their places, and where cells are cut, are no simple fractions and differ for both angles:
-/// folds that are straight lines, as degenerate ones are, then never run along a line or through a corner.
+/// Returns the lines of the grid. Their places, and those at which cells are split, are no simple fractions and differ
+/// for both angles. Straight folds, as in degenerate machines, then never run along a line or through a corner.
 fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
     let width = range[1] - range[0];
-    let n = (width / STEP).ceil().max(1.0);
+    let n = (width / MAX_STEP_RAD).ceil().max(1.0);
     let mut lines = vec![range[0]];
-    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - OFFSET[axis]) / n));
+    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - GRID_OFFSET[axis]) / n));
     lines.push(range[1]);
     lines
 }
 
-/// All of det = 0 inside the limits: spans in order, cut at the cusps of their images.
+/// Returns all curves det = 0 within the limits as spans in order, split at the cusps of their images.
 pub(super) fn spans(on: &Surface) -> Folds {
     let range = on.map.limits().map(|l| [l.min, l.max]);
     let grid = [0, 1].map(|axis| lines(axis, range[axis]));
-    // crossings[axis][line]: zeros on the line where that axis is fixed
+    // crossings[axis][line]: zeros on the line where that axis is fixed.
     let crossings: [Vec<Vec<f64>>; 2] =
         [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
     let between =
@@ -95,21 +96,21 @@ pub(super) fn spans(on: &Surface) -> Folds {
                 ],
             };
             cell.mend_corner(on, range);
-            cell.trace(on, DEPTH, &mut folds);
+            cell.trace(on, MAX_DEPTH, &mut folds);
         }
     }
     folds.spans = in_order(&folds.spans);
     folds
 }
 
-/// Each span before the one that begins where it ends.
+/// Orders spans such that each precedes the one that begins at its end.
 fn in_order(spans: &[Span]) -> Vec<Span> {
     let key = |a: [f64; 2]| a.map(f64::to_bits);
     let begins: HashMap<_, usize> = spans.iter().enumerate().map(|(i, s)| (key(s.ends[0]), i)).collect();
     let ends: HashSet<_> = spans.iter().map(|s| key(s.ends[1])).collect();
     let mut used = vec![false; spans.len()];
     let mut ordered = Vec::with_capacity(spans.len());
-    // Open curves from their beginnings, then closed ones from anywhere.
+    // Open curves from their start, then closed ones from any span.
     let (inner, first): (Vec<_>, Vec<_>) = (0..spans.len()).partition(|&i| ends.contains(&key(spans[i].ends[0])));
     for start in first.into_iter().chain(inner) {
         let mut next = Some(start);
@@ -123,7 +124,7 @@ fn in_order(spans: &[Span]) -> Vec<Span> {
 }
 
 impl Folds {
-    /// Takes in a span, cut at its cusps so that no piece turns back.
+    /// Adds a span, split at its cusps so that no piece turns back.
     fn push(&mut self, on: &Surface, span: Span) {
         let cusps: Vec<[f64; 2]> = on.cusps(&span).into_iter().map(|t| on.point(&span, t)).collect();
         let mut stops = vec![span.ends[0]];
@@ -145,7 +146,7 @@ impl Cell {
         self.sides.iter().map(|s| s.0.len()).sum()
     }
 
-    /// A curve that runs into the very corner of the limits was left out: what goes in must come out.
+    /// Adds the zero of a curve that ends exactly in a corner of the limits, so that the number of zeros is even.
     fn mend_corner(&mut self, on: &Surface, range: [[f64; 2]; 2]) {
         if self.count().is_multiple_of(2) {
             return;
@@ -189,9 +190,9 @@ impl Cell {
         }
     }
 
-    /// A cell so small that any pairing will do: each way in with a way out.
+    /// Pairs the zeros of a very small cell: each inwards crossing with any outwards one.
     fn join(&self, on: &Surface, spans: &mut Vec<Span>) {
-        // det > 0 on the left of the way from a to b, as seen halfway between a and b or at a.
+        // Whether det > 0 on the left of the way from a to b, by the gradient at a given point.
         let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
             let [g1, g2] = on.det.gradient(at);
             g2 * (b[0] - a[0]) - g1 * (b[1] - a[1]) > 0.0
@@ -209,15 +210,18 @@ impl Cell {
     }
 
     fn quarters(&self, on: &Surface) -> [Self; 4] {
-        let middle = [0, 1].map(|j| self.low[j] + CUT[j] * (self.high[j] - self.low[j]));
+        let middle = [0, 1].map(|j| self.low[j] + SPLIT[j] * (self.high[j] - self.low[j]));
         let inside = |axis: usize| {
             let other = 1 - axis;
             let limit = on.map.limits()[other];
-            let range = [(self.low[other] - CORNER).max(limit.min), (self.high[other] + CORNER).min(limit.max)];
+            let range = [
+                (self.low[other] - CORNER_TOLERANCE_RAD).max(limit.min),
+                (self.high[other] + CORNER_TOLERANCE_RAD).min(limit.max),
+            ];
             let all = zeros(on, axis, middle[axis], range);
             halves(&Side(all), middle[other])
         };
-        // The two inner lines, each cut in half; then the outer sides, each cut in half.
+        // The two inner lines, then the outer sides, each split in two.
         let (upright, level) = (inside(0), inside(1));
         let [bottom, top] = [&self.sides[0], &self.sides[1]].map(|s| halves(s, middle[0]));
         let [left, right] = [&self.sides[2], &self.sides[3]].map(|s| halves(s, middle[1]));

@@ -1,4 +1,4 @@
-//! What lies inside a workspace: how many poses reach a point, and the curves across which their number changes.
+//! The interior of a workspace: the number of poses of a point, and the curves across which it changes.
 
 use super::Boundary;
 use super::arrangement::{Arrangement, Portion};
@@ -7,11 +7,11 @@ use super::span::BoundaryCurve;
 use crate::mechanics::planar::{Vector, unit};
 
 impl Boundary {
-    /// How many poses within the limits put the end effector on p, m, on the plane b, rad: the winding number of all
-    /// limits and folds about p, without any pose being solved for.
+    /// Returns the number of poses within the limits that put the end effector on p, m, on the plane b, rad. It is the
+    /// winding number of all limits and folds about p; no pose is solved for.
     ///
-    /// On a fold or a limit, to 1e-12 m, it is the number on one of its sides. Elsewhere it is how many
-    /// [`PlaneMap::poses`](crate::planning::reactionless::PlaneMap::poses) lists.
+    /// On a fold or a limit, within 1e-12 m, it is the number on one of its sides. Elsewhere it equals the number of
+    /// poses from [`PlaneMap::poses`](crate::planning::reactionless::PlaneMap::poses).
     pub fn pose_count(&self, p: Vector, b: f64) -> usize {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return 0;
@@ -23,15 +23,15 @@ impl Boundary {
         count.max(0) as usize
     }
 
-    /// The largest number of poses that reach one point, curves left aside.
+    /// Returns the largest number of poses of any point, except on the curves themselves.
     pub fn sheets(&self) -> usize {
         let most = self.strands.iter().map(|s| s.left.max(s.right)).max();
         most.unwrap_or(1).max(1) as usize
     }
 
-    /// Areas of the points that at least 1, 2, 3, … poses reach, m². The first is [`area`](Self::area), their sum
-    /// [`sheet_area`](Self::sheet_area). As with the boundary, some may be missing for machines of such special
-    /// proportions that whole curves coincide.
+    /// Returns the areas of the points with at least 1, 2, 3, … poses, m². The first is [`area`](Self::area), their sum
+    /// [`sheet_area`](Self::sheet_area). As with the boundary, parts may be missing for machines whose special
+    /// proportions make whole curves coincide.
     pub fn areas_by_poses(&self) -> Vec<f64> {
         let arrangement = Arrangement::of(&self.on, &self.cycle);
         let swept = |p: &Portion| self.on.swept(&self.cycle.spans[p.span], p.from, p.to);
@@ -39,8 +39,8 @@ impl Boundary {
         (1..=self.sheets() as i32).map(area).collect()
     }
 
-    /// The folds: images of det ∂(x, y)/∂(a_1, a_2) = 0 within the limits, whole, whether they bound the workspace or
-    /// run inside. Two poses meet on them; they turn back at [`cusps`](Self::cusps).
+    /// Returns the folds: the complete images of det ∂(x, y)/∂(a_1, a_2) = 0 within the limits, on the boundary or
+    /// inside. Two poses merge on them; they turn back at [`cusps`](Self::cusps).
     pub fn fold_curves(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
         let mut chains: Vec<Vec<Portion>> = Vec::new();
@@ -55,13 +55,13 @@ impl Boundary {
         chains.iter().map(|chain| BoundaryLine::of(&self.on, spans, chain)).collect()
     }
 
-    /// Where folds turn back in the workspace: three poses meet.
+    /// Returns the cusps of the folds, at which three poses merge.
     pub fn cusps(&self) -> &[Vertex] {
         &self.cusps
     }
 
-    /// Images of limits that run inside the workspace, where one pose more or less reaches a point, from crossing to
-    /// crossing.
+    /// Returns the images of limits inside the workspace, across which the number of poses changes by one, split at
+    /// intersections.
     pub fn inner_limits(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
         let is_limit = |p: &Portion| spans[p.span].curve != BoundaryCurve::Fold;

@@ -1,42 +1,44 @@
-//! Curves as vertices and chords that keep near them.
+//! Curves as vertices and chords within a tolerance.
 
 use super::arrangement::Portion;
 use super::span::{BoundaryCurve, Span, Surface};
 use crate::mechanics::planar::{Vector, cross, unit};
 use crate::planning::reactionless::PlaneMap;
 
-/// Chords between vertices keep this near to the curve, m.
-const CHORD: f64 = 0.8e-5;
-/// The same as a share of the unit of the map: small machines want them nearer, huge ones would have too many.
-const SHARE: [f64; 2] = [1e-3 * CHORD, CHORD];
+/// Maximum deviation of chords from the curve, m.
+const CHORD_TOLERANCE_M: f64 = 0.8e-5;
+/// Least and greatest tolerance as a fraction of the unit of the map: small machines need a smaller one, and for large
+/// ones a fixed tolerance would need too many chords.
+const MIN_CHORD_FRACTION: f64 = 1e-3 * CHORD_TOLERANCE_M;
+const MAX_CHORD_FRACTION: f64 = CHORD_TOLERANCE_M;
 
-/// How near to the curve the chords of a map are kept, m.
+/// Returns the tolerance of the chords of a map, m.
 pub(super) fn near(map: &PlaneMap) -> f64 {
-    CHORD.clamp(SHARE[0] * map.unit(), SHARE[1] * map.unit())
+    CHORD_TOLERANCE_M.clamp(MIN_CHORD_FRACTION * map.unit(), MAX_CHORD_FRACTION * map.unit())
 }
 
-/// A point of a curve; the curve and a are those of the piece that begins here.
+/// A point of a curve; `curve` and `a` belong to the piece that begins here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// (a_1, a_2), rad.
+    /// Plane coordinates (a_1, a_2), rad.
     pub a: [f64; 2],
-    /// Before the workspace is turned, m.
+    /// Position at b = 0, m.
     pub at: Vector,
-    /// Where it lies.
+    /// The limit, fold or change point on which it lies.
     pub curve: BoundaryCurve,
 }
 
-/// A closed curve, the workspace on its left. The last vertex is joined to the first.
+/// A closed curve with the workspace on its left. The last vertex is joined to the first.
 #[derive(Clone, Debug)]
 pub struct BoundaryLoop {
     vertices: Vec<Vertex>,
-    /// From each vertex to the next.
+    /// The portion of a span between each vertex and the next.
     portions: Vec<Portion>,
     area: f64,
 }
 
-/// A curve of the workspace from one end to the other, each chord within 1e-5 m of it. Across folds and limits, more
-/// poses are on its left.
+/// A curve of the workspace, with chords that deviate by at most 1e-5 m. Across folds and limits, more poses are on its
+/// left.
 #[derive(Clone, Debug)]
 pub struct BoundaryLine {
     vertices: Vec<Vertex>,
@@ -44,13 +46,13 @@ pub struct BoundaryLine {
 }
 
 impl BoundaryLoop {
-    /// Points of the curve, each chord within 1e-5 m of it; within 1e-5 of the reach below a metre, 1e-8 of it above
-    /// a kilometre.
+    /// Returns the points of the curve; chords deviate by at most 1e-5 m, by at most 1e-5 of the reach below a metre,
+    /// and 1e-8 of it above a kilometre.
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices
     }
 
-    /// Signed: negative for a hole, m².
+    /// Returns the signed area, m²: negative for a hole.
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -58,8 +60,8 @@ impl BoundaryLoop {
     pub(super) fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
         let (vertices, portions) = chords(on, spans, chain);
         let swept: f64 = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
-        // Slivers too thin to tell their sides apart leave gaps: what a gap sweeps about the base is far more than they
-        // hold.
+        // Slivers too thin to separate their sides leave gaps. The area that a gap sweeps about the base is much larger
+        // than that of the sliver.
         let [starts, ends] = [0, 1].map(|end| move |p: &Portion| on.at(&spans[p.span], [p.from, p.to][end]));
         let after = chain.iter().cycle().skip(1);
         let gaps: f64 = chain.iter().zip(after).map(|(p, next)| 0.5 * cross(ends(p), starts(next))).sum();
@@ -80,22 +82,22 @@ impl BoundaryLoop {
 }
 
 impl BoundaryLine {
-    /// Points of the curve from end to end; a closed one ends where it begins.
+    /// Returns the points of the curve from end to end; a closed one ends at its first point.
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices
     }
 
-    /// Whether it ends where it begins.
+    /// Whether the curve is closed.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Vertices turned by b*, rad: [`PlaneMap::turn`](crate::planning::reactionless::PlaneMap::turn) of b.
+    /// Returns the vertices turned by b*, rad: [`PlaneMap::turn`](crate::planning::reactionless::PlaneMap::turn) of b.
     pub fn turned(&self, turn: f64) -> Vec<[f64; 2]> {
         turned(&self.vertices, turn)
     }
 
-    /// Pieces that follow each other.
+    /// Returns the line of consecutive portions.
     pub(super) fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
         let (mut vertices, _) = chords(on, spans, chain);
         if let Some(last) = chain.last() {
@@ -108,7 +110,7 @@ impl BoundaryLine {
     }
 }
 
-/// Points turned by an angle.
+/// Returns vertices turned by an angle, rad.
 pub(super) fn turned(vertices: &[Vertex], turn: f64) -> Vec<[f64; 2]> {
     let turn = unit(turn);
     let point = |v: &Vertex| {
@@ -118,7 +120,7 @@ pub(super) fn turned(vertices: &[Vertex], turn: f64) -> Vec<[f64; 2]> {
     vertices.iter().map(point).collect()
 }
 
-/// The beginning of each chord, and the portion that it stands for.
+/// Returns the start vertex of each chord, and its portion of a span.
 fn chords(on: &Surface, spans: &[Span], chain: &[Portion]) -> (Vec<Vertex>, Vec<Portion>) {
     let (mut vertices, mut portions) = (Vec::new(), Vec::new());
     for part in chain {

@@ -1,21 +1,21 @@
-//! The part of (a_1, a_2) whose image is asked for: the limits, or what of them lies on one side of change points.
+//! A convex region of (a_1, a_2): the limits, or the part of them on one side of change points.
 
 use super::determinant::INSET;
 use super::fold::{self, Folds};
 use super::span::{BoundaryCurve, Span, Surface};
 use crate::mechanics::planar::{Vector, dot};
 
-/// Longest span along an edge, rad.
-const STEP: f64 = 0.35;
-/// Corners this near to a line lie on it, rad.
-const ON_LINE: f64 = 1e-9;
+/// Maximum length of a span along an edge, rad.
+const MAX_STEP_RAD: f64 = 0.35;
+/// Corners within this distance of a line lie on it, rad.
+const ON_LINE_RAD: f64 = 1e-9;
 
-/// n · a ≥ level, n of −1, 0 and 1.
+/// The half-plane n · a ≥ level, with components of n in {−1, 0, 1}.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfPlane {
     pub n: [f64; 2],
     pub level: f64,
-    /// What the line between is.
+    /// The curve that its boundary line is.
     pub curve: BoundaryCurve,
 }
 
@@ -23,15 +23,15 @@ pub(super) struct HalfPlane {
 struct Edge {
     curve: BoundaryCurve,
     ends: [[f64; 2]; 2],
-    /// The line of a cut; limits have their own zeros of det.
-    cut: Option<HalfPlane>,
+    /// The half-plane whose line the edge lies on; `None` on a limit, which finds zeros of det by itself.
+    half_plane: Option<HalfPlane>,
 }
 
 /// A convex polygon in (a_1, a_2), counter-clockwise.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     edges: Vec<Edge>,
-    cuts: Vec<HalfPlane>,
+    half_planes: Vec<HalfPlane>,
 }
 
 impl HalfPlane {
@@ -39,13 +39,13 @@ impl HalfPlane {
         self.n[0] * a[0] + self.n[1] * a[1] - self.level
     }
 
-    /// The line between as a point and a direction.
+    /// Returns the boundary line as a point and a direction.
     fn line(&self) -> [[f64; 2]; 2] {
         let norm = self.n[0] * self.n[0] + self.n[1] * self.n[1];
         [self.n.map(|n| n * self.level / norm), [-self.n[1], self.n[0]]]
     }
 
-    /// Moved in by a hair where det is 0 all along it, so that there is a sheet beside it.
+    /// Moves the line slightly inwards if det is 0 all along it, so that a sheet lies beside it.
     fn off_folds(mut self, on: &Surface) -> Self {
         let [from, way] = self.line();
         if on.det.vanishes(from, way) {
@@ -54,7 +54,7 @@ impl HalfPlane {
         self
     }
 
-    /// Zeros of det on the line between two of its points, from the first to the second.
+    /// Returns the zeros of det on the line between two of its points, from the first to the second.
     fn zeros(&self, on: &Surface, ends: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
         let [from, way] = self.line();
         let norm = way[0] * way[0] + way[1] * way[1];
@@ -68,22 +68,22 @@ impl HalfPlane {
 }
 
 impl Region {
-    /// All within the limits.
+    /// Returns the region within the limits.
     pub fn limits(on: &Surface) -> Self {
         let [a1, a2] = on.map.limits();
         let corners = [[a1.min, a2.min], [a1.max, a2.min], [a1.max, a2.max], [a1.min, a2.max]];
-        let edge = |i: usize| Edge { curve: side(i), ends: [corners[i], corners[(i + 1) % 4]], cut: None };
-        Self { edges: (0..4).map(edge).collect(), cuts: Vec::new() }
+        let edge = |i: usize| Edge { curve: side(i), ends: [corners[i], corners[(i + 1) % 4]], half_plane: None };
+        Self { edges: (0..4).map(edge).collect(), half_planes: Vec::new() }
     }
 
-    /// The part within a half-plane.
+    /// Returns the part of the region within a half-plane.
     pub fn within(mut self, on: &Surface, half: HalfPlane) -> Self {
         let half = half.off_folds(on);
-        let depth = |a: [f64; 2]| if half.depth(a).abs() < ON_LINE { 0.0 } else { half.depth(a) };
+        let depth = |a: [f64; 2]| if half.depth(a).abs() < ON_LINE_RAD { 0.0 } else { half.depth(a) };
         let crossing = |[from, to]: [[f64; 2]; 2]| {
             let share = depth(from) / (depth(from) - depth(to));
             [0, 1].map(|j| match half.n[1 - j] {
-                // Exactly on a line of constant a_j, as along limits.
+                // Exact on a line of constant a_j, as along limits.
                 0.0 => half.level / half.n[j],
                 _ => from[j] + share * (to[j] - from[j]),
             })
@@ -115,26 +115,26 @@ impl Region {
         if let (Some((place, from)), Some(to)) = (exit, entry)
             && from != to
         {
-            kept.insert(place, Edge { curve: half.curve, ends: [from, to], cut: Some(half) });
+            kept.insert(place, Edge { curve: half.curve, ends: [from, to], half_plane: Some(half) });
         }
         self.edges = kept;
-        self.cuts.push(half);
+        self.half_planes.push(half);
         self
     }
 
-    /// Whether it is a line, a point, or nothing.
+    /// Whether the region is a line, a point, or empty.
     pub fn is_thin(&self, thin: f64) -> bool {
         self.edges.len() < 3 || self.edges.iter().any(|e| self.width(e) < thin)
     }
 
-    /// How far it reaches inwards from an edge, rad.
+    /// Returns the width of the region perpendicular to an edge, rad.
     fn width(&self, edge: &Edge) -> f64 {
         let inwards = inwards(edge.ends);
         let depth = |a: [f64; 2]| dot(vector(a) - vector(edge.ends[0]), inwards);
         self.edges.iter().map(|e| depth(e.ends[0])).fold(0.0, f64::max)
     }
 
-    /// Its edges, each piece with the side of more poses on its left.
+    /// Returns the edges as spans, each with the side of more poses on its left.
     pub fn edge_spans(&self, on: &Surface) -> Vec<Span> {
         let mut spans = Vec::new();
         for edge in &self.edges {
@@ -142,7 +142,7 @@ impl Region {
             stops.extend(edge.zeros(on));
             stops.push(edge.ends[1]);
             for w in stops.windows(2) {
-                // Counter-clockwise where det > 0, which keeps orientation, else clockwise.
+                // Counter-clockwise if det > 0 (orientation is kept), else clockwise.
                 let sheet = sheet(on, [w[0], w[1]], self.width(edge));
                 let ends = if sheet > 0.0 { [w[0], w[1]] } else { [w[1], w[0]] };
                 spans.extend(along(on, edge.curve, ends));
@@ -151,29 +151,29 @@ impl Region {
         spans
     }
 
-    /// What of the folds lies inside.
+    /// Returns the parts of the folds inside the region.
     pub fn keep(&self, on: &Surface, folds: Folds) -> Folds {
-        if self.cuts.is_empty() {
+        if self.half_planes.is_empty() {
             return folds;
         }
-        let inside = |a: [f64; 2]| self.cuts.iter().all(|half| half.depth(a) > 0.0);
-        let edges = self.edges.iter().filter(|e| e.cut.is_some());
+        let inside = |a: [f64; 2]| self.half_planes.iter().all(|half| half.depth(a) > 0.0);
+        let edges = self.edges.iter().filter(|e| e.half_plane.is_some());
         let zeros: Vec<[f64; 2]> = edges.flat_map(|e| e.zeros(on)).collect();
         let mut spans = Vec::with_capacity(folds.spans.len());
         for span in &folds.spans {
-            let mut cuts: Vec<(f64, [f64; 2])> =
+            let mut splits: Vec<(f64, [f64; 2])> =
                 zeros.iter().filter_map(|&a| on.locate(span, a).map(|t| (t, a))).collect();
-            cuts.retain(|(t, _)| (1e-9..1.0 - 1e-9).contains(t));
-            if cuts.is_empty() {
+            splits.retain(|(t, _)| (1e-9..1.0 - 1e-9).contains(t));
+            if splits.is_empty() {
                 if inside(on.point(span, 0.5)) {
                     spans.push(*span);
                 }
                 continue;
             }
-            cuts.push((0.0, span.ends[0]));
-            cuts.push((1.0, span.ends[1]));
-            cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for w in cuts.windows(2) {
+            splits.push((0.0, span.ends[0]));
+            splits.push((1.0, span.ends[1]));
+            splits.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for w in splits.windows(2) {
                 if inside(on.point(span, 0.5 * (w[0].0 + w[1].0))) {
                     spans.push(on.part(span, [w[0].0, w[1].0], [w[0].1, w[1].1]));
                 }
@@ -182,7 +182,7 @@ impl Region {
         Folds { spans, cusps: folds.cusps.into_iter().filter(|&a| inside(a)).collect() }
     }
 
-    /// There and back: the outline as it is, for a region that has no inside.
+    /// Returns the outline as spans without orientation by poses, for a region without area.
     pub fn outline(&self, on: &Surface) -> Vec<Span> {
         let mut spans: Vec<Span> = self.edges.iter().flat_map(|e| along(on, e.curve, e.ends)).collect();
         if let (true, Some(edge)) = (spans.is_empty(), self.edges.first()) {
@@ -193,12 +193,12 @@ impl Region {
 }
 
 impl Edge {
-    /// Where det = 0, in the direction of the edge.
+    /// Returns the zeros of det, in the direction of the edge.
     fn zeros(&self, on: &Surface) -> Vec<[f64; 2]> {
-        if let Some(half) = self.cut {
+        if let Some(half) = self.half_plane {
             return half.zeros(on, self.ends);
         }
-        // All along the limit first: the folds end in the very same numbers.
+        // The zeros are computed along the whole limit, so that they equal the ends of the folds exactly.
         let BoundaryCurve::Limit { angle: fixed, .. } = self.curve else { return Vec::new() };
         let (other, level) = (1 - fixed, self.ends[0][fixed]);
         let whole = on.map.limits()[other];
@@ -213,7 +213,7 @@ impl Edge {
     }
 }
 
-/// The curve of an edge of the limits, counter-clockwise from a_2 at its least.
+/// Returns the curve of an edge of the limits, counter-clockwise from the edge of least a_2.
 fn side(edge: usize) -> BoundaryCurve {
     [
         BoundaryCurve::Limit { angle: 1, upper: false },
@@ -223,10 +223,10 @@ fn side(edge: usize) -> BoundaryCurve {
     ][edge % 4]
 }
 
-/// Spans along a straight part of an edge.
+/// Returns spans along a straight part of an edge.
 pub(super) fn along(on: &Surface, curve: BoundaryCurve, [from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = Span> {
     let run = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
-    let n = (run / STEP).ceil() as usize;
+    let n = (run / MAX_STEP_RAD).ceil() as usize;
     let point = move |i: usize| match i {
         0 => from,
         i if i == n => to,
@@ -239,13 +239,13 @@ fn vector(a: [f64; 2]) -> Vector {
     Vector::new(a[0], a[1])
 }
 
-/// The unit vector to the left of an edge.
+/// Returns the unit vector to the left of an edge.
 fn inwards([from, to]: [[f64; 2]; 2]) -> Vector {
     let along = vector(to) - vector(from);
     Vector::new(-along.im, along.re) / along.norm()
 }
 
-/// det beside the middle of a part of an edge: just inside where the edge itself is singular.
+/// Returns det at the middle of a part of an edge, or slightly inside if the edge itself is singular.
 fn sheet(on: &Surface, ends: [[f64; 2]; 2], width: f64) -> f64 {
     let inwards = inwards(ends);
     let values = [0.0, 1e-8, 1e-6, 1e-4, 1e-2, 0.3].map(|depth| {

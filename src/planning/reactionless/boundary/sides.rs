@@ -6,29 +6,28 @@ use super::arrangement::Portion;
 use super::line::BoundaryLine;
 use super::region::{HalfPlane, Region, along};
 use super::span::{BoundaryCurve, Span, Surface};
-use super::{Boundary, THIN};
+use super::{Boundary, MIN_WIDTH_RAD};
 use crate::planning::reactionless::PlaneMap;
 use crate::planning::reactionless::change::{Difference, PAIRS, TOUCH};
 
-/// Change points of a pair of drives within the limits: a straight line in (a_1, a_2), a curve in the workspace.
+/// The change points of a pair of drives within the limits: a straight line in (a_1, a_2), a curve in the workspace.
 #[derive(Clone, Debug)]
 pub struct ChangeCurve {
-    /// Which of [`PAIRS`].
+    /// Index of the pair in [`PAIRS`].
     pub pair: usize,
     /// m, where q_l − q_k = mπ.
     pub half_turns: i32,
-    /// (a_1, a_2) at its ends, rad.
+    /// Ends (a_1, a_2), rad.
     pub ends: [[f64; 2]; 2],
-    /// The curve.
+    /// The curve in the workspace.
     pub line: BoundaryLine,
 }
 
 impl Boundary {
-    /// The part of the workspace that poses on given sides of change points reach: those with
-    /// mπ ≤ q_l − q_k ≤ (m + 1)π for each pair of [`PAIRS`] that has an m. `None` if no pose, or only a line of them,
-    /// is there.
+    /// Returns the part of the workspace whose poses are on given sides of change points: mπ ≤ q_l − q_k ≤ (m + 1)π for
+    /// each pair of [`PAIRS`] with an m. `None` if there is no such pose, or only a line of them.
     ///
-    /// A straight line in (a_1, a_2) between two such poses stays there.
+    /// The straight line in (a_1, a_2) between two such poses consists of such poses.
     pub fn on_sides(map: &PlaneMap, half_turns: [Option<i32>; 3]) -> Option<Self> {
         let on = Surface::of(map);
         let mut region = Region::limits(&on);
@@ -45,11 +44,11 @@ impl Boundary {
                 region = region.within(&on, half);
             }
         }
-        (!region.is_thin(THIN)).then(|| Self::over(on, &region))
+        (!region.is_thin(MIN_WIDTH_RAD)).then(|| Self::over(on, &region))
     }
 
-    /// The sides of the change points of a pair that poses within the limits are on: m for mπ ≤ q_l − q_k ≤ (m + 1)π.
-    /// Empty if there is no such pair.
+    /// Returns the sides of the change points of a pair on which poses within the limits are: m for mπ ≤ q_l − q_k ≤ (m
+    /// + 1)π. Empty if there is no such pair.
     pub fn sides(&self, pair: usize) -> RangeInclusive<i32> {
         if pair >= PAIRS.len() {
             return RangeInclusive::new(1, 0);
@@ -60,8 +59,8 @@ impl Boundary {
         first..=half_turns(most - TOUCH).max(first)
     }
 
-    /// All change points between the limits: where sin(q_k − q_l) = 0 the linkage goes flat. Edges of the limits that
-    /// are such lines are not listed.
+    /// Returns all change points strictly within the limits: sin(q_k − q_l) = 0, and the linkage is flat. Limits that
+    /// are such lines are not included.
     pub fn change_curves(&self) -> Vec<ChangeCurve> {
         let mut curves = Vec::new();
         for pair in 0..PAIRS.len() {

@@ -1,8 +1,8 @@
-//! Short pieces of the curves that can bound a workspace: images of limits, and folds where det = 0.
+//! Spans: short pieces of the curves that can bound a workspace, which are images of limits, and folds with det = 0.
 //!
-//! A span is a graph in (a_1, a_2): one coordinate runs straight from end to end, the other follows the curve.
-//! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
-//! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
+//! A span is a graph in (a_1, a_2): one coordinate varies linearly between the ends, the other follows the curve. It is
+//! oriented with the side of more poses on its left: one more for a limit, two more for a fold. So all spans together
+//! are a weighted cycle whose winding number about p is the number of poses of p.
 
 use super::determinant::{Determinant, INSET, upright};
 use crate::mechanics::planar::{Vector, cross, dot};
@@ -12,18 +12,18 @@ use crate::planning::reactionless::{AngleLimit, PlaneMap};
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundaryCurve {
-    /// An angle at its limit.
+    /// A relative angle is at its limit.
     Limit {
-        /// Which angle: 0 for a_1, 1 for a_2.
+        /// Index of the angle: 0 for a_1, 1 for a_2.
         angle: usize,
-        /// At its greatest value, else at its least.
+        /// Whether it is at its greatest value, else at its least.
         upper: bool,
     },
-    /// det = 0.
+    /// A fold, det = 0.
     Fold,
-    /// A change point of a pair of drives, where a part of the workspace ends that keeps to one side of it.
+    /// A change point of a pair of drives: the boundary of the part of the workspace on one side of it.
     Change {
-        /// Which of [`PAIRS`](super::super::PAIRS).
+        /// Index of the pair in [`PAIRS`](super::super::PAIRS).
         pair: usize,
     },
 }
@@ -31,19 +31,19 @@ pub enum BoundaryCurve {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     pub curve: BoundaryCurve,
-    /// The coordinate that runs straight.
+    /// Index of the coordinate that varies linearly.
     chart: usize,
     pub ends: [[f64; 2]; 2],
     pub at: [Vector; 2],
-    /// d other / d chart at the ends.
+    /// Derivative of the other coordinate by the chart coordinate, at the ends.
     slopes: [f64; 2],
-    /// Whether the other coordinate solves det = 0, else it runs straight too.
+    /// Whether the other coordinate solves det = 0; else it varies linearly too.
     solved: bool,
-    /// The chord is never farther than this from the curve, m; a part τ of the span is within τ² times this.
+    /// Maximum distance between the chord and the curve, m; τ² times this for a part of parameter length τ.
     pub deviation: f64,
 }
 
-/// A point of a span: plane coordinates, position, derivative of the position.
+/// A point of a span: plane coordinates, position, and derivative of the position by the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jet {
     pub a: [f64; 2],
@@ -51,7 +51,7 @@ pub(super) struct Jet {
     pub rate: Vector,
 }
 
-/// What the spans live on.
+/// The map from (a_1, a_2) to positions at b = 0, with its determinant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface {
     pub map: PlaneMap,
@@ -71,22 +71,22 @@ impl Surface {
                 *limit = AngleLimit { min: limit.min + low, max: limit.max - high };
             }
         }
-        // Drawn in, limits are still limits.
+        // The narrowed limits are still valid.
         Self { map: map.with_limits(limits).unwrap_or(*map), det }
     }
 
-    /// A straight piece along one coordinate.
+    /// Returns a straight span between two points.
     pub fn straight(&self, curve: BoundaryCurve, ends: [[f64; 2]; 2]) -> Span {
         let [from, to] = ends;
         let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
         let run = to[chart] - from[chart];
         let slope = if run == 0.0 { 0.0 } else { (to[1 - chart] - from[1 - chart]) / run };
         let step = [to[0] - from[0], to[1] - from[1]];
-        // sup |P''| from its value in the middle and a bound on P'''.
+        // sup |P''| from its value at the midpoint and a bound on P'''.
         let arms = self.map.arms([0, 1].map(|j| 0.5 * (from[j] + to[j])));
         let rates = self.map.u().map(|u| u[0] * step[0] + u[1] * step[1]);
         let bend: Vector = (0..3).map(|k| arms[k] * rates[k] * rates[k]).sum();
-        // Arms that turn together move as one.
+        // Arms with equal rates move as one.
         let (mut jerk, mut seen) = (0.0, [false; 3]);
         for k in 0..3 {
             let together = |l: &usize| (rates[*l] - rates[k]).abs() < 1e-9;
@@ -105,7 +105,7 @@ impl Surface {
         }
     }
 
-    /// The piece of det = 0 between two of its points, det > 0 on its left; `None` if it is not plainly a graph.
+    /// Returns the span of det = 0 between two of its points, det > 0 on its left; `None` if it is not clearly a graph.
     pub fn fold(&self, ends: [[f64; 2]; 2]) -> Option<Span> {
         let [from, to] = ends;
         let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
@@ -133,7 +133,7 @@ impl Surface {
             span.at.reverse();
             span.slopes.reverse();
         }
-        // sup |P''| from second differences, carried on to the ends, with a margin.
+        // sup |P''| from second differences, extrapolated to the ends, with a margin.
         let p: [Vector; 9] = std::array::from_fn(|i| self.at(&span, i as f64 / 8.0));
         let bend: [Vector; 7] = std::array::from_fn(|i| 64.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]));
         let ends = [2.0 * bend[0] - bend[1], 2.0 * bend[6] - bend[5]];
@@ -141,7 +141,7 @@ impl Surface {
         Some(span)
     }
 
-    /// The part of a span between two of its points, ends and middle by their own plane coordinates.
+    /// Returns the part of a span over a parameter range, whose ends have the given plane coordinates.
     pub fn part(&self, span: &Span, range: [f64; 2], ends: [[f64; 2]; 2]) -> Span {
         let slope = |a: [f64; 2]| {
             let g = self.det.gradient(a);
@@ -156,7 +156,7 @@ impl Surface {
         }
     }
 
-    /// The parameter of a point of a span; `None` if it lies elsewhere.
+    /// Returns the parameter of a point on a span; `None` if the point is not on it.
     pub fn locate(&self, span: &Span, a: [f64; 2]) -> Option<f64> {
         let [from, to] = span.ends.map(|e| e[span.chart]);
         let t = (a[span.chart] - from) / (to - from);
@@ -164,9 +164,9 @@ impl Surface {
         there.then_some(t)
     }
 
-    /// Where the image of a fold turns back: its cusps, where the direction that det = 0 loses runs along the curve.
+    /// Returns the parameters of the cusps of a fold's image: the null vector of the Jacobian is tangent to the curve.
     pub fn cusps(&self, span: &Span) -> Vec<f64> {
-        // On the fold both columns are parallel, so that one of them tells the two senses apart.
+        // On the fold both columns are parallel, so that the component along one of them gives the sense of motion.
         let columns = |t: f64| self.map.columns(&self.map.arms(self.point(span, t)));
         let [start, end] = [columns(0.0), columns(1.0)];
         let least = |j: usize| start[j].norm().min(end[j].norm());
@@ -175,7 +175,7 @@ impl Surface {
         const N: usize = 8;
         let t = |i: usize| i as f64 / N as f64;
         let mut stops: Vec<(f64, f64)> = (0..=N).map(|i| (t(i), speed(t(i)))).collect();
-        // Two cusps close to each other show as a dip towards 0.
+        // Two cusps close to each other appear as a local minimum of |speed|.
         for i in (1..N).rev() {
             let [before, here, after] = [stops[i - 1].1, stops[i].1, stops[i + 1].1];
             let dip =
@@ -205,7 +205,7 @@ impl Surface {
         stops.windows(2).filter_map(crossing).filter(|t| (1e-9..1.0 - 1e-9).contains(t)).collect()
     }
 
-    /// Plane coordinates along a span, t from 0 to 1.
+    /// Returns the plane coordinates at t from 0 to 1.
     pub fn point(&self, span: &Span, t: f64) -> [f64; 2] {
         if t <= 0.0 {
             return span.ends[0];
@@ -232,7 +232,7 @@ impl Surface {
         a
     }
 
-    /// Position along a span.
+    /// Returns the position at t, m.
     pub fn at(&self, span: &Span, t: f64) -> Vector {
         if t <= 0.0 {
             span.at[0]
@@ -243,7 +243,7 @@ impl Surface {
         }
     }
 
-    /// Position and its derivative along a span.
+    /// Returns the position and its derivative at t.
     pub fn jet(&self, span: &Span, t: f64) -> Jet {
         let a = self.point(span, t);
         let (chart, other) = (span.chart, 1 - span.chart);
@@ -259,7 +259,7 @@ impl Surface {
         Jet { a, at: arms.iter().sum(), rate: run * (columns[chart] + slope * columns[other]) }
     }
 
-    /// ½ ∮ p × dp over a part of a span, m².
+    /// Returns ½ ∫ p × dp over a part of a span, m².
     pub fn swept(&self, span: &Span, from: f64, to: f64) -> f64 {
         let whole = self.gauss(span, from, to);
         match span.curve {
@@ -294,7 +294,7 @@ impl Surface {
 }
 
 impl Span {
-    /// How many more poses reach the left side than the right.
+    /// Returns the number of poses on the left minus that on the right.
     pub fn weight(&self) -> i32 {
         match self.curve {
             BoundaryCurve::Limit { .. } | BoundaryCurve::Change { .. } => 1,
@@ -302,18 +302,18 @@ impl Span {
         }
     }
 
-    /// The other coordinate, by the cubic through the ends with their slopes.
+    /// Returns the other coordinate by the cubic Hermite interpolant of the ends and slopes.
     fn guess(&self, t: f64) -> f64 {
         let other = 1 - self.chart;
         let run = self.ends[1][self.chart] - self.ends[0][self.chart];
-        // Written so that a straight span keeps its other coordinate to the bit.
+        // In this form a straight span keeps its other coordinate exactly.
         let (rise, s) = (self.ends[1][other] - self.ends[0][other], 1.0 - t);
         let bulge = (self.slopes[0] * run - rise) * s - (self.slopes[1] * run - rise) * t;
         self.ends[0][other] + rise * t + t * s * bulge
     }
 
-    /// Winding number about p of the part from `from` to `to`, as crossings of the ray from p towards +x;
-    /// `None` if p lies on it.
+    /// Returns the contribution of the part from `from` to `to` to the winding number about p, as signed crossings of
+    /// the ray from p towards +x; `None` if p lies on it.
     pub fn crossings(&self, on: &Surface, from: (f64, Vector), to: (f64, Vector), p: Vector) -> Option<i32> {
         let (a, b) = (from.1, to.1);
         let unit = on.map.unit();

@@ -1,4 +1,4 @@
-//! [`Cut`]: where arcs end.
+//! [`Cut`]: points at which the graphs are split into arcs.
 
 use std::f64::consts::PI;
 
@@ -8,27 +8,27 @@ use super::{Quadrilateral, bend};
 use crate::mechanics::planar::{Vector, unit};
 use crate::planning::reactionless::plane::AngleLimit;
 
-/// Folds that pass a bound by less than this count as within, rad.
-const NEAR_BOUND: f64 = 1e-3;
-/// 4 crossings of limits, 2 flat poses, 6 folds; each of these may be found several times where some merge.
+/// Folds outside the bounds of β by less than this are still included, rad.
+const BOUND_MARGIN_RAD: f64 = 1e-3;
+/// Capacity: 4 intersections with limits, 2 flat poses, 6 folds; each may be found several times where some merge.
 pub(super) const CUTS: usize = 36;
 
-/// Where a graph is cut, α modulo 2π. More cuts than needed do no harm.
+/// A point at which a graph is split, α modulo 2π. Superfluous ones do no harm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
     pub alpha: f64,
-    /// β modulo 2π, or whatever the graph says.
+    /// β modulo 2π; `None` to take it from the graph.
     pub beta: Option<f64>,
-    /// Whether β is a bound.
+    /// Whether β is at a bound.
     pub edge: bool,
 }
 
 impl Quadrilateral {
-    /// All of them.
+    /// Returns all of them.
     pub(super) fn cuts(&self) -> Few<Cut, CUTS> {
         let mut cuts = Few::new(Cut { alpha: 0.0, beta: None, edge: false });
         self.limit_crossings(|alpha, beta| cuts.push(Cut { alpha, beta: Some(beta), edge: true }));
-        // The graphs touch where an end of the feasible α is flat: they have a corner there.
+        // Where an end of the feasible α is a flat pose, both graphs touch and have a corner.
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * self.size();
         if near(self.r + self.y, self.m + self.x) {
             cuts.push(Cut { alpha: 0.0, beta: None, edge: false });
@@ -36,9 +36,9 @@ impl Quadrilateral {
         if near((self.r - self.y).abs(), (self.m - self.x).abs()) {
             cuts.push(Cut { alpha: PI, beta: None, edge: false });
         }
-        // Where the limits leave nothing of the graph, it need not be cut.
+        // Folds outside the limits need no split.
         let AngleLimit { min, max } = self.limits[1];
-        let wide = AngleLimit { min: min - NEAR_BOUND, max: max + NEAR_BOUND };
+        let wide = AngleLimit { min: min - BOUND_MARGIN_RAD, max: max + BOUND_MARGIN_RAD };
         self.folds(|alpha, beta| {
             if beta.is_none_or(|beta| lifts(beta, wide).next().is_some()) {
                 cuts.push(Cut { alpha, beta, edge: false });
@@ -47,7 +47,8 @@ impl Quadrilateral {
         cuts
     }
 
-    /// Where β is at a bound: the triangle of arm x, the point, and the other two arms held rigid.
+    /// Finds where β is at a bound, from the triangle of arm x, the vector to the point, and the other two arms held
+    /// rigid.
     fn limit_crossings(&self, mut push: impl FnMut(f64, f64)) {
         let Self { m, x, y, r, .. } = *self;
         for beta in [self.limits[1].min, self.limits[1].max] {

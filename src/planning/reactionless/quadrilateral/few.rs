@@ -1,18 +1,18 @@
-//! [`Few`]: a list on the stack.
+//! [`Few`]: a list of fixed capacity on the stack.
 
-/// A list on the stack: what does not fit is dropped.
+/// A list of fixed capacity on the stack: items beyond the capacity are dropped.
 pub(super) struct Few<T, const N: usize> {
     pub len: usize,
     pub items: [T; N],
 }
 
 impl<T: Copy, const N: usize> Few<T, N> {
-    /// Nothing; the filler is never seen.
+    /// Returns an empty list; the filler is never read.
     pub fn new(filler: T) -> Self {
         Self { len: 0, items: [filler; N] }
     }
 
-    /// One more.
+    /// Appends an item.
     pub fn push(&mut self, item: T) {
         if self.len < N {
             self.items[self.len] = item;
@@ -20,7 +20,7 @@ impl<T: Copy, const N: usize> Few<T, N> {
         }
     }
 
-    /// All.
+    /// Returns all items.
     pub fn as_slice(&self) -> &[T] {
         &self.items[..self.len]
     }

@@ -5,15 +5,15 @@ use super::few::Few;
 use crate::mechanics::planar::{Vector, cross, unit};
 
 impl Quadrilateral {
-    /// Coefficients (A, B, C) of det ∝ A sin α + B sin β + C sin(α − β).
+    /// Returns the coefficients (A, B, C) of det ∝ A sin α + B sin β + C sin(α − β).
     fn sines(&self) -> [f64; 3] {
         let Self { m, x, y, lambda, .. } = *self;
         [-lambda[2] * m * x, lambda[1] * m * y, lambda[0] * x * y]
     }
 
-    /// Where det = 0 on the curve: b turns back there. β is `None` where only α is known, roughly.
+    /// Finds the points of the curve with det = 0, where b turns back. β is `None` if only an approximate α is known.
     pub(super) fn folds(&self, mut push: impl FnMut(f64, Option<f64>)) {
-        // Both conditions are linear in (cos β, sin β). Solving them and asking for a unit vector leaves, after the
+        // Both conditions are linear in (cos β, sin β). Solving them and requiring a unit vector gives, after the
         // fourth powers cancel, a cubic in cos α:
         //     P² + sin²α L² = D²,   cos β = P/D,   sin β = sin α L/D.
         let Self { m, x, y, r, .. } = *self;
@@ -37,7 +37,7 @@ impl Quadrilateral {
             let starts = if denominator.abs() > 1e-4 * scale {
                 [Some(e[1].atan2(e[0])), None]
             } else {
-                // The two conditions are the same line: either elbow may fold.
+                // The two conditions are linearly dependent: either elbow may have the fold.
                 [1.0, -1.0].map(|sigma| Some(self.at(alpha, sigma, None).beta))
             };
             for start in starts.into_iter().flatten() {
@@ -55,7 +55,7 @@ impl Quadrilateral {
         }
     }
 
-    /// Newton's iteration on |w| = r and det = 0.
+    /// Refines a fold by Newton's iteration on |w| = r and det = 0; `None` if it leaves the start.
     fn polished_fold(&self, mut alpha: f64, mut beta: f64) -> Option<[f64; 2]> {
         let Self { m, x, y, r, .. } = *self;
         let [a, b, c] = self.sines();
@@ -88,8 +88,8 @@ impl Quadrilateral {
     }
 }
 
-/// Roots in [−1, 1] of Σ c_i x^i, and extrema and ends where it comes within `near` of zero: where two roots may have
-/// merged.
+/// Returns the roots in [−1, 1] of Σ c_i x^i, and those extrema and ends of the interval at which |value| ≤ `near`:
+/// there two roots may have merged.
 fn cubic_roots(c: [f64; 4], near: f64) -> Few<f64, 7> {
     let value = |x: f64| c[0] + x * (c[1] + x * (c[2] + x * c[3]));
     let slope = |x: f64| c[1] + x * (2.0 * c[2] + x * 3.0 * c[3]);
@@ -125,7 +125,7 @@ fn cubic_roots(c: [f64; 4], near: f64) -> Few<f64, 7> {
             let newton = x - v / slope(x);
             let inside = newton > low && newton < high;
             let next = if inside { newton } else { 0.5 * (low + high) };
-            // What Newton's step leaves is its square.
+            // The error after a Newton step is of the order of its square.
             let there = (next - x).abs() <= if inside { 1e-9 } else { 1e-15 };
             x = next;
             if there {

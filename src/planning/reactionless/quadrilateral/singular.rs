@@ -1,4 +1,4 @@
-//! Poses at which the curve is singular or ends: at B, flat, and in corners of the limits.
+//! Poses at which the curve is singular or ends: with the point at B, flat poses, and corners of the limits.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::{Quadrilateral, bend};
 use crate::mechanics::planar::unit;
 
 impl Quadrilateral {
-    /// The poses of a point at B within the limits: the triangle of the arms and its mirror image.
+    /// Visits the poses of a point at B within the limits: the triangle of the arms and its mirror image.
     pub fn triangles(&self, mut visit: impl FnMut([f64; 2])) {
         if self.y == 0.0 || self.y > self.m + self.x || self.y < (self.m - self.x).abs() {
             return;
@@ -19,7 +19,7 @@ impl Quadrilateral {
         }
     }
 
-    /// The flat poses that hold the point: all arms in one line. The curve is singular there.
+    /// Visits the flat poses of the point: all arms in one line. The curve is singular there.
     pub fn flat(&self, mut visit: impl FnMut([f64; 2])) {
         for [first, second] in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
             if self.is_level(self.m + first * self.x + second * self.y) {
@@ -29,7 +29,8 @@ impl Quadrilateral {
         }
     }
 
-    /// The corners of the limits that hold the point. The curve may meet the limits nowhere else.
+    /// Visits the corners of the limits that are poses of the point. The curve may have no other pose within the
+    /// limits.
     pub fn corners(&self, mut visit: impl FnMut([f64; 2])) {
         let [first, second] = self.limits.map(|l| [l.min, l.max]);
         let units = second.map(unit);

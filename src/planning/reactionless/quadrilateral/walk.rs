@@ -1,4 +1,4 @@
-//! The curve, arc by arc, and places along an arc.
+//! Traversal of the curve arc by arc, and points along an arc.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ use crate::mechanics::planar::{cross, unit};
 use crate::planning::reactionless::plane::AngleLimit;
 
 impl Quadrilateral {
-    /// A point of an arc by its parameter s.
+    /// Returns the point of an arc at a parameter s.
     pub fn on(&self, arc: &Arc, s: f64) -> Site {
         match arc.path {
             Path::Graph(Graph { sigma, piece }, turns) => self.turned(self.at(piece.alpha(s), sigma, None), turns),
@@ -27,12 +27,12 @@ impl Quadrilateral {
         }
     }
 
-    /// The same point with arm y turned by whole turns.
+    /// Returns the point with arm y turned by whole turns, rad.
     fn turned(&self, site: Site, turns: f64) -> Site {
         Site { beta: site.beta + turns, b: site.b + self.lambda[2] * turns, ..site }
     }
 
-    /// The point of an arc with this b, which lies between those of the ends: bracketing with inverse quadratic
+    /// Returns the point of an arc with a given b between those of the ends: bracketing with inverse quadratic
     /// interpolation (Chandrupatla).
     pub fn solve(&self, arc: &Arc, b: f64) -> Site {
         let gaps = [arc.from.b - b, arc.to.b - b];
@@ -67,7 +67,7 @@ impl Quadrilateral {
         if first.1.abs() < second.1.abs() { first.2 } else { second.2 }
     }
 
-    /// Visits the whole curve within the limits, arc by arc. Arcs that continue each other share an end.
+    /// Visits the whole curve within the limits, arc by arc. Consecutive arcs share an end.
     pub fn arcs(&self, mut visit: impl FnMut(&Arc)) {
         if self.is_rhombus() {
             return self.lines(visit);
@@ -91,11 +91,11 @@ impl Quadrilateral {
         }
     }
 
-    /// The feasible intervals of α modulo 2π, none if the quadrilateral never closes.
+    /// Returns the feasible intervals of α modulo 2π; `None` if the quadrilateral never closes.
     fn pieces(&self) -> Option<([Piece; 2], usize)> {
         let Self { m, x, y, r, .. } = *self;
         let (inner, outer) = (r + y, (r - y).abs());
-        // Full stretch is not to be lost to rounding.
+        // Rounding must not make full stretch infeasible.
         let rounding = ROUNDING * self.size();
         let closes = y > 0.0 && inner >= (m - x).abs() - rounding && outer <= m + x + rounding;
         if !closes {
@@ -104,7 +104,7 @@ impl Quadrilateral {
         let straight = inner >= m + x;
         let folded = outer <= (m - x).abs();
         let alpha = [if straight { 0.0 } else { bend(m, x, inner) }, if folded { PI } else { bend(m, x, outer) }];
-        // Where ρ = r + y arm y points back at B; where ρ = |r − y| it points on if it is the shorter.
+        // At ρ = r + y, cos γ = −1; at ρ = |r − y|, cos γ = 1 if y ≤ r, else −1.
         let cos = [-1.0, if r >= y { 1.0 } else { -1.0 }];
         let piece = |from: f64, to: f64, turning| Piece { ends: [from, to], turning };
         let whole = piece(-PI, PI, None);
@@ -121,7 +121,7 @@ impl Quadrilateral {
 
     fn arcs_over(&self, graph: Graph, span: [f64; 2], cuts: &[Cut], visit: &mut impl FnMut(&Arc)) {
         let Graph { sigma, piece } = graph;
-        // β and b of a place are worked out where the limits let an arc begin or end there.
+        // β and b of a place are computed only where an arc can begin or end within the limits.
         let end = |alpha: f64| Cut { alpha, beta: None, edge: false };
         let mut places = Few::<Cut, { CUTS + 2 }>::new(end(span[0]));
         places.push(end(span[0]));
@@ -168,7 +168,7 @@ impl Quadrilateral {
                 let ends = [*from.get_or_insert_with(|| site(i)), *known.get_or_insert_with(|| site(i + 1))];
                 visit(&self.arc(ends, s, graph, beta - middle));
             }
-            // A bound that the curve touches from outside, or that leaves no room, is met in a point.
+            // Where the curve touches a bound from outside, or both bounds coincide, it meets them in a single point.
             if let Cut { edge: true, beta: Some(edge), .. } = places[i] {
                 let from = *from.get_or_insert_with(|| site(i));
                 let turns = TAU * ((edge - from.beta) / TAU).round();
@@ -185,12 +185,12 @@ impl Quadrilateral {
         Arc { from: self.turned(from, turns), to: self.turned(to, turns), s, path: Path::Graph(graph, turns) }
     }
 
-    /// Whether all four sides are equal. Then the curve falls apart into lines, on which one pair of arms cancels.
+    /// Whether all four sides are equal. Then the curve consists of straight lines, on which one pair of arms cancels.
     fn is_rhombus(&self) -> bool {
         [self.x, self.y, self.r].iter().all(|side| (side - self.m).abs() <= ROUNDING * self.size())
     }
 
-    /// The curve of a rhombus: α = π, β = π, α − β = π, modulo 2π.
+    /// Visits the curve of a rhombus: α = π, β = π, α − β = π, modulo 2π.
     fn lines(&self, mut visit: impl FnMut(&Arc)) {
         let [first, second] = self.limits;
         let [by_turn, by_alpha, by_beta] = [-self.lambda_sum, self.lambda[1], self.lambda[2]];
