@@ -31,10 +31,10 @@ const EXTENSIONS: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 
 
 /// Returns the b at which a point, m, can be reached, each interval widened by [`PoseSpace::b_slack`].
 fn set_of(space: &PoseSpace, p: Vector) -> Result<BSet, NoReach> {
-    Ok(slackened(space, space.reach(p)?))
+    Ok(widened(space, space.reach(p)?))
 }
 
-fn slackened(space: &PoseSpace, mut set: BSet) -> BSet {
+fn widened(space: &PoseSpace, mut set: BSet) -> BSet {
     let slack = space.b_slack();
     set.intervals.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - slack, *high + slack));
     set
@@ -76,7 +76,7 @@ pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
     };
     let mends = (0..points.len()).filter_map(|i| least_move(space, points[i], i, &others(i)));
     let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-    Some(NoCommon { pair, mend: least.and_then(|mend| proved(space, points, &others(mend.point), mend)) })
+    Some(NoCommon { pair, mend: least.and_then(|mend| made_robust(space, points, &others(mend.point), mend)) })
 }
 
 /// Returns the index of a point that cannot be reached at b, and why; `None` if all can. A point that cannot be reached
@@ -134,7 +134,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),
             ..set
         };
-        let set = set.ok().map(|set| turned(slackened(space, set)));
+        let set = set.ok().map(|set| turned(widened(space, set)));
         match set.and_then(|set| shift(&set, others)) {
             Some(shift) => {
                 let half = (0.5 * shift / sum).sin();
@@ -195,7 +195,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
 
 /// Makes a move robust against rounding: lengthens it slightly if its end is infeasible, and finds decimals to print.
 /// Returns `None` if no pose was found there.
-fn proved(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
+fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
     let from = points[mend.point];
     let shared = |to: Vector| {
         let set = BSet::overlap(&[others.clone(), set_of(space, to).ok()?]).near(mend.b);

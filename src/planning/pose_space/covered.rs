@@ -119,9 +119,9 @@ impl Covered {
     }
 
     /// Marks gaps as feasible that are feasible at a neighbouring distance: a component found there exists here too.
-    pub fn covers_too(&mut self, beside: &Self) {
+    pub fn covers_too(&mut self, neighbour: &Self) {
         for i in 0..self.ends.len() {
-            self.gaps[i] |= beside.gap(self, i, true).is_some_and(|j| beside.gaps[j]);
+            self.gaps[i] |= neighbour.gap(self, i, true).is_some_and(|j| neighbour.gaps[j]);
         }
         self.spread();
     }

@@ -340,7 +340,7 @@ impl PoseSpace {
         }
         // The first term is that of drive 1; the windings change b.
         let first = turn(c.of[0]) * self.sum;
-        self.wound(0, c, a, name, &mut |a, name| {
+        self.each_winding(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
             let mut spot = spot;
             for (i, turns) in spot.curve.turns[..a.len()].iter_mut().enumerate() {
@@ -352,17 +352,17 @@ impl PoseSpace {
     }
 
     /// Visits each choice of whole turns that puts all free angles within their limits, in ascending order.
-    fn wound(&self, i: usize, c: &Pattern, mut a: PerDrive, name: u64, take: &mut impl FnMut(&PerDrive, u64)) {
+    fn each_winding(&self, i: usize, c: &Pattern, mut a: PerDrive, name: u64, take: &mut impl FnMut(&PerDrive, u64)) {
         let Some(joint) = self.joints.get(i) else { return take(&a, name) };
         if c.at[i] != At::Free {
-            return self.wound(i + 1, c, a, name, take);
+            return self.each_winding(i + 1, c, a, name, take);
         }
         let [low, high] = joint.limits;
         let mut angle = a[i];
         let mut turns = 0;
         while angle <= high + LIMIT_TOLERANCE_RAD {
             a[i] = angle.clamp(low, high);
-            self.wound(i + 1, c, a, name | turns << (4 * i), take);
+            self.each_winding(i + 1, c, a, name | turns << (4 * i), take);
             angle += TAU;
             turns += 1;
         }
@@ -384,8 +384,8 @@ fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) ->
     signature(n, nu, c, lambda).unwrap_or_else(|| by_basis(n, nu, c, lambda))
 }
 
-/// Returns the same by Haynsworth's inertia theorem: the signs of the form on the subspace are those of the form, plus
-/// those of the Schur complement of the two conditions, less two of each. `None` if a pivot is zero within rounding.
+/// Returns the same by Haynsworth's inertia theorem. The signs on the subspace are those of the form plus those of the
+/// Schur complement of the two conditions, less two of each. `None` if a pivot is zero within rounding.
 fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> Option<[bool; 2]> {
     let size = c[..n].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (mut positive, mut negative) = (0, 0);

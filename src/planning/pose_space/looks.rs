@@ -72,21 +72,21 @@ impl Looks {
 }
 
 impl PoseSpace {
-    /// Whether some pose is on the x axis at a distance from B, m, with b in a gap between the given critical poses,
-    /// which are sorted by b.
+    /// Whether some pose is on the x axis at a distance from B, m, with b in a gap between critical poses, given in
+    /// ascending b.
     pub(super) fn has_pose(&self, distance: f64, gap: &Gap, criticals: &[Critical], looks: &mut Looks) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_climbed_into(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
-                || self.is_seen(p, &gap.places(), looks)
+            return self.is_reached_by_climbs(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
+                || self.is_reached_on_grid(p, &gap.places(), looks)
                 || self.is_sampled(distance, gap, looks)
-                || (looks.careful && self.is_solved(p, 0.5 * (gap.from + gap.to)));
+                || (looks.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
         }
-        gap.places().iter().any(|b| self.is_there(p, *b))
+        gap.places().iter().any(|b| self.has_isolated_pose(p, *b))
     }
 
     /// Whether a climb from a critical pose near a gap leads into it.
-    fn is_climbed_into(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
+    fn is_reached_by_climbs(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
         let (period, n) = (self.period(), criticals.len());
         let into = (GAP_DEPTH * (gap.to - gap.from)).min(MAX_GAP_DEPTH * period);
         let past = |by: f64| (by + SAME_CRITICAL_RAD).rem_euclid(period) - SAME_CRITICAL_RAD;
@@ -111,7 +111,7 @@ impl PoseSpace {
     }
 
     /// Whether a pose at one of these b exists with the last joints held at a grid point.
-    fn is_seen(&self, p: Vector, b: &[f64], looks: &mut Looks) -> bool {
+    fn is_reached_on_grid(&self, p: Vector, b: &[f64], looks: &mut Looks) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = GRID_POINTS[(self.drives() - 4).min(GRID_POINTS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -146,7 +146,7 @@ impl PoseSpace {
                 self.lambda.dot(&q) - turn * self.sum
             };
             let found = (0..START_SAMPLES[usize::from(looks.careful)])
-                .filter_map(|i| self.comes_to(distance, self.spread(i)))
+                .filter_map(|i| self.pose_at_distance(distance, self.spread(i)))
                 .map(b);
             looks.samples.extend(found.chain([f64::NAN]));
         }
@@ -170,28 +170,28 @@ impl PoseSpace {
     pub(super) fn any_pose(&self, distance: f64, looks: &Looks) -> bool {
         let starts = START_SAMPLES[usize::from(looks.careful)];
         match self.drives() {
-            ..4 => self.is_there(Vector::new(distance, 0.0), 0.0),
-            _ if distance <= AT_BASE * self.farthest() => self.is_at_base(starts),
-            _ if (0..starts).any(|i| self.comes_to(distance, self.spread(i)).is_some()) => true,
+            ..4 => self.has_isolated_pose(Vector::new(distance, 0.0), 0.0),
+            _ if distance <= AT_BASE * self.farthest() => self.has_pose_at_base(starts),
+            _ if (0..starts).any(|i| self.pose_at_distance(distance, self.spread(i)).is_some()) => true,
             // By continuity, between a pose farther from B and one at B.
             _ => {
                 let distance_of = |i: usize| self.place(&DriveAngles(self.unturned(&self.spread(i)))).norm();
-                (0..starts).any(|i| distance_of(i) >= distance) && self.is_at_base(starts)
+                (0..starts).any(|i| distance_of(i) >= distance) && self.has_pose_at_base(starts)
             }
         }
     }
 
     /// Whether a pose at B is found from one of this many samples; if so, one exists at every b.
-    fn is_at_base(&self, starts: usize) -> bool {
+    fn has_pose_at_base(&self, starts: usize) -> bool {
         let windows = self.windows();
         let leads = |a: &PerDrive| self.solved(Vector::default(), 0.0, a, &windows).is_some();
         (0..starts).map(|i| self.spread(i)).any(|a| {
-            leads(&a) || self.comes_to(NEAR_BASE_DISTANCE * self.farthest(), a).is_some_and(|near| leads(&near))
+            leads(&a) || self.pose_at_distance(NEAR_BASE_DISTANCE * self.farthest(), a).is_some_and(|near| leads(&near))
         })
     }
 
     /// Whether a pose at a point and b is found from any sample.
-    fn is_solved(&self, p: Vector, b: f64) -> bool {
+    fn is_reached_from_samples(&self, p: Vector, b: f64) -> bool {
         let mut any = false;
         self.each_spread(p, b, &mut |_| {
             any = true;
@@ -202,7 +202,7 @@ impl PoseSpace {
 
     /// Finds a pose at a distance from B, m, by coordinate descent: the joints turn one after another, each to the
     /// angle that brings the end effector nearest to the distance.
-    fn comes_to(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
+    fn pose_at_distance(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
         let far = self.farthest();
         let at = |a: &PerDrive| self.place(&DriveAngles(self.unturned(a)));
         let mut missing = f64::INFINITY;
@@ -252,7 +252,7 @@ impl PoseSpace {
     }
 
     /// Whether a pose exists at a point and b, for up to three drives.
-    fn is_there(&self, p: Vector, b: f64) -> bool {
+    fn has_isolated_pose(&self, p: Vector, b: f64) -> bool {
         let mut any = false;
         self.each_pose(p, b, &mut |_| {
             any = true;

@@ -66,19 +66,19 @@ impl Rings {
         }
         for j in 0..self.rings.len() {
             match self.steps.get(j) {
-                Some(Step::On { first, to, .. }) => all.goes_on(j, *first, to),
-                _ => all.changes(Some(j), self.rings.get(j + 1).map(|_| j + 1)),
+                Some(Step::On { first, to, .. }) => all.join_by_edges(j, *first, to),
+                _ => all.join_along_circle(Some(j), self.rings.get(j + 1).map(|_| j + 1)),
             }
         }
         if self.rings.first().is_some_and(|ring| !ring.ends.is_empty() || ring.r > BASE_RADIUS * far) {
-            all.changes(None, Some(0));
+            all.join_along_circle(None, Some(0));
         }
-        let mut loops = all.walked();
+        let mut loops = all.collect_loops();
         let signed = |line: &[Vector]| -> f64 {
             let pairs = line.iter().zip(line.iter().cycle().skip(1));
             pairs.map(|(a, b)| 0.5 * (a.conj() * b).im).sum()
         };
-        let area = loops.iter().map(|line| signed(line)).sum::<f64>() + self.beside;
+        let area = loops.iter().map(|line| signed(line)).sum::<f64>() + self.chord_area;
         for line in &mut loops {
             line.dedup_by(|p, last| (*p - *last).norm() <= SAME_POINT * far);
             while line.len() > 1 && (line[0] - line[line.len() - 1]).norm() <= SAME_POINT * far {
@@ -101,7 +101,7 @@ struct All<'a> {
 }
 
 impl All<'_> {
-    fn goes_on(&mut self, j: usize, turned: usize, upto: &[usize]) {
+    fn join_by_edges(&mut self, j: usize, turned: usize, upto: &[usize]) {
         let n = upto.len();
         for i in 0..n {
             let points = [if i > 0 { upto[i - 1] } else { 0 }, upto[i]];
@@ -114,7 +114,7 @@ impl All<'_> {
 
     /// Joins the ends on the outer side of one circle and on the inner side of the next along that circle. Nothing lies
     /// beyond the last circle or inside the first.
-    fn changes(&mut self, inner: Option<usize>, outer: Option<usize>) {
+    fn join_along_circle(&mut self, inner: Option<usize>, outer: Option<usize>) {
         let empty = Ring::default();
         let ring = |j: Option<usize>| j.map_or(&empty, |j| &self.of.rings[j]);
         let r = inner.or(outer).map_or(0.0, |j| self.of.rings[j].r);
@@ -158,7 +158,7 @@ impl All<'_> {
     }
 
     /// Collects all loops, with the workspace on their left.
-    fn walked(&mut self) -> Vec<Vec<Vector>> {
+    fn collect_loops(&mut self) -> Vec<Vec<Vector>> {
         let mut loops = std::mem::take(&mut self.circles);
         let mut seen = vec![false; self.nodes.len()];
         for start in 0..self.nodes.len() {

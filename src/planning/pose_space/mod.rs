@@ -10,6 +10,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | c_k | the end effector is p = Σ_k c_k e^{i q_k} | m |
+//! | B | base pin, origin of p | |
 //! | λ_k | b = Σ_k λ_k q_k, (13) | 1 |
 //! | a_i | relative joint angles q_to − q_from + offset, n − 1 of them, that connect all drives | rad |
 //! | L, Λ, δ | a *compound*: drives whose relative angles are at their limits turn as one, L = Σ c_k e^{iδ_k}, Λ = Σ λ_k | m, 1, rad |

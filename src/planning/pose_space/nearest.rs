@@ -38,8 +38,8 @@ pub(super) struct Wish {
 const KKT: usize = 2 * MAX_DRIVES + 2;
 
 impl PoseSpace {
-    /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², x_i being the distance of
-    /// a_i from the midpoint of its range over half the range. Starts from a pose at p and b.
+    /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², starting from such a pose.
+    /// x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
     pub fn centred(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
         let half = |i: usize| match self.joints[i].free {
             true => f64::INFINITY,
@@ -79,11 +79,11 @@ impl PoseSpace {
                 step[i].abs() < ACTIVE_TOLERANCE_RAD
                     && (range[i][0] > -ACTIVE_TOLERANCE_RAD || range[i][1] < ACTIVE_TOLERANCE_RAD)
             };
-            let curved = self.curved((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
+            let newton_step = self.newton_step((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
                 let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
                 step.max_abs() < MAX_STEP_RAD && (0..n).all(fits)
             });
-            let tries = curved.iter().map(|step| (step, 1.0));
+            let tries = newton_step.iter().map(|step| (step, 1.0));
             let shorter = (0..MAX_HALVINGS).map(|i| (&step, 0.5f64.powi(i as i32)));
             let better = tries.chain(shorter).find_map(|(step, share)| {
                 let there = self.solved(p, b, &moved(&a, share, step), windows)?;
@@ -102,7 +102,7 @@ impl PoseSpace {
 
     /// Returns the Newton step of the optimality (KKT) conditions with some angles held; `None` if the system is
     /// singular.
-    fn curved(
+    fn newton_step(
         &self,
         (a, b): (&PerDrive, f64),
         wish: &Wish,

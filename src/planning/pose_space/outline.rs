@@ -1,7 +1,8 @@
 //! The workspace of the end effector while b is held, as an outline.
 //!
-//! b only turns the workspace about B. A point at a distance r therefore belongs to it at the angles φ = (b − β)/Σλ,
-//! for every β at which the point on the x axis can be reached. The ends of these sets of β, over r, are the boundary.
+//! b only turns the workspace about B. Let β be the values of b at which the point at a distance r on the x axis can be
+//! reached. Then the points at r that belong to the workspace have the angles φ = (b − β)/Σλ. The ends of the sets of
+//! β, over r, are the boundary.
 
 use super::loops::Traced;
 use super::space::PoseSpace;
@@ -15,7 +16,7 @@ pub struct Outline {
     pub area: f64,
     /// Length of the curve of two drives, m.
     pub length: f64,
-    /// Bounds [x_min, x_max, y_min, y_max], m.
+    /// Bounds `[x_min, x_max, y_min, y_max]`, m.
     pub extent: [f64; 4],
     /// Boundary, m: closed loops, the outer ones counter-clockwise.
     pub loops: Vec<Vec<[f64; 2]>>,

@@ -90,10 +90,10 @@ impl PoseSpace {
         // At distances just reached by straight arms, or by corners of the limits, critical values coincide and cannot
         // be distinguished: the union of the sets on both sides is taken.
         let parts = [-NEIGHBOUR_OFFSET, NEIGHBOUR_OFFSET].map(|by| {
-            let beside = (distance + by * self.farthest()).abs();
+            let neighbour = (distance + by * self.farthest()).abs();
             work.ends.clear();
-            self.criticals(beside, |c| work.ends.push(c));
-            self.joined(beside, &[], &mut work).set(period).intervals
+            self.criticals(neighbour, |c| work.ends.push(c));
+            self.joined(neighbour, &[], &mut work).set(period).intervals
         });
         BSet::union(parts.concat(), period)
     }
@@ -101,7 +101,7 @@ impl PoseSpace {
     /// Returns the feasible b at a distance from B, m, for three and more drives. Results at neighbouring distances
     /// save searches for poses. If rounding affects the result, the distance is shifted by up to twice
     /// [`NEIGHBOUR_OFFSET`]; it is returned too.
-    pub(super) fn covered(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> (f64, Covered) {
+    pub(super) fn covered(&self, distance: f64, neighbours: &[&Covered], work: &mut Work) -> (f64, Covered) {
         let mut at = distance;
         for by in [0.0, 1.0, -1.0, 2.0, -2.0] {
             at = distance + by * NEIGHBOUR_OFFSET * self.farthest();
@@ -110,12 +110,12 @@ impl PoseSpace {
                 break;
             }
         }
-        (at, self.joined(at, beside, work))
+        (at, self.joined(at, neighbours, work))
     }
 
     /// Determines which gaps between critical values are feasible: by the critical poses beside them, by neighbouring
     /// distances, or by a search for poses.
-    fn joined(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> Covered {
+    fn joined(&self, distance: f64, neighbours: &[&Covered], work: &mut Work) -> Covered {
         let period = self.period();
         work.looks.clear();
         for c in &mut work.ends {
@@ -140,7 +140,7 @@ impl PoseSpace {
         let n = merged.len();
         if n == 0 {
             // Without critical values b may go round without end: near B the machine turns as a whole.
-            let known = agreed(beside.iter().map(|seen| seen.whole())).filter(|_| beside.len() > 1);
+            let known = agreed(neighbours.iter().map(|seen| seen.whole())).filter(|_| neighbours.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
             return Covered { ends: Vec::new(), gaps: vec![whole], period };
         }
@@ -156,13 +156,14 @@ impl PoseSpace {
             // Several sheets may overlap in b. Whether one covers this gap is known from the same gap at neighbouring
             // distances, or from a search for poses.
             let seen = |seen: &Covered, all: bool| Some(seen.gaps[seen.gap(&covered, i, all)?]);
-            let on_both_sides = beside.len() > 1 && beside.iter().all(|beside| seen(beside, false).is_some());
-            let known = agreed(beside.iter().map(|beside| seen(beside, !on_both_sides)));
-            let asked = || {
+            let on_both_sides =
+                neighbours.len() > 1 && neighbours.iter().all(|neighbour| seen(neighbour, false).is_some());
+            let known = agreed(neighbours.iter().map(|neighbour| seen(neighbour, !on_both_sides)));
+            let search = || {
                 let gap = Gap { from, to, free: covered.free(i, &empty) };
                 self.has_pose(distance, &gap, &work.ends, &mut work.looks)
             };
-            if known.unwrap_or_else(asked) {
+            if known.unwrap_or_else(search) {
                 covered.gaps[i] = true;
                 covered.spread();
             } else {

@@ -107,7 +107,7 @@ pub(super) struct Rings {
     /// One for each two neighbouring circles.
     pub steps: Vec<Step>,
     /// Area between the boundary and its chords, m².
-    pub beside: f64,
+    pub chord_area: f64,
     /// Maximum deviation of chords from arcs of circles, m.
     pub chord: f64,
     /// Sum of the jumps of the boundary in excess of [`JUMP_TOLERANCE_RAD`], rad; 0 if all circles are consistent.
@@ -146,7 +146,7 @@ impl PoseSpace {
             work: Work::default(),
             carries,
             budget: [MAX_RINGS, MAX_POINTS],
-            done: Rings { rings: Vec::new(), steps: Vec::new(), beside: 0.0, chord, jumps: 0.0 },
+            done: Rings { rings: Vec::new(), steps: Vec::new(), chord_area: 0.0, chord, jumps: 0.0 },
         };
         sweep.work.looks.careful = careful;
         let mut all: Vec<(f64, Covered)> = Vec::with_capacity(INITIAL_CIRCLES + 1);
@@ -171,12 +171,12 @@ impl PoseSpace {
             before[i - 1].1.covers_too(&from[0].1);
         }
         let mut all = all.into_iter();
-        let mut from = all.next().map(|covered| sweep.ringed(covered))?;
+        let mut from = all.next().map(|covered| sweep.ring_of(covered))?;
         for (i, to) in all.enumerate() {
             if !goes_on(0.5 + 0.5 * i as f64 / INITIAL_CIRCLES as f64) {
                 return None;
             }
-            let to = sweep.ringed(to);
+            let to = sweep.ring_of(to);
             sweep.between(&from, &to);
             from = to;
         }
@@ -200,18 +200,18 @@ struct Sweep<'a> {
 #[derive(Default)]
 struct Edge {
     points: Vec<Vector>,
-    beside: f64,
+    chord_area: f64,
 }
 
 impl Sweep<'_> {
-    fn ring(&mut self, r: f64, beside: &[&Covered]) -> (Ring, Covered) {
+    fn ring(&mut self, r: f64, neighbours: &[&Covered]) -> (Ring, Covered) {
         self.budget[0] = self.budget[0].saturating_sub(1);
-        let beside = if self.carries { beside } else { &[] };
-        let covered = self.space.covered(r, beside, &mut self.work);
-        self.ringed(covered)
+        let neighbours = if self.carries { neighbours } else { &[] };
+        let covered = self.space.covered(r, neighbours, &mut self.work);
+        self.ring_of(covered)
     }
 
-    fn ringed(&self, (r, covered): (f64, Covered)) -> (Ring, Covered) {
+    fn ring_of(&self, (r, covered): (f64, Covered)) -> (Ring, Covered) {
         let n = covered.ends.len();
         let whole = covered.gaps.iter().all(|gap| *gap);
         // The angle falls as b rises.
@@ -258,16 +258,16 @@ impl Sweep<'_> {
         let (mut edge, mut upto) = (Edge::default(), Vec::with_capacity(n));
         for (i, end) in from.ends.iter().enumerate() {
             let j = (i + first) % n;
-            let before = edge.beside;
+            let before = edge.chord_area;
             self.trace([end.spot, to.ends[j].spot], [from.at(i), to.at(j)], &mut edge)?;
             // The edge of an opening end has the workspace on its left in outward direction.
             if !end.opens {
-                edge.beside = before - (edge.beside - before);
+                edge.chord_area = before - (edge.chord_area - before);
             }
             upto.push(edge.points.len());
         }
         self.budget[1] = self.budget[1].saturating_sub(edge.points.len());
-        self.done.beside += edge.beside;
+        self.done.chord_area += edge.chord_area;
         Some(Step::On { first, points: edge.points, to: upto })
     }
 
@@ -285,11 +285,11 @@ impl Sweep<'_> {
             }
         }
         let [from, to] = spots.map(|spot| spot.t);
-        self.halved(&Spot { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
+        self.bisected(&Spot { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
     }
 
     /// Does the same between two parameters t, given the middle, by bisection.
-    fn halved(
+    fn bisected(
         &self,
         middle: &Spot,
         [from, to]: [f64; 2],
@@ -313,7 +313,7 @@ impl Sweep<'_> {
         let halves = [(q2 - start).norm(), (end - q2).norm()];
         let near = apart <= CLOSE_ENDS * self.space.farthest() && halves.iter().all(|d| *d <= 0.8 * apart);
         if near && off(q2, [start, end]) <= self.done.chord {
-            edge.beside += two * 4.0 / 3.0;
+            edge.chord_area += two * 4.0 / 3.0;
             return Some(());
         }
         let [q1, q3] = [self.point(&quarters[0])?, self.point(&quarters[2])?];
@@ -326,7 +326,7 @@ impl Sweep<'_> {
         if straight || tiny || spent {
             let four = two + area(start, q1, q2) + area(q2, q3, end);
             let [finer, coarser] = [four + (four - two) / 3.0, two + two / 3.0];
-            edge.beside += finer + (finer - coarser) / 15.0 - four;
+            edge.chord_area += finer + (finer - coarser) / 15.0 - four;
             edge.points.extend([q1, q2, q3]);
             return Some(());
         }
@@ -334,8 +334,8 @@ impl Sweep<'_> {
             return None;
         }
         let half = quarters[1].t;
-        self.halved(&quarters[0], [from, half], [start, q2], depth - 1, edge)?;
+        self.bisected(&quarters[0], [from, half], [start, q2], depth - 1, edge)?;
         edge.points.push(q2);
-        self.halved(&quarters[2], [half, to], [q2, end], depth - 1, edge)
+        self.bisected(&quarters[2], [half, to], [q2, end], depth - 1, edge)
     }
 }

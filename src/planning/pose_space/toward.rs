@@ -43,24 +43,24 @@ impl PoseSpace {
     /// Returns relative angles at b with the end effector on p, m, or as near as possible, starting from others; and
     /// its distance from p, m.
     pub fn toward(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
-        let gone = self.gone(p, b, from, None);
-        if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.settled(p, b, gone) }
+        let gone = self.approach(p, b, from, None);
+        if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }
     }
 
     /// Does the same for a space [led](Self::led) to [keep](Lead::Keep) the angle of a drive, or to approach the
     /// [middle](Lead::Middle) of all ranges; `None` for other spaces.
     pub fn toward_led(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
-            Lead::Keep(kept) => Some(self.gone(p, b, from, Some(kept))),
+            Lead::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
             Lead::Middle => {
-                let (a, off) = self.gone(p, b, from, None);
+                let (a, off) = self.approach(p, b, from, None);
                 Some((self.centred(p, b, &a), off))
             }
             Lead::LeastEnergy | Lead::Weighed(_) => None,
         }
     }
 
-    fn gone(&self, p: Vector, b: f64, from: &[f64], kept: Option<usize>) -> (PerDrive, f64) {
+    fn approach(&self, p: Vector, b: f64, from: &[f64], kept: Option<usize>) -> (PerDrive, f64) {
         let reach = self.farthest();
         let mut a = self.clamped(from);
         let mut q = self.lift(&a, b);
@@ -102,7 +102,7 @@ impl PoseSpace {
     pub fn toward_beside(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let a = self.clamped(from);
         let distance = (self.place(&self.lift(&a, b)) - p).norm();
-        let settled = self.settled(p, b, (a, distance));
+        let settled = self.minimise_distance(p, b, (a, distance));
         if settled.1 > RETRY_BELOW * self.farthest() {
             return settled;
         }
@@ -111,7 +111,7 @@ impl PoseSpace {
     }
 
     /// Returns the local minimum of the distance from p, and that distance, m.
-    fn settled(&self, p: Vector, b: f64, (mut a, mut distance): (PerDrive, f64)) -> (PerDrive, f64) {
+    fn minimise_distance(&self, p: Vector, b: f64, (mut a, mut distance): (PerDrive, f64)) -> (PerDrive, f64) {
         let mut q = self.lift(&a, b);
         let mut mu = INITIAL_DAMPING;
         let mut locked = [false; MAX_DRIVES];

@@ -24,8 +24,8 @@ impl PlaneMap {
         })
     }
 
-    /// Returns the pose (a_1, a_2) of the plane b within the limits that has a drive at a given angle, rad, or as near
-    /// to it as feasible, and that is nearest to another pose.
+    /// Returns the pose (a_1, a_2) of the plane b with a drive at a given angle, rad, that is nearest to another pose.
+    /// Within the limits the drive comes as near to that angle as feasible.
     pub fn turned(&self, drive: usize, angle: f64, b: f64, from: [f64; 2]) -> [f64; 2] {
         let (w, limits) = (self.u()[drive], self.limits());
         let along = self.along(w);

@@ -1,7 +1,7 @@
 //! det ∂(x, y)/∂(a_1, a_2) as a sum of three sines, its gradient, and its zeros in closed form.
 //!
 //! With K_kl = (u_k × u_l) c_k c_l, det = Σ_{k<l} K_kl sin((u_l − u_k) · a + v_l − v_k). As two relative angles connect
-//! three drives, each u_l − u_k has integer components, so that every term is a sine of a_1, of a_2, or of their sum or
+//! three drives, each u_l − u_k has integer components. So every term is a sine of a_1, of a_2, or of their sum or
 //! difference.
 
 use std::f64::consts::TAU;

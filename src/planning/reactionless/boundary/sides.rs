@@ -47,8 +47,8 @@ impl Boundary {
         (!region.is_thin(MIN_WIDTH_RAD)).then(|| Self::over(on, &region))
     }
 
-    /// Returns the sides of the change points of a pair on which poses within the limits are: m for mπ ≤ q_l − q_k ≤ (m
-    /// + 1)π. Empty if there is no such pair.
+    /// Returns the sides of the change points of a pair on which poses within the limits are. Side m is
+    /// mπ ≤ q_l − q_k ≤ (m + 1)π. Empty if there is no such pair.
     pub fn sides(&self, pair: usize) -> RangeInclusive<i32> {
         if pair >= PAIRS.len() {
             return RangeInclusive::new(1, 0);
