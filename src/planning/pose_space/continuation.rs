@@ -4,8 +4,8 @@
 //! With p fixed, b is a function on the poses of p, and the poses at one b form connected components. As b rises, a
 //! component first ends, splits or merges at a critical pose, from which b can fall. A descent from that pose reaches
 //! the component without passing another critical pose. The same holds for falling b. So each component is found by
-//! climbing from a critical pose below it or descending from one above it. The exception are components on which b
-//! increases round and round without end: they have no critical poses.
+//! climbing from a critical pose below it or descending from one above it. The exceptions are components along which b
+//! changes without end, as turns of the whole machine: they have no critical poses.
 //!
 //! From a critical pose, b changes to first order along a joint that leaves its limit in the right sense. Otherwise it
 //! changes to second order, along the direction of largest curvature of b among those that keep p. From there on,

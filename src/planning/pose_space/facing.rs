@@ -15,7 +15,7 @@ const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 impl PoseSpace {
     /// Returns poses of four and more drives within the limits that put the end effector on `p`, m, at `b`, rad. One
     /// drive is at a given angle, rad, modulo whole turns. The poses nearest to the given relative angles come first.
-    /// Returns none if other drives are joined to the given one beyond it.
+    /// Returns no poses if other drives are joined to the given one beyond it.
     pub fn facing(&self, p: Vector, b: f64, (drive, angle): (usize, f64), near: &[f64]) -> Vec<DriveAngles> {
         let Some((rest, joint)) = self.without(drive) else { return Vec::new() };
         let rest_target = p - self.tip[drive] * unit(angle);

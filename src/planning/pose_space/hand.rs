@@ -34,8 +34,7 @@ impl PoseSpace {
         self.planes().map_or(true, |planes| planes.is_open_way([from[0], from[1]], [to[0], to[1]]))
     }
 
-    /// Returns a pose at b with the end effector on p, m, or at the nearest boundary point. `None` without planes,
-    /// where the boundary is not at hand.
+    /// Returns a pose at b with the end effector on p, m, or at the nearest boundary point; `None` without planes.
     pub fn standing(&self, p: Vector, b: f64) -> Option<DriveAngles> {
         let planes = self.planes().ok()?;
         let map = planes.map();

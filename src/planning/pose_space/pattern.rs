@@ -225,7 +225,7 @@ impl Pattern {
                     least.min(greatest) + shift - PRESELECTION_TOLERANCE_RAD,
                     least.max(greatest) + shift + PRESELECTION_TOLERANCE_RAD,
                 ];
-                // The greatest range of the angle, less whole turns, that is above the lower limit.
+                // The upper bound, less whole turns, less than one turn above the lower limit.
                 let first = high - TAU * ((high - joint.limits[0]) / TAU).floor();
                 first - (high - low) <= joint.limits[1]
             })
