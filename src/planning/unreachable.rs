@@ -32,7 +32,7 @@ pub enum Unreachable {
         would_do: String,
         /// The feasible b nearest to the given one, rad.
         nearest_b: Option<f64>,
-        /// The same as displayed: rounded to a value that is still feasible.
+        /// That b as displayed: rounded to a value that is still feasible.
         shown_b: Option<Decimal>,
     },
     /// Each point can be reached at some b, but all of them at none.
@@ -111,7 +111,7 @@ pub struct Mend {
     pub distance: f64,
     /// The b that all points then share, rad.
     pub b: f64,
-    /// The same as displayed.
+    /// The move as displayed.
     #[serde(skip)]
     pub shown: Option<ShownMend>,
 }

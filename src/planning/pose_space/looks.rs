@@ -39,7 +39,7 @@ const SAME_CRITICAL_RAD: f64 = 1e-9;
 pub(super) struct Gap {
     pub from: f64,
     pub to: f64,
-    /// How far below and above the gap critical poses may lie from which it can be reached, rad.
+    /// Maximum distances below and above the gap of critical poses from which it can be reached, rad.
     pub free: [f64; 2],
 }
 

@@ -87,7 +87,7 @@ pub(super) struct Turn {
     pub value: f64,
 }
 
-/// All that the choice of signs needs at a cell boundary: [`Pattern::stretched`] there, and the rates nearby.
+/// Values at a cell boundary for each choice of signs: [`Pattern::stretched`] there, and the rates nearby.
 #[derive(Clone, Copy)]
 struct Place {
     at: (f64, [f64; MAX_DRIVES], Vector),

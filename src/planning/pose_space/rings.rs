@@ -90,7 +90,7 @@ impl Ring {
     }
 }
 
-/// How the boundary continues from a circle to the next.
+/// Continuation of the boundary from one circle to the next.
 #[derive(Clone, Debug)]
 pub(super) enum Step {
     /// Every end continues: the first one to end `first` of the next circle. `points` lie between the circles; those of

@@ -35,7 +35,7 @@ pub struct PoseSpace {
     planes: Result<Arc<Planes>, PlaneError>,
 }
 
-/// How redundant freedoms are used while the end effector is dragged.
+/// Use of the redundant freedoms while the end effector is dragged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lead {
     /// Each step minimises the kinetic energy.
