@@ -358,7 +358,7 @@ fn least_rate_nodes(
         if i == spaces {
             break;
         }
-        for j in 0..STEPS {
+        for j in 0..STEPS_PER_INTERVAL {
             let s = (i * STEPS_PER_INTERVAL + j) as f64 * h;
             let (k1, _) = slope(&q, s)?;
             let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
