@@ -1,78 +1,84 @@
-//! [`Audit`]: what should be zero in every run, measured all the time.
+//! [`Audit`]: conservation and error figures that should be zero, computed at every instant of a run.
 //!
-//! | figure | what is compared |
+//! | figure | compared quantities |
 //! |---|---|
-//! | momentum | that of the manipulator, from its rates, with −∫ f_B dt, from its accelerations |
+//! | momentum | linear momentum of the manipulator, from its rates, with −∫ f_B dt, from its accelerations |
 //! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
-//! | energy | what is there with what motors, wheel and outer force brought and friction took |
-//! | closure | the two points of every pin that closes a loop |
-//! | step | moment that the base feels, f_B, torques and end effector, from two ways to take a step, by their peaks |
-//! | plane | b with the b that was aimed at |
+//! | energy | energy of the plant with the work of motors, wheel and outer force less the losses |
+//! | closure | positions of the two points of every pin that closes a loop |
+//! | step | moment on the base, f_B, torques and end effector of two integrations of a step, relative to their peaks |
+//! | plane | b with the reference of b |
 
 use super::peaks::Peaks;
 use super::totals::Totals;
 
-/// What should be zero.
+/// Figures that should be zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Audit {
-    /// kg m/s.
+    /// Imbalance of linear momentum, kg m/s.
     pub momentum: f64,
-    /// kg m²/s.
+    /// Imbalance of angular momentum, kg m²/s.
     pub angular: f64,
-    /// J.
+    /// Imbalance of energy, J.
     pub energy: f64,
-    /// m.
+    /// Maximum gap of a pin that closes a loop, m.
     pub closure: f64,
-    /// Error of what is shown, as a share of its peak.
+    /// Integration error of the displayed quantities, as a fraction of their peaks.
     pub step: f64,
-    /// b − b_ref, rad: the plant's own, not an error of the simulation.
+    /// b − b_ref, rad: a deviation of the plant, not an error of the simulation.
     pub plane: f64,
 }
 
-/// One figure of an audit beside what it may be.
+/// A figure of an audit with its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AuditFigure {
-    /// One or two words.
+    /// Name, one or two words.
     pub name: &'static str,
-    /// What it compares.
+    /// Compared quantities, in words.
     pub meaning: &'static str,
-    /// How far it is from zero.
+    /// Its magnitude.
     pub value: f64,
-    /// How far it may be; `None` for a figure that only tells.
+    /// Its tolerance; `None` for a figure that is only informative.
     pub limit: Option<f64>,
     /// SI unit.
     pub unit: &'static str,
 }
 
 impl AuditFigure {
-    /// Whether the figure is where it should be; one that is no number never is.
+    /// Returns whether the figure is within its tolerance; NaN never is.
     pub fn is_good(&self) -> bool {
         self.limit.is_none_or(|limit| self.value <= limit)
     }
 }
 
-/// How much of what has moved may be missing.
-const SHARE: f64 = 1e-5;
+/// Tolerance of the imbalances, as a fraction of the exchanged momentum or energy.
+const IMBALANCE_TOLERANCE: f64 = 1e-5;
 
-/// How far what is shown may be off, as a share of its peak.
-const STEP: f64 = 1e-3;
+/// Tolerance of the integration error, as a fraction of the peaks.
+const STEP_TOLERANCE: f64 = 1e-3;
 
 impl Audit {
-    /// Every figure beside what it may be, by the measure of what the run has moved.
+    /// Returns every figure with its tolerance, which scales with the peaks and totals of the run.
     pub fn figures(&self, peaks: &Peaks, totals: &Totals) -> [AuditFigure; 6] {
         let time = totals.time.max(1e-3);
         let pull = (peaks.inertial_pull * time).max(1e-6);
         let turn = (peaks.torque_sum * time).max(1e-6);
         let energy = totals.energy.max(1e-3);
-        let lamp =
+        let figure =
             |name, meaning, value: f64, limit, unit| AuditFigure { name, meaning, value: value.abs(), limit, unit };
         [
-            lamp("momentum", "momentum + ∫ f_B dt", self.momentum, Some(SHARE * pull), "kg m/s"),
-            lamp("angular", "angular momentum + ∫ n_B dt", self.angular, Some(SHARE * turn), "kg m²/s"),
-            lamp("energy", "energy − work + losses", self.energy, Some(SHARE * energy), "J"),
-            lamp("loops", "pins that close loops", self.closure, Some(1e-8), "m"),
-            lamp("step", "error of moment, force, torques, end effector", self.step, Some(STEP), "of the peak"),
-            lamp("plane", "b − b aimed at", self.plane, None, "rad"),
+            figure("momentum", "momentum + ∫ f_B dt", self.momentum, Some(IMBALANCE_TOLERANCE * pull), "kg m/s"),
+            figure("angular", "angular momentum + ∫ n_B dt", self.angular, Some(IMBALANCE_TOLERANCE * turn), "kg m²/s"),
+            figure("energy", "energy − work + losses", self.energy, Some(IMBALANCE_TOLERANCE * energy), "J"),
+            figure("loops", "pins that close loops", self.closure, Some(1e-8), "m"),
+            figure(
+                "step",
+                "error of moment, force, torques, end effector",
+                self.step,
+                Some(STEP_TOLERANCE),
+                "of the peak",
+            ),
+            figure("plane", "b − b aimed at", self.plane, None, "rad"),
         ]
     }
 }

@@ -1,14 +1,14 @@
-//! Control: the torques that the motors are told to give, computed from a model that may differ from the plant.
+//! Control: the commanded motor torques, computed from a model that may differ from the plant.
 //!
 //! | law | τ |
 //! |---|---|
 //! | computed torque | Ĥ (q̈_r + K_d ė + K_p e) + V̂ − γ̂ᵀ g |
-//! | with payload compensation | the same, with the payload that the plant holds in the model |
-//! | PD | D̂_k (K_d ė_k + K_p e_k), D̂_k what the motor turns |
+//! | with payload compensation | computed torque, with the plant's payload in the model |
+//! | PD | D̂_k (K_d ė_k + K_p e_k), D̂_k the inertia that the motor drives |
 //!
-//! All in angles relative to the base, q_k − θ, as encoders read them. Gains and torques are of the motors: of one in a
-//! joint by its own angle, q_k − q_on. With equal gains on all drives the errors of an
-//! exact model obey Σ D_k e_k = const · decay, so they stay on the plane and transmit nothing; unequal gains leak.
+//! All angles are relative to the base, q_k − θ, as encoders read them. Gains and torques refer to the motors; a motor
+//! in a joint uses its own angle, q_k − q_on. With equal gains on all drives and an exact model, Σ D_k e_k decays on
+//! its own: errors that start on the plane stay on it and transmit no moment. With unequal gains they leave the plane.
 
 use crate::mechanics::dynamics::{by_drives, first, torques};
 use crate::mechanics::machine::Inertia;
@@ -21,7 +21,7 @@ use crate::settings::word::words;
 use crate::simulation::plant::{Each, MovingBody};
 
 keyed! {
-    /// Control as a file states it.
+    /// Settings of control.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Control at "control" {
         /// What control computes: torques from the model, the same with the payload in it while it is held, or PD from the
@@ -31,7 +31,7 @@ keyed! {
         kp: Each = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
         /// Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.
         kd: Each = "40", range: Range::new(0.0, 2e5, "s⁻¹"), saved: always;
-        // A wheel in the base is no part of the model.
+        // A wheel in the base is not part of the model.
         /// Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.
         knows_base: bool = "true", when: "base.kind = free or compliant: a fixed base does not move";
         /// How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the
@@ -39,17 +39,17 @@ keyed! {
         rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz");
         // Sampled at every step if no rate is given. Until the first torque arrives the motors hold the start pose.
         /// From reading the encoders to the torque, a whole number of steps.
-        delay: f64 = "0", range: DELAY;
-        // All that control knows of the drives is rounded to them; the base is measured by other instruments, exactly.
+        delay: f64 = "0", range: DELAY_RANGE;
+        // Control knows the drive angles only to whole counts; other instruments measure the base exactly.
         /// Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.
         encoder: f64 = "0", range: Range::new(0.0, 1e12, "counts");
     }
 }
 
-const DELAY: Range = Range::new(0.0, 1.0, "s");
+const DELAY_RANGE: Range = Range::new(0.0, 1.0, "s");
 
 words! {
-    /// What a controller computes.
+    /// Control law.
     pub enum ControlLaw {
         ComputedTorque = "computed-torque", "Computed torque", "From the whole model";
         PayloadCompensation =
@@ -59,17 +59,17 @@ words! {
 }
 
 impl Control {
-    /// Whether torques are held between samples.
+    /// Returns whether torques are held between samples.
     pub fn is_sampled(&self) -> bool {
         self.rate > 0.0 || self.delay > 0.0 || self.encoder > 0.0
     }
 
-    /// Steps between samples, of `step` s each.
+    /// Returns the number of steps between samples, of `step` s each.
     pub fn period(&self, step: f64) -> u64 {
         if self.rate > 0.0 { ((1.0 / (self.rate * step)).round() as u64).max(1) } else { 1 }
     }
 
-    /// What no range says: how its numbers fit the step, s, and the drives of a machine with `n` of them.
+    /// Returns the checks that depend on the step, s, and on the number `n` of drives.
     pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<Check> {
         let mut list = Vec::new();
         let at_step = |range: Range| format!("{range} at a step of {} s", Short(step));
@@ -95,7 +95,7 @@ impl Control {
     }
 }
 
-/// The rates, Hz, nearest to one of a sample every so many steps, of `step` s each.
+/// Describes the permitted sampling rates, Hz, nearest to one sample every `steps` steps of `step` s.
 fn rates(steps: f64, step: f64) -> String {
     let every = |steps: f64| nine_digits(1.0 / (steps * step));
     let near = match steps {
@@ -106,26 +106,26 @@ fn rates(steps: f64, step: f64) -> String {
     format!("0, or {near}, at a step of {} s", Short(step))
 }
 
-/// The delays, s, of whole steps nearest to one.
+/// Describes the delays, s, of whole steps nearest to a given one.
 fn delays(delay: f64, step: f64) -> String {
     let near = [(delay / step).floor(), (delay / step).ceil()].map(|steps| steps * step);
-    let near = near.into_iter().filter(|x| DELAY.contains(*x)).map(nine_digits).collect::<Vec<_>>();
+    let near = near.into_iter().filter(|x| DELAY_RANGE.contains(*x)).map(nine_digits).collect::<Vec<_>>();
     match near.is_empty() {
-        true => DELAY.to_string(),
+        true => DELAY_RANGE.to_string(),
         false => format!("{} s, whole steps of {} s", near.join(" or "), Short(step)),
     }
 }
 
-/// What a controller reads.
+/// Measurements for a controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
     /// q_k − θ, rad.
     pub q: DriveAngles,
     /// q̇_k − θ̇, rad/s.
     pub qd: PerDrive,
-    /// e(q) of all that turns, in outer axes.
+    /// Unit vectors e(q) of all rotational coordinates, in inertial axes.
     pub e: &'a Units,
-    /// q̇ of all that turns, absolute, rad/s.
+    /// Absolute rates q̇ of all rotational coordinates, rad/s.
     pub rates: &'a PerDrive,
     /// p_B and θ.
     pub base: Pose2,
@@ -133,30 +133,30 @@ pub struct Reading<'a> {
     pub velocity: Vector,
 }
 
-/// A law with its gains and the model it believes in.
+/// A control law with its gains and its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Controller {
     law: ControlLaw,
     kp: PerDrive,
     kd: PerDrive,
-    /// The model, and the model with the payload.
+    /// The model without and with the payload.
     models: Box<[MovingBody; 2]>,
 }
 
 impl Controller {
-    /// For a machine of `n` drives.
+    /// Builds a controller for a machine of `n` drives.
     pub fn new(control: &Control, n: usize, models: [MovingBody; 2]) -> Self {
         Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
     }
 
-    /// Takes over what another controller assumes of the preload of a compliant base.
+    /// Copies the preload of a compliant base from another controller.
     pub(crate) fn preload_as(&mut self, other: &Self) {
         for model in self.models.iter_mut() {
             *model = model.clone().preloaded_as(&other.models[0]);
         }
     }
 
-    /// The torques that hold the pose of a reading at rest, N m, by what the model knows.
+    /// Returns the torques that hold the pose of a reading at rest according to the model, N m.
     pub fn holding(&self, reading: &Reading, loaded: bool) -> PerDrive {
         let still = PerDrive::zeros(reading.q.len());
         let rates = PerDrive::zeros(reading.rates.len());
@@ -164,20 +164,20 @@ impl Controller {
         self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
     }
 
-    /// The manipulator that it believes in, without the payload.
+    /// Returns the manipulator of the model, without the payload.
     #[inline]
     pub(crate) fn arm(&self) -> &Inertia {
         self.models[0].arm()
     }
 
-    /// Motor torques, N m; `loaded` while the plant holds its payload.
+    /// Returns the motor torques, N m; `loaded` while the plant holds its payload.
     pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
         let size = reading.rates.len();
         by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded))
     }
 
-    /// The same at the machine's own size, of angles and rates relative to the base, on one that `MOVES` or not; zero
-    /// beyond the drives.
+    /// Returns the motor torques, N m, for a compile-time size `N`, with q and q̇ relative to the base, which `MOVES`
+    /// or not. Entries beyond the drives are zero.
     #[inline(always)]
     pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
         &self,
@@ -210,7 +210,7 @@ impl Controller {
         } else if model.moves() {
             model.torque_for(&wanted, e, rate, base, velocity)
         } else {
-            // In the base's own axes.
+            // The model takes the base to be fixed: use the base's own axes.
             let turn = e[N - 1].conj();
             let mut torque = torques(model.arm(), &e.map(|e| e * turn), qd, &wanted, model.around());
             torque[N - 1] = 0.0;
@@ -220,7 +220,7 @@ impl Controller {
         torque
     }
 
-    /// What the gains make of the errors of the motors' own angles.
+    /// Computes the feedback from the errors of the motors' own angles.
     #[inline(never)]
     fn by_motors<const N: usize>(
         &self,

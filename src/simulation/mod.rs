@@ -1,4 +1,4 @@
-//! What then happens: the plant under control, step by step, and everything that is true at each instant.
+//! Simulation of the plant under control, step by step, with all quantities at each instant.
 
 pub mod audit;
 pub mod control;

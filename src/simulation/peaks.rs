@@ -1,8 +1,8 @@
-//! [`Peaks`]: the largest values of a run, and whether they count as none.
+//! [`Peaks`]: peak values of a run, and whether they count as zero.
 
 use crate::mechanics::planar::PerDrive;
 
-/// Largest values over a run.
+/// Peak values over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peaks {
     /// |τ_k|, N m.
@@ -11,24 +11,24 @@ pub struct Peaks {
     pub torque_sum: f64,
     /// Dynamic |f_B|, N.
     pub force: f64,
-    /// |n_B|, what the arm transmits, N m.
+    /// |n_B|, the moment that the arm transmits, N m.
     pub arm_moment: f64,
-    /// The moment on the base past a reaction wheel, |n_B − τ_w|, N m; without one, |n_B|.
+    /// Net moment on the base with a reaction wheel, |n_B − τ_w|, N m; without one, |n_B|.
     pub moment: f64,
-    /// Σ_j m_j |a_cj|, N: the force that the links would transmit if nothing cancelled.
+    /// Σ_j m_j |a_cj|, N: the force that the links would transmit without cancellation.
     pub inertial_pull: f64,
-    /// Force of weight and of what is held against the end effector, N: rounding is a part of it.
+    /// Static force of weight and of the force at the end effector, N: the scale of rounding errors.
     pub weight: f64,
     /// |q̇_k − θ̇|, rad/s.
     pub rate: PerDrive,
-    /// The moment that tilts the base, from heights along the axis, N m.
+    /// Moment that tilts the base, due to heights along the axis, N m.
     pub tilt: f64,
-    /// By how much a relative joint angle has passed a limit, rad, and which, in the machine's order.
+    /// Maximum distance of a relative joint angle beyond a limit, rad, and index of the angle in the machine's order.
     pub past_limit: (f64, usize),
 }
 
 impl Peaks {
-    /// The peaks of a run that has not begun.
+    /// Returns zero peaks for a number of drives.
     pub fn zero(drives: usize) -> Self {
         Self {
             torque: PerDrive::zeros(drives),
@@ -44,7 +44,7 @@ impl Peaks {
         }
     }
 
-    /// Takes in one more instant, given as peaks of its own.
+    /// Includes one more instant, given as peaks of its own.
     pub(crate) fn include(&mut self, now: &Self) {
         for (peak, t) in self.torque.iter_mut().zip(now.torque.iter()) {
             *peak = worse(*peak, t.abs());
@@ -64,46 +64,46 @@ impl Peaks {
         }
     }
 
-    /// A moment up to this counts as zero, N m: a part of the torques, or rounding of what weight does.
+    /// Returns the moment up to which a moment counts as zero, N m: a fraction of the torques plus rounding of weight.
     pub(super) fn no_moment(&self) -> f64 {
         REACTIONLESS * self.torque_sum + ROUNDING * self.weight
     }
 
-    /// A force up to this counts as zero, N.
+    /// Returns the force up to which a force counts as zero, N.
     pub(super) fn no_force(&self) -> f64 {
         REACTIONLESS * self.inertial_pull + ROUNDING * self.weight
     }
 
-    /// What the arm does: peak |n_B| at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B| at most 1e-6 of peak Σ m_j
-    /// |a_cj|.
+    /// Returns whether the arm transmits no reaction: peak |n_B| is at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B|
+    /// at most 1e-6 of peak Σ m_j |a_cj|, both plus rounding of weight.
     pub fn is_reactionless(&self) -> bool {
         self.arm_moment <= self.no_moment() && self.force <= self.no_force()
     }
 
-    /// Whether n_B is more than rounding.
+    /// Returns whether n_B counts as nonzero.
     pub fn transmits_moment(&self) -> bool {
         self.arm_moment > self.no_moment()
     }
 
-    /// Whether the dynamic f_B is more than rounding.
+    /// Returns whether the dynamic f_B counts as nonzero.
     pub fn transmits_force(&self) -> bool {
         self.force > self.no_force()
     }
 
-    /// What the base feels, past a reaction wheel if it has one, by the same measure.
+    /// Returns whether the net moment, including a reaction wheel, and the dynamic force on the base count as zero.
     pub fn base_feels_nothing(&self) -> bool {
         self.moment <= self.no_moment() && self.force <= self.no_force()
     }
 }
 
-/// The larger of two, and not a number if either is not: a run that has blown up is never called reactionless.
+/// Returns the larger of two numbers, or NaN if either is NaN, so that a diverged run never counts as reactionless.
 #[inline]
 fn worse(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// Peaks below this part of what moves count as zero.
+/// Peaks below this fraction of torques or inertial forces count as zero.
 pub const REACTIONLESS: f64 = 1e-6;
 
-/// What rounding leaves of weight that is not carried, as in free fall; of moments, for each metre.
+/// Relative rounding error of weight that is not carried, as in free fall; for moments per metre of lever.
 const ROUNDING: f64 = 1e-12;

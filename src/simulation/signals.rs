@@ -1,4 +1,4 @@
-//! The one table of signals: a row is a plot, a series of the recording and a column of the CSV.
+//! Table of signals: each row is a plot, a series of the recording and a column of the CSV.
 
 use crate::mechanics::joint_forces::{self, Joints, KEPT};
 use crate::mechanics::machine::{Inertia, Machine};
@@ -7,18 +7,18 @@ use crate::query::Quick;
 use crate::settings::number::subscript;
 use crate::simulation::frame::Frame;
 
-/// A number that a [`Frame`] holds, with its name and unit.
+/// A number in a [`Frame`], with its name and unit.
 #[derive(Clone, Debug)]
 pub struct Signal {
-    /// Unique, with `/` between its parts: `torque/1`.
+    /// Unique path with `/` between its parts: `torque/1`.
     pub path: String,
-    /// As the paper writes it: `τ₁`.
+    /// Symbol in the paper's notation: `τ₁`.
     pub symbol: String,
-    /// What it is, in words.
+    /// Meaning in words.
     pub label: String,
     /// SI unit, `1` for none.
     pub unit: &'static str,
-    /// Drive or angle whose colour it has, counted from 0.
+    /// Drive whose colour it has, counted from 0.
     pub drive: Option<usize>,
     quantity: Quantity,
 }
@@ -29,8 +29,8 @@ enum Quantity {
     Whole(fn(&Frame) -> f64),
 }
 
-/// By what they are called, and by their place among the drives, angles or pins of a machine: the same path may stand
-/// for another drive of another machine.
+/// Compares paths and indices among the drives, angles or pins: the same path may mean another drive on another
+/// machine.
 impl PartialEq for Signal {
     fn eq(&self, other: &Self) -> bool {
         let place = |signal: &Self| match signal.quantity {
@@ -42,7 +42,7 @@ impl PartialEq for Signal {
 }
 
 impl Signal {
-    /// Its value at one instant.
+    /// Returns the value at one instant.
     #[inline]
     pub fn value(&self, frame: &Frame) -> f64 {
         match self.quantity {
@@ -51,13 +51,13 @@ impl Signal {
         }
     }
 
-    /// The first part of the path: signals of one group share a plot and a unit.
+    /// Returns the first part of the path: signals of one group share a plot and a unit.
     pub fn group(&self) -> &str {
         self.path.split('/').next().unwrap_or(&self.path)
     }
 }
 
-/// The signals of a machine.
+/// Query for the signals of a machine.
 #[derive(Debug)]
 pub struct SignalsOf;
 
@@ -70,7 +70,7 @@ impl Quick for SignalsOf {
     }
 }
 
-/// Every signal of a machine, in a fixed order.
+/// Returns every signal of a machine, in a fixed order.
 pub fn signals(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let n = machine.drives();
@@ -185,7 +185,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
     table
 }
 
-/// Inside the machine: pins, as far as statics determines their forces, tilting moments and change points.
+/// Returns the signals of pin forces, if statics determines them, of tilting moments and of change points.
 fn inside(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {

@@ -1,37 +1,37 @@
-//! [`Totals`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the
-//! base.
+//! [`Totals`]: time integrals and extremes of a run so far: root mean squares, impulses, energy, motion of the base.
 
 use crate::mechanics::dynamics::BaseWrench;
 use crate::mechanics::planar::length;
 use crate::simulation::plant::Slope;
 
-/// Sums over a run.
+/// Time integrals and extremes over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
     /// Time covered, s.
     pub time: f64,
     /// ∫ |f_B|² dt of the dynamic part, N² s.
     pub force_squared: f64,
-    /// ∫ n_B² dt of what the arm transmits, N² m² s.
+    /// ∫ n_B² dt of the moment that the arm transmits, N² m² s.
     pub arm_moment_squared: f64,
-    /// ∫ n² dt of the moment that the base feels, past a reaction wheel, N² m² s.
+    /// ∫ n² dt of the net moment on the base, including a reaction wheel, N² m² s.
     pub moment_squared: f64,
     /// ∫ |f_B| dt of the dynamic part, N s.
     pub force_impulse: f64,
-    /// ∫ |n| dt of the moment that the base feels, N m s.
+    /// ∫ |n| dt of the net moment on the base, N m s.
     pub moment_impulse: f64,
-    /// ∫ Σ |τ_k (q̇_k − θ̇)| dt, the wheel's too: what motors that cannot take energy back take, J.
+    /// ∫ Σ |τ_k (q̇_k − θ̇)| dt including the wheel: the energy of motors without recuperation, J.
     pub energy: f64,
-    /// Largest |p_B|, m.
+    /// Maximum |p_B|, m.
     pub shift: f64,
-    /// Largest |θ|, rad.
+    /// Maximum |θ|, rad.
     pub base_angle: f64,
-    /// Largest |Ω| of a reaction wheel, rad/s.
+    /// Maximum |Ω| of a reaction wheel, rad/s.
     pub wheel_rate: f64,
     /// ∫ Ω dt of a reaction wheel, rad.
     pub wheel_turn: f64,
-    /// When a reaction wheel first could not give what was wanted, s; `None`: never.
+    /// Time at which a reaction wheel first saturated, s; `None` if never.
     pub saturated: Option<f64>,
+    /// Integrands at the last instant.
     last: Integrands,
 }
 
@@ -45,8 +45,7 @@ struct Integrands {
 }
 
 impl Totals {
-    /// Takes in one more instant, with what the manipulator transmits and its dynamic |f_B|, N, at a time, s, by the
-    /// trapezoidal rule.
+    /// Adds one more instant by the trapezoidal rule: the base wrench, its dynamic |f_B|, N, and the time, s.
     pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, force: f64, time: f64) {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);
         let powers = x.torque.iter().zip(x.qd.iter()).map(|(t, qd)| (t * (qd - turning)).abs());
@@ -75,17 +74,17 @@ impl Totals {
         (self.last, self.time) = (now, time);
     }
 
-    /// Root mean square of the dynamic |f_B|, N.
+    /// Returns the root mean square of the dynamic |f_B|, N.
     pub fn force_rms(&self) -> f64 {
         rms(self.force_squared, self.time)
     }
 
-    /// Root mean square of n_B, what the arm transmits, N m.
+    /// Returns the root mean square of n_B, the moment that the arm transmits, N m.
     pub fn arm_moment_rms(&self) -> f64 {
         rms(self.arm_moment_squared, self.time)
     }
 
-    /// Root mean square of the moment that the base feels, past a reaction wheel, N m.
+    /// Returns the root mean square of the net moment on the base, including a reaction wheel, N m.
     pub fn moment_rms(&self) -> f64 {
         rms(self.moment_squared, self.time)
     }

@@ -1,7 +1,7 @@
 //! Curves in a plane, of the end effector or of (a_1, a_2): p(s) for s from 0 to 1, with exact derivatives.
 //!
-//! A curve is made of pieces that join with two continuous derivatives. Where it cannot (a corner at which to stop), it
-//! is two curves.
+//! A curve consists of pieces that join with two continuous derivatives. At a corner where the motion has to stop, one
+//! curve ends and another begins.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::mechanics::planar::{Vector, cross, dot, unit};
 use crate::settings::number::counted;
 
-/// A place on a curve and how it changes with s.
+/// A point of a curve with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// p, m.
@@ -28,7 +28,7 @@ pub struct Curve {
     length: f64,
 }
 
-/// A part of a curve from one s to another.
+/// A piece of a curve over an interval of s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     from: f64,
@@ -36,7 +36,7 @@ struct Piece {
     shape: Shape,
 }
 
-/// A shape over u from 0 to 1.
+/// Formula of a piece over its local parameter u, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
     /// Σ c_i u^i.
@@ -45,21 +45,21 @@ enum Shape {
     Arc { centre: Vector, arm: Vector, sweep: f64 },
 }
 
-/// Why points give no curve.
+/// Why points do not define a curve.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CurveError {
     /// Not enough points.
     #[error("{}: want {want}", counted(got, "point"))]
     Count {
-        /// How many there are.
+        /// Number of points.
         got: usize,
-        /// How many would be right.
+        /// Required number, in words.
         want: &'static str,
     },
-    /// Two neighbours are one point.
+    /// Two neighbouring points coincide; their indices, counted from 0.
     #[error("points {} and {} are the same: want them apart", .0 + 1, .1 + 1)]
     Coincident(usize, usize),
-    /// No circle goes through them.
+    /// The three points lie on a line.
     #[error("the three points lie on a line, so no arc goes through them: move the middle one aside")]
     Collinear,
     /// A coordinate is not a number.
@@ -67,18 +67,18 @@ pub enum CurveError {
     NotFinite(usize),
 }
 
-/// Points nearer than this to each other are one, m or rad.
-const SAME_POINT: f64 = 1e-9;
-/// A corner sharper than this, rad, turns back: it cannot be blended.
-const TURNS_BACK: f64 = 3.05;
+/// Points closer than this are treated as coincident, m or rad.
+const COINCIDENT_BELOW: f64 = 1e-9;
+/// A corner that turns by more than this is not blended, rad: the line turns back there.
+const MAX_BLENDED_TURN_RAD: f64 = 3.05;
 
 impl Curve {
-    /// A straight line.
+    /// Returns the straight line between two points.
     pub fn line(from: Vector, to: Vector) -> Self {
-        Self::of(vec![(line(from, to), (to - from).norm().max(SAME_POINT))])
+        Self::of(vec![(line(from, to), (to - from).norm().max(COINCIDENT_BELOW))])
     }
 
-    /// The arc from the first point through the second to the third, or on to the first again.
+    /// Returns the arc from the first point through the second to the third, or the whole circle if `closed`.
     ///
     /// # Errors
     /// If the points do not determine a circle.
@@ -90,7 +90,7 @@ impl Curve {
         if turn.abs() <= 1e-6 * ab.norm() * ac.norm() {
             return Err(CurveError::Collinear);
         }
-        // The circumcentre, from a.
+        // The circumcentre, relative to a.
         let i = Vector::new(0.0, 1.0);
         let centre = a + i * (ac * ab.norm_sqr() - ab * ac.norm_sqr()) / (-2.0 * turn);
         let arm = a - centre;
@@ -99,10 +99,11 @@ impl Curve {
         Ok(Self::of(vec![(Shape::Arc { centre, arm, sweep }, sweep.abs() * arm.norm())]))
     }
 
-    /// The cubic spline through points, with natural ends or closed; its knots are spaced as the points are.
+    /// Returns the cubic spline through points, with natural end conditions or closed. Its knots are spaced by the
+    /// distances between the points.
     ///
     /// # Errors
-    /// If there are too few, or two neighbours are one.
+    /// If there are too few points, or two neighbours coincide.
     pub fn spline(points: &[Vector], closed: bool) -> Result<Self, CurveError> {
         check(points, closed)?;
         let want = if closed { 3 } else { 2 };
@@ -123,12 +124,12 @@ impl Curve {
         Ok(Self::of((0..h.len()).map(piece).collect()))
     }
 
-    /// Straight lines through points. Corners are rounded by a curve that begins and ends `blend` from the corner, or
-    /// as far as half of the shorter line; where `blend` is 0, and where the line turns back, the curve ends and
-    /// another begins.
+    /// Returns straight lines through points. A quintic rounds each corner: it begins and ends at the distance `blend`
+    /// from the corner, but at most half of the shorter line. Where `blend` is 0 or the line turns back, the curve ends
+    /// and another begins.
     ///
     /// # Errors
-    /// If there are fewer than two, or two neighbours are one.
+    /// If there are fewer than two points, or two neighbours coincide.
     pub fn polyline(points: &[Vector], closed: bool, blend: f64) -> Result<Vec<Self>, CurveError> {
         check(points, closed)?;
         let n = points.len();
@@ -139,12 +140,12 @@ impl Curve {
         corners.extend(closed.then(|| points[0]));
         let last = corners.len() - 1;
         let along = |i: usize| corners[i + 1] - corners[i];
-        // How far from corner i its blend begins; none where the curve stops.
+        // Distance from corner i at which its blend begins; 0 where the curve ends.
         let room = |i: usize| {
             let (before, after) = (along(i - 1), along(i));
             let turn = (after / before).arg().abs();
             let room = blend.min(0.5 * before.norm()).min(0.5 * after.norm());
-            if (1e-9..=TURNS_BACK).contains(&turn) { room.max(0.0) } else { 0.0 }
+            if (1e-9..=MAX_BLENDED_TURN_RAD).contains(&turn) { room.max(0.0) } else { 0.0 }
         };
         let straight = |i: usize| (along(i) / along(i - 1)).arg().abs() < 1e-9;
         let mut curves = Vec::new();
@@ -154,7 +155,7 @@ impl Curve {
             let d = if i == last { 0.0 } else { room(i) };
             let direction = along(i - 1) / along(i - 1).norm();
             let end = corner - d * direction;
-            if (end - at).norm() > SAME_POINT {
+            if (end - at).norm() > COINCIDENT_BELOW {
                 pieces.push((line(at, end), (end - at).norm()));
             }
             at = end;
@@ -169,10 +170,10 @@ impl Curve {
         Ok(curves)
     }
 
-    /// A curve drawn by hand: pauses and tremble are taken out, and a spline goes through what is left.
+    /// Returns a smooth curve along points drawn freehand: removes pauses and tremor and fits a spline.
     ///
     /// # Errors
-    /// If there are fewer than two points apart from each other.
+    /// If fewer than two distinct points remain, or a coordinate is not finite.
     pub fn freehand(points: &[Vector], closed: bool) -> Result<Self, CurveError> {
         if let Some(i) = points.iter().position(|p| !p.is_finite()) {
             return Err(CurveError::NotFinite(i));
@@ -187,12 +188,12 @@ impl Curve {
             return Err(CurveError::Count { got: drawn.len(), want: "at least 2 that are apart" });
         }
         let length: f64 = drawn.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        // Evenly along the line, then smoothed, then every few of them.
-        let (even, spacing) = resampled(&drawn, length, 8 * HAND_SPACES);
+        // Resample evenly along the line, smooth, and take every eighth point as a knot.
+        let (even, spacing) = resampled(&drawn, length, 8 * FREEHAND_INTERVALS);
         let smooth = smoothed(&even, (0.012 / spacing).clamp(1.0, 24.0));
-        let mut knots: Vec<Vector> = Vec::with_capacity(HAND_SPACES + 1);
-        for i in 0..=HAND_SPACES {
-            // A hand that goes there and back comes by the same place.
+        let mut knots: Vec<Vector> = Vec::with_capacity(FREEHAND_INTERVALS + 1);
+        for i in 0..=FREEHAND_INTERVALS {
+            // A stroke that goes there and back may give coincident knots.
             if knots.last().is_none_or(|last| (smooth[8 * i] - last).norm() > 1e-3 * spacing) {
                 knots.push(smooth[8 * i]);
             }
@@ -204,8 +205,8 @@ impl Curve {
         Self::spline(&knots, closed && knots.len() > 2)
     }
 
-    /// Through places that are passed at given s with given derivatives by s, joined by quintics: s is the caller's,
-    /// such as t/T. `None` if the s do not rise from 0 to 1, or differ in number from the places.
+    /// Returns the curve of quintics through given points and derivatives at given s. The caller defines s, such as
+    /// t/T. Returns `None` if the s do not rise from 0 to 1, or if their number differs from that of the points.
     pub fn through(stations: &[f64], nodes: &[CurvePoint]) -> Option<Self> {
         let last = stations.len().checked_sub(1).filter(|n| *n > 0 && nodes.len() == stations.len())?;
         if stations[0] != 0.0 || stations[last] != 1.0 || !stations.windows(2).all(|w| w[0] < w[1]) {
@@ -221,7 +222,7 @@ impl Curve {
             Piece { from, to, shape }
         };
         let length: f64 = nodes.windows(2).map(|w| (w[1].p - w[0].p).norm()).sum();
-        Some(Self { pieces: (0..last).map(piece).collect(), length: length.max(SAME_POINT) })
+        Some(Self { pieces: (0..last).map(piece).collect(), length: length.max(COINCIDENT_BELOW) })
     }
 
     fn of(shapes: Vec<(Shape, f64)>) -> Self {
@@ -237,17 +238,19 @@ impl Curve {
         Self { pieces: shapes.into_iter().enumerate().map(piece).collect(), length }
     }
 
-    /// Length of what s is measured by: exact for lines and arcs, the chords of a spline; m or rad.
+    /// Returns the length of the curve, m or rad: exact for lines and arcs, the sum of the chords for splines, twice
+    /// the blend distance for a rounded corner.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Where pieces join, from 0 to 1: between these the curve has all derivatives.
+    /// Returns the s at which pieces join, with 0 and 1: between these the curve has all derivatives.
     pub fn joints(&self) -> impl Iterator<Item = f64> + '_ {
         std::iter::once(0.0).chain(self.pieces.iter().map(|p| p.to))
     }
 
-    /// The joints, and places between them so dense that the curve changes little from one to the next.
+    /// Returns the s of the joints and of points between them, so dense that the curve changes little between
+    /// neighbours.
     pub fn places(&self) -> impl Iterator<Item = f64> + '_ {
         let parts = |piece: &Piece| {
             let spaces = if piece.shape.is_straight() { 1 } else { 16 };
@@ -257,7 +260,7 @@ impl Curve {
         std::iter::once(0.0).chain(self.pieces.iter().flat_map(parts))
     }
 
-    /// The place at s, clamped to 0..1.
+    /// Returns the point at s, clamped to 0..1, and its derivatives.
     pub fn at(&self, s: f64) -> CurvePoint {
         let s = s.clamp(0.0, 1.0);
         let i = self.pieces.partition_point(|p| p.to < s).min(self.pieces.len() - 1);
@@ -267,7 +270,7 @@ impl Curve {
         CurvePoint { p: local.p, first: local.first / run, second: local.second / (run * run) }
     }
 
-    /// d³p/ds³ at s, clamped to 0..1.
+    /// Returns d³p/ds³ at s, clamped to 0..1.
     pub fn third(&self, s: f64) -> Vector {
         let s = s.clamp(0.0, 1.0);
         let piece = &self.pieces[self.pieces.partition_point(|p| p.to < s).min(self.pieces.len() - 1)];
@@ -275,7 +278,7 @@ impl Curve {
         piece.shape.third((s - piece.from) / run) / (run * run * run)
     }
 
-    /// The s of the point nearest to p, among `samples` and between them to first order.
+    /// Returns the s of the point nearest to p: the best of `samples` + 1 even samples, refined to first order.
     pub fn nearest(&self, p: Vector, samples: usize) -> f64 {
         let n = samples.max(2);
         let distance = |i: usize| (self.at(i as f64 / n as f64).p - p).norm_sqr();
@@ -320,7 +323,7 @@ fn check(points: &[Vector], closed: bool) -> Result<(), CurveError> {
     if let Some(i) = points.iter().position(|p| !p.is_finite()) {
         return Err(CurveError::NotFinite(i));
     }
-    let close = |i: &usize| (points[(i + 1) % points.len()] - points[*i]).norm() <= SAME_POINT;
+    let close = |i: &usize| (points[(i + 1) % points.len()] - points[*i]).norm() <= COINCIDENT_BELOW;
     let neighbours = if closed { points.len() } else { points.len().saturating_sub(1) };
     (0..neighbours).find(close).map_or(Ok(()), |i| Err(CurveError::Coincident(i, (i + 1) % points.len())))
 }
@@ -330,8 +333,8 @@ fn line(from: Vector, to: Vector) -> Shape {
     Shape::Polynomial([from, to - from, zero, zero, zero, zero])
 }
 
-/// A quintic from one line into another, a corner's distance d long on either side: it leaves and meets the lines with
-/// their own speed and without curvature.
+/// Returns the quintic that rounds a corner, from the distance d before it to the distance d after it. It meets both
+/// lines with their speed and with zero second derivative.
 fn blended(from: Vector, direction: Vector, to: Vector, onwards: Vector, d: f64) -> Shape {
     let step = 0.4 * d;
     let b = [
@@ -342,7 +345,7 @@ fn blended(from: Vector, direction: Vector, to: Vector, onwards: Vector, d: f64)
         to - step * onwards,
         to,
     ];
-    // From Bézier's control points to powers.
+    // From Bézier control points to powers of u.
     Shape::Polynomial([
         b[0],
         5.0 * (b[1] - b[0]),
@@ -353,28 +356,28 @@ fn blended(from: Vector, direction: Vector, to: Vector, onwards: Vector, d: f64)
     ])
 }
 
-/// How much steeper a spline is to be after a knot than before it, times six.
-fn kink(p: &[Vector], h: &[f64], i: usize, after: usize) -> Vector {
-    6.0 * ((p[i + 1] - p[i]) / h[i] - (p[after + 1] - p[after]) / h[after])
+/// Returns six times the difference of the chord slopes of interval i and of the interval `before` it.
+fn slope_change(p: &[Vector], h: &[f64], i: usize, before: usize) -> Vector {
+    6.0 * ((p[i + 1] - p[i]) / h[i] - (p[before + 1] - p[before]) / h[before])
 }
 
-/// Second derivatives of the natural cubic spline at its knots.
+/// Returns the second derivatives of the natural cubic spline at its knots.
 fn natural_bends(p: &[Vector], h: &[f64]) -> Vec<Vector> {
     let n = p.len() - 1;
     let mut bend = vec![Vector::default(); n + 1];
     let rows: Vec<_> = (1..n).map(|i| [h[i - 1], 2.0 * (h[i - 1] + h[i]), h[i]]).collect();
-    let sides: Vec<_> = (1..n).map(|i| kink(p, h, i, i - 1)).collect();
+    let sides: Vec<_> = (1..n).map(|i| slope_change(p, h, i, i - 1)).collect();
     bend[1..n].copy_from_slice(&tridiagonal(&rows, &sides));
     bend
 }
 
-/// Second derivatives of the closed cubic spline; the last knot is the first again.
+/// Returns the second derivatives of the closed cubic spline at its knots; the last knot repeats the first.
 fn periodic_bends(p: &[Vector], h: &[f64]) -> Vec<Vector> {
     let n = h.len();
     let before = |i: usize| (i + n - 1) % n;
     let mut rows: Vec<_> = (0..n).map(|i| [h[before(i)], 2.0 * (h[before(i)] + h[i]), h[i]]).collect();
-    let sides: Vec<_> = (0..n).map(|i| kink(p, h, i, before(i))).collect();
-    // The corners of the cyclic matrix by Sherman and Morrison.
+    let sides: Vec<_> = (0..n).map(|i| slope_change(p, h, i, before(i))).collect();
+    // The corner entries of the cyclic matrix by the Sherman–Morrison formula.
     let corner = h[n - 1];
     let gamma = -rows[0][1];
     rows[0][1] -= gamma;
@@ -390,17 +393,17 @@ fn periodic_bends(p: &[Vector], h: &[f64]) -> Vec<Vector> {
     bend
 }
 
-/// Solves rows of [below, diagonal, above], dominated by their diagonal.
+/// Solves a diagonally dominant tridiagonal system with rows [below, diagonal, above].
 fn tridiagonal(rows: &[[f64; 3]], sides: &[Vector]) -> Vec<Vector> {
     let n = rows.len();
     let (mut above, mut x) = (vec![0.0; n], vec![Vector::default(); n]);
     for i in 0..n {
         let [below, diagonal, next] = rows[i];
-        let (last, left) = if i > 0 { (above[i - 1], x[i - 1]) } else { (0.0, Vector::default()) };
+        let (last, previous) = if i > 0 { (above[i - 1], x[i - 1]) } else { (0.0, Vector::default()) };
         let below = if i > 0 { below } else { 0.0 };
         let pivot = diagonal - below * last;
         above[i] = next / pivot;
-        x[i] = (sides[i] - below * left) / pivot;
+        x[i] = (sides[i] - below * previous) / pivot;
     }
     for i in (0..n.saturating_sub(1)).rev() {
         let next = x[i + 1];
@@ -409,10 +412,10 @@ fn tridiagonal(rows: &[[f64; 3]], sides: &[Vector]) -> Vec<Vector> {
     x
 }
 
-/// Spaces between the knots of a curve drawn by hand.
-const HAND_SPACES: usize = 24;
+/// Number of intervals between the knots of a freehand curve.
+const FREEHAND_INTERVALS: usize = 24;
 
-/// `spaces` even spaces along a line of points, and how long each is.
+/// Returns points spaced evenly along a polyline, `spaces` intervals, and the spacing.
 fn resampled(points: &[Vector], length: f64, spaces: usize) -> (Vec<Vector>, f64) {
     let spacing = length / spaces as f64;
     let (mut i, mut behind) = (0, 0.0);
@@ -429,7 +432,8 @@ fn resampled(points: &[Vector], length: f64, spaces: usize) -> (Vec<Vector>, f64
     ((0..=spaces).map(sample).collect(), spacing)
 }
 
-/// Each point the mean of its neighbours, weighted by a bell of the given width in points; ends stay.
+/// Replaces each point by a Gaussian-weighted mean of its neighbours. `width` is the standard deviation in points; the
+/// first and the last point stay.
 fn smoothed(points: &[Vector], width: f64) -> Vec<Vector> {
     let n = points.len();
     let reach = (3.0 * width).ceil() as usize;

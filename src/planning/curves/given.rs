@@ -1,9 +1,9 @@
 //! A motion given by samples over time: of the drive angles, or of the end effector.
 //!
-//! The samples are joined by a quintic [spline](crate::planning::curves::spline) through every sample, with four
-//! continuous derivatives; nothing is assumed of its ends, which need not rest. Its parameter is s = t/T, so a motion
-//! takes it with [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples,
-//! angles that lie on a plane b = const stay on it between them.
+//! A quintic [spline](crate::planning::curves::spline) with four continuous derivatives passes through every sample. It
+//! assumes nothing about the ends: the motion need not be at rest there. Its parameter is s = t/T, so a motion uses it
+//! with [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples, angles
+//! that lie on a plane b = const stay on it between the samples.
 
 use std::sync::Arc;
 
@@ -21,17 +21,18 @@ use crate::settings::keyed::Holding;
 use crate::settings::number::{Short, counted};
 use crate::settings::range::Range;
 
-/// The most samples.
+/// Maximum number of samples.
 pub const MAX_SAMPLES: usize = 20_000;
 
-/// Of a time, which may count from long ago, and of angles and coordinates.
-const TIME: Range = Range::either_way(1e11, "s");
-const VALUE: Range = Range::either_way(1e6, "rad or m");
+/// Permitted range of a time, which may count from a distant epoch.
+const TIME_RANGE: Range = Range::either_way(1e11, "s");
+/// Permitted range of an angle or a coordinate.
+const VALUE_RANGE: Range = Range::either_way(1e6, "rad or m");
 
-/// The least time between two samples, as a fraction of the whole time.
+/// Minimum time between two samples, as a fraction of the whole duration.
 const MIN_TIME_STEP: f64 = 1e-9;
 
-/// What the values of samples are.
+/// Meaning of the values of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
     /// Absolute drive angles, rad.
@@ -41,7 +42,7 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// Short name, as in JSON.
+    /// Returns the short name used in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Drives => "drives",
@@ -54,34 +55,34 @@ impl Coordinates {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]
 pub struct Samples {
-    /// Numbers of a row.
+    /// Number of entries of a row: the time and the values.
     width: usize,
     values: Arc<[f64]>,
 }
 
-/// Why rows are no samples. Rows are counted from 0, columns too; column 0 is the time.
+/// Why rows are not valid samples. Rows and columns are counted from 0; column 0 is the time.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SamplesError {
-    /// Fewer samples than a spline takes.
+    /// Fewer samples than the spline needs.
     #[error("{}: want at least {FEWEST}, because the spline's ends take six", counted(got, "sample"))]
     TooFew {
-        /// How many there are.
+        /// Number of samples.
         got: usize,
     },
     /// More samples than [`MAX_SAMPLES`].
     #[error("{got} samples: want at most {MAX_SAMPLES}, such as every second one")]
     TooMany {
-        /// How many there are.
+        /// Number of samples.
         got: usize,
     },
-    /// A row of another length.
+    /// A row whose length differs from that of the first.
     #[error("sample {} has {}: want {want}, a time and the values, at most {MAX_DRIVES}", row + 1, counted(got, "number"))]
     Ragged {
         /// Row, counted from 0.
         row: usize,
-        /// How many it has.
+        /// Number of its entries.
         got: usize,
-        /// As many as the first one.
+        /// Number of entries of the first row, or the nearest permitted number.
         want: usize,
     },
     /// Not a number.
@@ -92,36 +93,36 @@ pub enum SamplesError {
         /// Column, counted from 0.
         column: usize,
     },
-    /// Out of range.
+    /// A number outside its permitted range.
     #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, Short(*value))]
     OutOfRange {
         /// Row, counted from 0.
         row: usize,
         /// Column, counted from 0.
         column: usize,
-        /// What stands there.
+        /// The number.
         value: f64,
-        /// What would be right.
+        /// The permitted range.
         range: Range,
     },
-    /// Time stands still or goes back.
+    /// Times that do not rise.
     #[error(
         "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, Short(*time), Short(*before)
     )]
     NotRising {
         /// Row, counted from 0.
         row: usize,
-        /// s.
+        /// Time of this sample, s.
         time: f64,
-        /// s.
+        /// Time of the sample before, s.
         before: f64,
     },
-    /// Nothing to be smoothed so.
+    /// A cut-off frequency that is not between 0 and the Nyquist frequency.
     #[error("a cut-off of {} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate", Short(*cut_off))]
     CutOff {
-        /// Hz.
+        /// Cut-off frequency, Hz.
         cut_off: f64,
-        /// Hz.
+        /// Nyquist frequency at the mean sampling rate, Hz.
         nyquist: f64,
     },
 }
@@ -144,10 +145,11 @@ impl Holding for Samples {
 }
 
 impl Samples {
-    /// Rows of a time, s, and one to eight values.
+    /// Checks rows of a time, s, and one to eight values.
     ///
     /// # Errors
-    /// If there are too few or too many, they differ in length, a number is not finite, or time does not rise.
+    /// If there are too few or too many rows, lengths differ, a number is not finite or out of range, or times do not
+    /// rise.
     pub fn new(rows: &[Vec<f64>]) -> Result<Self, SamplesError> {
         let got = rows.len();
         if got < FEWEST {
@@ -164,7 +166,7 @@ impl Samples {
             if let Some(column) = of.iter().position(|x| !x.is_finite()) {
                 return Err(SamplesError::NotFinite { row, column });
             }
-            let range = |column: usize| if column == 0 { TIME } else { VALUE };
+            let range = |column: usize| if column == 0 { TIME_RANGE } else { VALUE_RANGE };
             if let Some(column) = (0..of.len()).find(|column| !range(*column).contains(of[*column])) {
                 let (value, range) = (of[column], range(column));
                 return Err(SamplesError::OutOfRange { row, column, value, range });
@@ -180,59 +182,60 @@ impl Samples {
         Ok(Self { width: want, values: rows.iter().flatten().copied().collect() })
     }
 
-    /// Rows as they stand: a time and the values.
+    /// Returns the rows: a time, s, and the values.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[f64]> {
         self.values.chunks_exact(self.width)
     }
 
-    /// How many samples.
+    /// Returns the number of samples.
     pub fn count(&self) -> usize {
         self.values.len() / self.width
     }
 
-    /// How many values a sample has, without its time.
+    /// Returns the number of values of a sample, without its time.
     pub fn columns(&self) -> usize {
         self.width - 1
     }
 
-    /// Values of a sample.
+    /// Returns the values of sample i.
     pub fn values(&self, i: usize) -> &[f64] {
         &self.values[i * self.width + 1..(i + 1) * self.width]
     }
 
-    /// Time of a sample, s.
+    /// Returns the time of sample i, s.
     pub fn time(&self, i: usize) -> f64 {
         self.values[i * self.width]
     }
 
-    /// T, from the first sample to the last, s.
+    /// Returns the duration T from the first sample to the last, s.
     pub fn duration(&self) -> f64 {
         self.time(self.count() - 1) - self.time(0)
     }
 
-    /// Mean time between samples, s.
+    /// Returns the mean time between samples, s.
     pub fn spacing(&self) -> f64 {
         self.duration() / (self.count() - 1) as f64
     }
 
-    /// Times of the samples, s.
+    /// Returns the times of the samples, s.
     pub fn times(&self) -> Vec<f64> {
         self.rows().map(|row| row[0]).collect()
     }
 
-    /// t/T of each sample, from 0 to 1.
+    /// Returns t/T of each sample, from 0 to 1.
     pub fn stations(&self) -> Vec<f64> {
         let (start, whole) = (self.time(0), self.duration());
         self.rows().map(|row| (row[0] - start) / whole).collect()
     }
 
-    /// Other values at the same times; `None` if there are not as many, or they are not finite.
+    /// Returns samples of other values at the same times; `None` if there are fewer rows, or they are not valid
+    /// samples.
     pub fn with_values(&self, values: impl IntoIterator<Item = Vec<f64>>) -> Option<Self> {
         let rows: Vec<Vec<f64>> = self.rows().zip(values).map(|(row, values)| [&row[..1], &values].concat()).collect();
         (rows.len() == self.count()).then(|| Self::new(&rows).ok()).flatten()
     }
 
-    /// About as many of the samples, evenly taken, the first and the last among them.
+    /// Returns about `count` of the samples, evenly chosen, with the first and the last.
     #[must_use]
     pub fn thinned(&self, count: usize) -> Self {
         let last = self.count() - 1;
@@ -246,7 +249,7 @@ impl Samples {
         Self::new(&rows).unwrap_or_else(|_| self.clone())
     }
 
-    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see
+    /// Returns the samples smoothed without delay: the amplitude at the cut-off, Hz, is halved; see
     /// [`crate::planning::curves::low_pass`].
     ///
     /// # Errors
@@ -260,20 +263,20 @@ impl Samples {
         self.with_values((0..self.count()).map(row)).ok_or_else(wrong)
     }
 
-    /// How far a column's second derivative can be trusted, in its unit/s²: what noise, or too few samples, may make of
-    /// it, judged by the sixth differences of the samples.
+    /// Returns the uncertainty of a column's second derivative, in its unit/s². Noise or coarse sampling causes it; the
+    /// estimate is from the sixth differences of the samples.
     pub fn uncertainty(&self, column: usize) -> f64 {
         const BINOMIAL: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
         let y: Vec<f64> = self.rows().map(|row| row[column + 1]).collect();
         let sixth = |w: &[f64]| w.iter().zip(BINOMIAL).map(|(y, c)| c * y).sum::<f64>().abs();
         let mut sizes: Vec<f64> = y.windows(7).map(sixth).collect();
         sizes.sort_by(f64::total_cmp);
-        // The median of |x| is 0.6745 σ, and 924 the sum of the squared binomials.
+        // The median of |x| is 0.6745 σ, and 924 is the sum of the squared binomial coefficients.
         let sigma = sizes.get(sizes.len() / 2).map_or(0.0, |median| median / (0.6745 * 924f64.sqrt()));
         crate::planning::curves::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
     }
 
-    /// First and second derivatives by s = t/T at each sample, for each column.
+    /// Returns the first and second derivatives by s = t/T at each sample, for each column.
     fn rates(&self) -> Vec<Vec<[f64; 2]>> {
         let whole = self.duration();
         let Some(knots) = Knots::new(&self.times()) else { return Vec::new() };
@@ -284,7 +287,7 @@ impl Samples {
         (0..self.columns()).map(column).collect()
     }
 
-    /// The path of the drives over s = t/T, every column a drive, rad, all turned by as much, rad.
+    /// Returns the path of the drives over s = t/T: each column is a drive angle, rad, to which `turn`, rad, is added.
     pub fn path(&self, turn: f64) -> Option<PathTable> {
         let rates = self.rates();
         let node = |i: usize| {
@@ -296,7 +299,7 @@ impl Samples {
         (!rates.is_empty()).then(|| PathTable::new(self.stations(), (0..self.count()).map(node).collect())).flatten()
     }
 
-    /// The curve of the end effector over s = t/T, the columns x and y, m.
+    /// Returns the curve of the end effector over s = t/T from the two columns x and y, m.
     pub fn curve(&self) -> Option<Curve> {
         let rates = self.rates();
         let [x, y] = rates.as_slice() else { return None };
@@ -308,7 +311,7 @@ impl Samples {
         Curve::through(&self.stations(), &(0..self.count()).map(node).collect::<Vec<_>>())
     }
 
-    /// A sample as x + iy, m.
+    /// Returns sample i as x + iy, m.
     pub fn point(&self, i: usize) -> Vector {
         let v = self.values(i);
         Vector::new(v[0], v.get(1).copied().unwrap_or(0.0))

@@ -15,7 +15,7 @@ use crate::planning::reactionless::{PlaneMap, PlanePoint};
 /// A path of the drives.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Path {
-    /// Stays where it is.
+    /// A fixed pose.
     Rest(DriveAngles),
     /// A straight line in joint space; from a pose to another of the same b it is reactionless (case 3).
     JointLine {
@@ -24,11 +24,11 @@ pub enum Path {
         /// At s = 1.
         to: DriveAngles,
     },
-    /// By its nodes: integrated, or followed on a plane.
+    /// Nodes joined by quintics: integrated, or followed on a plane.
     Table(PathTable),
     /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
     OnPlane {
-        /// Gives the drive angles of (a_1, a_2) and b.
+        /// Converts (a_1, a_2) and b to drive angles.
         map: PlaneMap,
         /// rad.
         b: f64,
@@ -37,29 +37,29 @@ pub enum Path {
     },
     /// Paths end to end; where two meet the motion must rest.
     Chain(Chained),
-    /// The end effector where a joint line has it, drive 1 on a course of its own (case 2).
+    /// The end effector follows that of a joint line while drive 1 goes straight to an angle of its own (case 2).
     SameTip(SameTip),
 }
 
-/// Why there is no such path.
+/// Why a path does not exist.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PathError {
     /// The Jacobian loses rank on the way.
     #[error("the arm is stretched or folded at s = {s:.3} of the line, where the end effector cannot follow it")]
     Singular {
-        /// How far along.
+        /// s at which it happens, 0 to 1.
         s: f64,
     },
-    /// Drives 2 and 3 cannot reach where drive 1 leaves the end effector.
+    /// Drives 2 and 3 cannot place the end effector for the angle of drive 1.
     #[error("with drive 1 on that course, links 5 and 9 cannot reach the end effector's path at s = {s:.3}")]
     Unreachable {
-        /// How far along.
+        /// s at which it happens, 0 to 1.
         s: f64,
     },
 }
 
 impl Path {
-    /// The pose at s, clamped to 0..1.
+    /// Returns the pose at s, clamped to 0..1, and its derivatives.
     #[inline]
     pub fn at(&self, s: f64) -> PathPoint {
         let s = s.clamp(0.0, 1.0);
@@ -76,9 +76,9 @@ impl Path {
         }
     }
 
-    /// s at which q′ or q″ jumps: at joints of curves, where paths meet, and where a table jumps.
+    /// Returns the s at which q′ or q″ jumps: at joints of curves, where paths meet, and where a table jumps.
     pub fn kinks(&self) -> Vec<f64> {
-        const SAME_PLACE: f64 = 1e-9;
+        const COINCIDENT_BELOW: f64 = 1e-9;
         let joints: Vec<f64> = match self {
             Self::Chain(chain) => {
                 let inner = |(path, [from, to]): (&Self, [f64; 2])| {
@@ -87,14 +87,14 @@ impl Path {
                 return chain.parts().flat_map(inner).filter(|s| *s < 1.0).collect();
             }
             Self::OnPlane { curve, .. } => curve.joints().collect(),
-            // Where a table jumps two of its nodes stand side by side.
+            // Where a table jumps, two of its nodes have almost the same s.
             Self::Table(table) => {
-                table.stations().windows(2).filter(|w| w[1] - w[0] < SAME_PLACE).map(|w| w[0]).collect()
+                table.stations().windows(2).filter(|w| w[1] - w[0] < COINCIDENT_BELOW).map(|w| w[0]).collect()
             }
             _ => Vec::new(),
         };
         let jumps = |s: &f64| {
-            let (a, b) = (self.at(s - SAME_PLACE), self.at(s + SAME_PLACE));
+            let (a, b) = (self.at(s - COINCIDENT_BELOW), self.at(s + COINCIDENT_BELOW));
             let jump = |a: &PerDrive, b: &PerDrive| b.minus(a).max_abs();
             jump(&a.first, &b.first) + jump(&a.second, &b.second)
                 > 1e-5 * (a.first.max_abs() + a.second.max_abs() + b.second.max_abs())
@@ -102,7 +102,7 @@ impl Path {
         joints.into_iter().filter(|s| *s > 0.0 && *s < 1.0).filter(jumps).collect()
     }
 
-    /// How many paths it is made of; a table of very many nodes counts as several.
+    /// Returns the number of paths that it consists of; a table counts as one for every 1024 nodes or part of them.
     pub fn parts(&self) -> usize {
         match self {
             Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
@@ -111,8 +111,9 @@ impl Path {
         }
     }
 
-    /// d³q/ds³ at s, rad: exact but for the course of case 2, where it is from differences of q″. Where it jumps, as
-    /// where a blend begins, it is that of the part which s begins, or for a curve on a plane of the one which it ends.
+    /// Returns d³q/ds³ at s, rad. It is exact except for case 2, where it is a difference quotient of q″. At a jump,
+    /// such as where a blend begins, it is the value after s; for a curve on a plane or a chain of paths, the value
+    /// before s.
     pub fn third(&self, s: f64) -> PerDrive {
         let s = s.clamp(0.0, 1.0);
         match self {
@@ -124,13 +125,13 @@ impl Path {
             }
             Self::Chain(chain) => chain.third(s),
             Self::SameTip(_) => {
-                let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+                let (before, after) = ((s - DIFFERENCE_STEP).max(0.0), (s + DIFFERENCE_STEP).min(1.0));
                 self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before))
             }
         }
     }
 
-    /// Where q‴ jumps, and both ends: s from 0 to 1. Between these a path is smooth.
+    /// Returns the s at which q‴ jumps, and both ends 0 and 1. Between these a path is smooth.
     pub fn joints(&self) -> Vec<f64> {
         match self {
             Self::Rest(_) | Self::JointLine { .. } | Self::SameTip(_) => vec![0.0, 1.0],
@@ -140,7 +141,8 @@ impl Path {
         }
     }
 
-    /// Places so dense that a path changes little from one to the next, where its kind has such; both ends always.
+    /// Returns s from 0 to 1, for tables and curves on a plane so dense that the path changes little between
+    /// neighbours; for other paths the joints.
     pub fn places(&self) -> Vec<f64> {
         match self {
             Self::Table(table) => table.stations().to_vec(),
@@ -164,12 +166,12 @@ fn on_plane(map: &PlaneMap, b: f64, curve: &Curve, s: f64) -> PathPoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chained {
     paths: Vec<Path>,
-    /// s at which each ends; the last is 1.
+    /// s at which each path ends; the last is 1.
     ends: Vec<f64>,
 }
 
 impl Chained {
-    /// Paths, each with its share of s; `None` if there is none, or a share is not above 0.
+    /// Chains paths, each with its share of s. Returns `None` if there are none, or a share is not above 0.
     pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
         let total: f64 = parts.iter().map(|(_, share)| share).sum();
         let sound = total.is_finite() && parts.iter().all(|(_, share)| *share > 0.0);
@@ -188,13 +190,13 @@ impl Chained {
         Some(Self { paths: parts.into_iter().map(|(path, _)| path).collect(), ends })
     }
 
-    /// The parts, each with where it begins and ends.
+    /// Returns the paths, each with its interval of s.
     pub fn parts(&self) -> impl Iterator<Item = (&Path, [f64; 2])> {
         let begins = std::iter::once(0.0).chain(self.ends.iter().copied());
         self.paths.iter().zip(begins.zip(&self.ends).map(|(from, to)| [from, *to]))
     }
 
-    /// Which part s is on, where on it, and its share of s.
+    /// Returns the path at s, the local s on it, and its share of the whole s.
     fn part(&self, s: f64) -> (&Path, f64, f64) {
         let i = self.ends.partition_point(|end| *end < s).min(self.paths.len() - 1);
         let from = if i == 0 { 0.0 } else { self.ends[i - 1] };
@@ -213,7 +215,7 @@ impl Chained {
         path.third(s).scaled(1.0 / (run * run * run))
     }
 
-    /// Places of the parts, one after another.
+    /// Concatenates values of s of the paths, converted to s of the whole.
     fn joined(&self, places: impl Fn(&Path) -> Vec<f64>) -> Vec<f64> {
         let own = self.parts().flat_map(|(path, [from, to])| {
             let inner: Vec<f64> = places(path).into_iter().filter(|s| *s < 1.0).collect();
@@ -222,10 +224,10 @@ impl Chained {
         own.chain([1.0]).collect()
     }
 }
-/// Nodes of a table that count as one path.
+/// Number of nodes of a table that count as one path.
 const NODES_PER_PATH: usize = 1024;
-/// Difference quotients lose as much by rounding as by their length.
-const THIRD_OVER: f64 = 1e-5;
+/// Half step in s of the difference quotient for q‴, at which rounding and truncation errors are about equal.
+const DIFFERENCE_STEP: f64 = 1e-5;
 
 #[inline]
 fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
@@ -234,14 +236,15 @@ fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
     PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
 }
 
-/// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad on a straight line.
-const SPACES: usize = 256;
-/// How far off its curve the integration may end up in a space, as a part of the arm, before it is put back onto it;
-/// far less where the Jacobian is regular.
-const OFF_CURVE: f64 = 1e-6;
+/// Number of intervals between the nodes of an integrated path; the quintic's error is below 1e-13 rad on a straight
+/// line.
+const NODE_INTERVALS: usize = 256;
+/// Maximum drift of the integration off its curve within one interval, as a fraction of the arm length; a larger drift
+/// counts as a singularity. The drift is far smaller where the Jacobian is regular.
+const MAX_DRIFT: f64 = 1e-6;
 
-/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, by the fourth-order rule from a pose at its
-/// start.
+/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, from a pose at its start, by the classical
+/// fourth-order Runge–Kutta method.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
@@ -250,11 +253,12 @@ pub fn minimum_norm_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, PathError> {
-    let nodes = least_rate_nodes(tip, None, start, &curve, SPACES)?;
+    let nodes = least_rate_nodes(tip, None, start, &curve, NODE_INTERVALS)?;
     PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
-/// The same along a curve of pieces, each with spaces of its own: an integration across a joint is not exact.
+/// Follows a curve with minimum-norm rates piece by piece. Each piece has intervals of its own, because integration
+/// across a joint would lose accuracy.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
@@ -262,8 +266,8 @@ pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Res
     least_rate_curve(tip, None, start, curve)
 }
 
-/// The same, with the least rates of those that keep Σ λ_k q_k, if it is `held`: of more than three drives, on the set
-/// of poses of a b.
+/// Follows a curve piece by piece with the least rates that keep Σ λ_k q_k constant, if λ is given as `held`. With more
+/// than three drives the path then stays on the poses of one b.
 ///
 /// # Errors
 /// If the Jacobian, with λ, loses rank on the way.
@@ -279,10 +283,11 @@ pub fn least_rate_curve(
             other => other,
         })
     };
-    by_pieces(curve, start, SPACES, piece)?.ok_or(PathError::Singular { s: 0.0 })
+    by_pieces(curve, start, NODE_INTERVALS, piece)?.ok_or(PathError::Singular { s: 0.0 })
 }
 
-/// A path along a curve from what follows each of its pieces: from a pose, over a part of s, by u from 0 to 1.
+/// Builds the path along a curve from the nodes of its pieces. `follow` takes the start pose, the interval of s, the
+/// piece over u from 0 to 1, and the number of intervals.
 pub(in crate::planning) fn by_pieces<E>(
     curve: &Curve,
     start: DriveAngles,
@@ -290,12 +295,12 @@ pub(in crate::planning) fn by_pieces<E>(
     follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
 ) -> Result<Option<PathTable>, E> {
     let joints: Vec<f64> = curve.joints().collect();
-    // Many pieces are short, as those between samples.
-    let least = if joints.len() > 200 { 1 } else { 16 };
+    // Curves of very many pieces, as those through samples, have short ones.
+    let min_intervals = if joints.len() > 200 { 1 } else { 16 };
     let (mut stations, mut nodes, mut q) = (Vec::new(), Vec::new(), start);
     for ends in joints.windows(2) {
         let (from, run) = (ends[0], ends[1] - ends[0]);
-        let own = ((spaces as f64 * run).ceil() as usize).max(least);
+        let own = ((spaces as f64 * run).ceil() as usize).max(min_intervals);
         let at = |u: f64| {
             let point = curve.at(if u >= 1.0 { ends[1] } else { from + u * run });
             CurvePoint { p: point.p, first: point.first * run, second: point.second * (run * run) }
@@ -315,7 +320,8 @@ pub(in crate::planning) fn by_pieces<E>(
     Ok(PathTable::new(stations, nodes))
 }
 
-/// With a row beside the Jacobian, and what it makes of the rates, if one is `held`.
+/// Integrates the least rates along a curve and returns the nodes. `held` is an additional row of the Jacobian with the
+/// constant that its product with the rates must equal.
 fn least_rate_nodes(
     tip: &Chain,
     held: Option<(&PerDrive, f64)>,
@@ -323,7 +329,7 @@ fn least_rate_nodes(
     curve: &impl Fn(f64) -> CurvePoint,
     spaces: usize,
 ) -> Result<Vec<PathPoint>, PathError> {
-    let off_curve = OFF_CURVE * tip.iter().map(|c| c.abs()).sum::<f64>();
+    let max_drift = MAX_DRIFT * tip.iter().map(|c| c.abs()).sum::<f64>();
     let n = start.len();
     let rates = |q: &DriveAngles, v: Vector, vd: Vector, share: f64| match held {
         Some((row, rate)) => minimum_norm_with(tip, (row, share * rate), |_| PerDrive::zeros(n), &q.units(), v, vd),
@@ -333,16 +339,16 @@ fn least_rate_nodes(
         let way = curve(s);
         rates(q, way.first, way.second, 1.0).ok_or(PathError::Singular { s })
     };
-    // Each space takes several steps, so that the integration is as exact as the quintics.
-    const STEPS: usize = 4;
-    let h = 1.0 / (spaces * STEPS) as f64;
+    // Each interval takes several steps, so that the integration is as accurate as the quintics.
+    const STEPS_PER_INTERVAL: usize = 4;
+    let h = 1.0 / (spaces * STEPS_PER_INTERVAL) as f64;
     let mut q = start;
     let mut nodes = Vec::with_capacity(spaces + 1);
     for i in 0..=spaces {
         let s = i as f64 / spaces as f64;
         // A step may jump over the place where the rank is lost, but not without leaving the curve.
         let gap = curve(s).p - end_effector(tip, &q.units());
-        if gap.is_nan() || gap.norm() > off_curve {
+        if gap.is_nan() || gap.norm() > max_drift {
             return Err(PathError::Singular { s });
         }
         let (back, _) = rates(&q, gap, Vector::default(), 0.0).ok_or(PathError::Singular { s })?;
@@ -352,8 +358,8 @@ fn least_rate_nodes(
         if i == spaces {
             break;
         }
-        for j in 0..STEPS {
-            let s = (i * STEPS + j) as f64 * h;
+        for j in 0..STEPS_PER_INTERVAL {
+            let s = (i * STEPS_PER_INTERVAL + j) as f64 * h;
             let (k1, _) = slope(&q, s)?;
             let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
             let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s + h / 2.0)?;
@@ -364,11 +370,11 @@ fn least_rate_nodes(
     Ok(nodes)
 }
 
-/// The same of four drives and more: while drive 1 goes straight to `first_to`, rad, the others follow the end effector
-/// of the joint line with the least rates.
+/// Follows the end effector of the joint line `from`–`to` with four drives or more. Drive 1 goes straight to
+/// `first_to`, rad; the others move with the least rates.
 ///
 /// # Errors
-/// If they lose it on the way.
+/// If the Jacobian loses rank on the way.
 pub fn same_tip_path(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<PathTable, PathError> {
     let curve = |s: f64| {
         let line = joint_line(&from, &to, s);
@@ -377,11 +383,12 @@ pub fn same_tip_path(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: 
         CurvePoint { p: end_effector(tip, &e), first, second }
     };
     let own = PerDrive::from_fn(from.len(), |k| f64::from(u8::from(k == 0)));
-    let nodes = least_rate_nodes(tip, Some((&own, first_to - from[0])), from, &curve, SPACES)?;
+    let nodes = least_rate_nodes(tip, Some((&own, first_to - from[0])), from, &curve, NODE_INTERVALS)?;
     PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
-/// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.
+/// Path on which the end effector follows a joint line while drive 1 has a course of its own. Drives 2 and 3 follow
+/// with one sign of the elbow angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SameTip {
     tip: Chain,
@@ -407,7 +414,7 @@ impl SameTip {
     }
 
     fn at(&self, s: f64) -> PathPoint {
-        // `new` has walked the path; between its samples a miss falls back to the line it follows.
+        // `new` has checked samples of the path; a failure between them falls back to the joint line.
         self.solve(s).unwrap_or_else(|| joint_line(&self.from, &self.to, s))
     }
 
@@ -433,7 +440,7 @@ impl SameTip {
         let own = velocity(tip, &e, &PerDrive::from([q1_rate, 0.0, 0.0]));
         let (d2, d3) = two_link_rates(c2, c3, e[1], e[2], v - own)?;
         let first = PerDrive::from([q1_rate, d2, d3]);
-        // p̈ = J q″ + J̇ q′, and q_1 has no second derivative.
+        // p̈ = J q″ + J̇ q′, with q″_1 = 0.
         let (dd2, dd3) = two_link_rates(c2, c3, e[1], e[2], a - acceleration(tip, &e, &first, &zero))?;
         Some(PathPoint { q, first, second: PerDrive::from([0.0, dd2, dd3]) })
     }

@@ -1,10 +1,10 @@
-//! [`PathPoint`]: where a path is after a share of it, and how it goes on.
+//! [`PathPoint`]: a pose on a path with its derivatives.
 
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::reference::Reference;
 use crate::planning::timing::law::Progress;
 
-/// A pose on a path and how it changes with s.
+/// A pose on a path with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
     /// q, rad.
@@ -16,7 +16,7 @@ pub struct PathPoint {
 }
 
 impl PathPoint {
-    /// The reference where the path is passed with given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
+    /// Returns the reference at this point for given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
     #[inline]
     pub fn timed(&self, p: &Progress) -> Reference {
         Reference {

@@ -5,48 +5,50 @@
 //! |---|---|---|
 //! | t_i, y_i | time and value of sample i, 0 … N | s, any |
 //! | h_i | t_{i+1} − t_i | s |
-//! | m_i, M_i | ẏ and ÿ at sample i: all that the quintics between the samples need | |
+//! | m_i, M_i | ẏ and ÿ at sample i, which with y_i determine the quintics | |
 //!
 //! # Source
-//! On each space the quintic of Hermite through (y, m, M) at both ends; equal y⃛ and equal y⁗ from both sides of every
-//! inner sample are two linear equations for its m and M, a symmetric block-tridiagonal system. At both ends m and M
-//! are those of the polynomial through the six samples next to the end, so that nothing is assumed of how the motion
-//! begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
+//! On each interval the spline is the quintic Hermite polynomial through (y, m, M) at both ends. Continuity of y⃛ and
+//! y⁗ at every inner sample gives two linear equations for its m and M, a symmetric block-tridiagonal system. At both
+//! ends m and M are those of the polynomial through the six samples next to the end, so that nothing is assumed about
+//! how the motion begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
 //!
 //! # Noise
-//! Nothing is taken away: independent errors of σ in evenly spaced samples come out as errors of ÿ with a root mean
-//! square of [`NOISE_GAIN`] σ/h² inside and some 27 σ/h² at the very ends, where six samples have to do.
+//! The spline does not smooth. Independent errors of standard deviation σ in evenly spaced samples cause errors of ÿ
+//! whose root mean square is [`NOISE_GAIN`] σ/h² inside and about 27 σ/h² at the ends, where only six samples count.
 
 use nalgebra::{Matrix2, Vector2};
 
-/// The fewest samples.
+/// Minimum number of samples.
 pub const FEWEST: usize = 6;
 
-/// Root mean square error of ÿ inside, times h²/σ, where evenly spaced samples have independent errors σ.
+/// Root mean square error of ÿ inside, times h²/σ, for evenly spaced samples with independent errors of standard
+/// deviation σ.
 pub const NOISE_GAIN: f64 = 4.5;
 
-/// The spline's equations for given times, solved once for any number of columns.
+/// Equations of the spline for given times, factorised once for any number of columns.
 #[derive(Clone, Debug)]
 pub struct Knots {
     t: Vec<f64>,
-    /// Mean of h: times are counted in it, so that all blocks are of order 1.
+    /// Mean of h, s: the unit of time in the equations, so that all blocks are of order 1.
     unit: f64,
-    /// For the inner samples: how the one before enters, and the inverse of the pivot.
+    /// For each inner sample: the sub-diagonal block, and the inverse of the pivot block.
     rows: Vec<[Matrix2<f64>; 2]>,
-    /// What the one after leaves of it.
-    after: Vec<Matrix2<f64>>,
+    /// For each inner sample: the inverse pivot times the super-diagonal block.
+    upper: Vec<Matrix2<f64>>,
 }
 
 impl Knots {
-    /// Times that rise; `None` if they do not, or are fewer than [`FEWEST`].
+    /// Factorises the equations for given times, s. Returns `None` if the times do not rise or are fewer than
+    /// [`FEWEST`].
     pub fn new(t: &[f64]) -> Option<Self> {
         let spaces = t.len().checked_sub(1).filter(|_| t.len() >= FEWEST)?;
         let unit = (t[spaces] - t[0]) / spaces as f64;
         if !(unit.is_finite() && t.windows(2).all(|w| w[1] - w[0] > 0.0)) {
             return None;
         }
-        let (mut rows, mut after) = (Vec::with_capacity(spaces), Vec::with_capacity(spaces));
-        let mut left = Matrix2::zeros();
+        let (mut rows, mut upper) = (Vec::with_capacity(spaces), Vec::with_capacity(spaces));
+        let mut previous = Matrix2::zeros();
         for i in 1..spaces {
             let (l, r) = ((t[i] - t[i - 1]) / unit, (t[i + 1] - t[i]) / unit);
             let ([l1, l2, l3], [r1, r2, r3]) = ([l, l * l, l * l * l], [r, r * r, r * r * r]);
@@ -54,15 +56,15 @@ impl Knots {
             let own = Matrix2::new(192.0 / l3 + 192.0 / r3, mixed, mixed, 9.0 / l1 + 9.0 / r1);
             let below = Matrix2::new(168.0 / l3, 24.0 / l2, -24.0 / l2, -3.0 / l1);
             let above = Matrix2::new(168.0 / r3, -24.0 / r2, 24.0 / r2, -3.0 / r1);
-            let pivot = (own - below * left).try_inverse()?;
-            left = pivot * above;
+            let pivot = (own - below * previous).try_inverse()?;
+            previous = pivot * above;
             rows.push([below, pivot]);
-            after.push(left);
+            upper.push(previous);
         }
-        Some(Self { t: t.to_vec(), unit, rows, after })
+        Some(Self { t: t.to_vec(), unit, rows, upper })
     }
 
-    /// (ẏ, ÿ) at every sample for values y at these times.
+    /// Returns (ẏ, ÿ) at every sample for values y at these times.
     pub fn rates(&self, y: impl Fn(usize) -> f64) -> Vec<[f64; 2]> {
         let (t, unit, last) = (&self.t, self.unit, self.t.len() - 1);
         let scaled = |[m, second]: [f64; 2]| Vector2::new(m * unit, second * unit * unit);
@@ -82,13 +84,13 @@ impl Knots {
         x.push(end);
         for i in (1..last).rev() {
             let next = x[i + 1];
-            x[i] -= self.after[i - 1] * next;
+            x[i] -= self.upper[i - 1] * next;
         }
         x.iter().map(|x| [x[0] / unit, x[1] / (unit * unit)]).collect()
     }
 }
 
-/// First and second derivative, at the first of six points, of the polynomial through them.
+/// Returns the first and second derivatives, at the first of six points (t, y), of the polynomial through them.
 fn at_end(points: [(f64, f64); FEWEST]) -> [f64; 2] {
     let (t, mut c) = (points.map(|p| p.0), points.map(|p| p.1));
     // Newton's divided differences, in place.

@@ -1,4 +1,4 @@
-//! A path by its nodes: poses with two derivatives, joined by quintics.
+//! A path as a table of nodes: poses with two derivatives, joined by quintics.
 
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::PathPoint;
@@ -9,19 +9,20 @@ use crate::planning::curves::PathPoint;
 pub struct PathTable {
     s: Vec<f64>,
     nodes: Vec<PathPoint>,
-    /// For each of as many even parts of 0..1 as there are spaces, the space in which it begins.
+    /// Lookup table: 0..1 has as many equal parts as there are intervals; entry i is the interval where part i begins.
     guide: Vec<u32>,
 }
 
 impl PathTable {
-    /// Nodes spaced evenly in s; at least two, all of one number of drives.
+    /// Builds a table of nodes spaced evenly in s; at least two, all with the same number of drives.
     pub fn even(nodes: Vec<PathPoint>) -> Option<Self> {
         let spaces = nodes.len().checked_sub(1).filter(|n| *n > 0)?;
         let s = (0..=spaces).map(|i| i as f64 / spaces as f64).collect();
         Self::new(s, nodes)
     }
 
-    /// Nodes at given s that rise from 0 to 1; `None` if they do not, or if there are fewer than two.
+    /// Builds a table of nodes at given s. Returns `None` if the s do not rise from 0 to 1, their number differs from
+    /// that of the nodes, or there are fewer than two nodes.
     pub fn new(s: Vec<f64>, nodes: Vec<PathPoint>) -> Option<Self> {
         let spaces = nodes.len().checked_sub(1).filter(|n| *n > 0)?;
         let rising = s.len() == nodes.len() && s[0] == 0.0 && s[spaces] == 1.0 && s.windows(2).all(|w| w[0] < w[1]);
@@ -40,19 +41,19 @@ impl PathTable {
         Some(Self { s, nodes, guide })
     }
 
-    /// The nodes.
+    /// Returns the nodes.
     pub fn nodes(&self) -> &[PathPoint] {
         &self.nodes
     }
 
-    /// Their s.
+    /// Returns the s of the nodes.
     pub fn stations(&self) -> &[f64] {
         &self.s
     }
 
-    /// The space in which s lies, 0..1.
+    /// Returns the index of the interval in which s, 0..1, lies.
     #[inline]
-    fn space(&self, s: f64) -> usize {
+    fn interval(&self, s: f64) -> usize {
         let spaces = self.guide.len();
         let part = ((s * spaces as f64) as usize).min(spaces - 1);
         let first = self.guide[part] as usize;
@@ -68,28 +69,28 @@ impl PathTable {
         i
     }
 
-    /// The pose at s, 0..1.
+    /// Returns the pose at s, 0..1, and its derivatives.
     #[inline]
     pub fn at(&self, s: f64) -> PathPoint {
-        let i = self.space(s);
+        let i = self.interval(s);
         let h = self.s[i + 1] - self.s[i];
         quintic(&self.nodes[i], &self.nodes[i + 1], h, (s - self.s[i]) / h)
     }
 
-    /// d³q/ds³ at s, 0..1.
+    /// Returns d³q/ds³ at s, 0..1.
     pub(super) fn third(&self, s: f64) -> PerDrive {
-        let i = self.space(s);
+        let i = self.interval(s);
         let h = self.s[i + 1] - self.s[i];
         third(&self.nodes[i], &self.nodes[i + 1], h, (s - self.s[i]) / h)
     }
 
-    /// The nodes at which q‴ jumps, with both ends: their s.
+    /// Returns the s of the nodes at which q‴ jumps, and both ends.
     pub(super) fn joints(&self) -> Vec<f64> {
         let width = |i: usize| self.s[i + 1] - self.s[i];
         let side = |i: usize, u: f64| third(&self.nodes[i], &self.nodes[i + 1], width(i), u);
         let jumps = |i: &usize| {
             let (before, after) = (side(*i - 1, 1.0), side(*i, 0.0));
-            // What the quintics miss of q‴, and rounding, are no jumps.
+            // Interpolation and rounding errors of q‴ do not count as jumps.
             let noise = 1e-12 / width(*i - 1).min(width(*i)).powi(3);
             after.minus(&before).max_abs() > 0.02 * before.max_abs().max(after.max_abs()) + noise
         };
@@ -98,7 +99,7 @@ impl PathTable {
     }
 }
 
-/// Between two nodes h apart, at the share u.
+/// Evaluates the quintic between two nodes, h apart in s, at the fraction u of the interval.
 #[inline]
 fn quintic(a: &PathPoint, b: &PathPoint, h: f64, u: f64) -> PathPoint {
     let mut p = PathPoint { q: a.q, first: a.first, second: a.second };
@@ -113,7 +114,7 @@ fn quintic(a: &PathPoint, b: &PathPoint, h: f64, u: f64) -> PathPoint {
     p
 }
 
-/// d³q/ds³ of the same.
+/// Returns d³q/ds³ of the quintic between two nodes, h apart in s, at the fraction u of the interval.
 fn third(a: &PathPoint, b: &PathPoint, h: f64, u: f64) -> PerDrive {
     PerDrive::from_fn(a.q.len(), |k| {
         let (c0, c1, c2) = (a.q[k], a.first[k] * h, a.second[k] * h * h / 2.0);

@@ -1,24 +1,24 @@
-//! How fast a reference nears what it has to stop at.
+//! Approach speeds from which a reference can still stop.
 
-/// Time constant of the reference behind its aim, s.
+/// Time constant with which the speed of the reference follows the wanted speed, s.
 pub(super) const LAG: f64 = 0.02;
 
-/// √Σ x².
+/// Returns the Euclidean norm, √Σ x².
 pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |sum: f64, x| sum.hypot(*x))
 }
 
-/// The greatest share that is open, of those between 0, which is, and 1, which is not.
+/// Finds by bisection the greatest fraction that is feasible; 0 is feasible, 1 is not.
 pub(super) fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
-    let (mut open, mut barred) = (0.0, 1.0);
+    let (mut open, mut blocked) = (0.0, 1.0);
     for _ in 0..20 {
-        let middle = 0.5 * (open + barred);
-        if is_open(middle) { open = middle } else { barred = middle }
+        let middle = 0.5 * (open + blocked);
+        if is_open(middle) { open = middle } else { blocked = middle }
     }
     open
 }
 
-/// Speed at which a distance is closed so that four fifths of the bound can still stop it.
+/// Returns the speed at which to close a distance, so that braking at 0.8 of `bound` still stops in time.
 pub(super) fn approach(distance: f64, bound: f64) -> f64 {
     (distance / (4.0 * LAG)).min((1.6 * bound * distance).sqrt())
 }

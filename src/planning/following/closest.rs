@@ -1,9 +1,9 @@
-//! The motion of b that is closest to a given one with the same end effector, where points leave freedoms: what
-//! [`on_plane`](super::on_plane) is on planes.
+//! The motion at one b that is closest to a given one and has the same end effector path, for more than three drives;
+//! [`on_plane`](super::on_plane) does the same for three.
 //!
-//! A point and a b leave n − 3 freedoms, so that of all poses there the one is taken that is closest to the given one in
-//! the metric of kinetic energy: least ½ Σ H_kk Δq_k² with p and b kept, by Newton's iteration, sample by sample. It
-//! depends on the sample alone, and so smoothly while none is at a limit.
+//! A point and a b leave n − 3 degrees of freedom. Of all such poses this module takes the one that is closest to the
+//! given pose in the metric of kinetic energy: it minimises ½ Σ H_kk Δq_k² with p and b fixed, by Newton's method,
+//! sample by sample. The result depends on the sample alone, and smoothly as long as no angle is at a limit.
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -16,53 +16,57 @@ use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::BSet;
 use crate::query::Watch;
 
-/// Samples that judge a b, and those of which it is asked which b reach them.
-const JUDGED: usize = 61;
-const ASKED: usize = 25;
-/// b that are tried in each interval, and golden sections after that.
+/// Number of samples on which the deviation at a b is computed.
+const DEVIATION_SAMPLES: usize = 61;
+/// Number of samples whose reaching b are intersected to find the candidate intervals.
+const REACH_SAMPLES: usize = 25;
+/// Number of b tried in each interval.
 const TRIES: usize = 12;
+/// Number of golden section steps after that.
 const SECTIONS: usize = 16;
-/// Steps of Newton's iteration, the longest, and when it has arrived, rad and a share of the reach.
-const STEPS: usize = 40;
-const LONGEST: f64 = 0.3;
-const ARRIVED: f64 = 1e-12;
-/// What rounding passes a limit by is none, rad.
-const SLACK: f64 = 1e-9;
+/// Maximum number of Newton iterations.
+const MAX_ITERATIONS: usize = 40;
+/// Maximum Newton step of a drive angle, rad.
+const MAX_STEP_RAD: f64 = 0.3;
+/// Newton's method has converged when no drive angle moves by this or more, rad.
+const STEP_TOLERANCE_RAD: f64 = 1e-12;
+/// Tolerance of the limits of relative angles, rad.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// Why samples cannot be moved.
+/// Why samples cannot be moved to another b.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoneClose {
-    /// No pose was found.
+    /// Newton's method found no pose.
     #[error("at {time:.3} s no pose at b = {b:.4} rad beside the given one has the end effector at ({:.3}, {:.3}) m", at.re, at.im)]
     Pose {
-        /// s.
+        /// Time of the sample, s.
         time: f64,
-        /// rad.
+        /// Pose constant, rad.
         b: f64,
-        /// m.
+        /// Position of the end effector, m.
         at: Vector,
     },
     /// The closest pose is beyond a limit.
     #[error("at {time:.3} s the pose at b = {b:.4} rad that is closest to the given one has a{} past its {} limit", angle + 1, if *upper { "upper" } else { "lower" })]
     Limit {
-        /// s.
+        /// Time of the sample, s.
         time: f64,
-        /// rad.
+        /// Pose constant, rad.
         b: f64,
-        /// Counted from 0.
+        /// Index of the relative angle, counted from 0.
         angle: usize,
-        /// The greatest value, else the least.
+        /// Whether it is past the upper limit, else the lower.
         upper: bool,
     },
 }
 
-/// The samples moved onto b, rad, with the end effector where it was at every one of them.
+/// Moves every sample to b, rad, with its end effector position unchanged.
 ///
 /// # Errors
-/// Where that cannot be done.
+/// At the first sample for which no pose is found, or the pose is beyond a limit.
 pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b: f64) -> Result<Samples, NoneClose> {
     let mut rows = Vec::with_capacity(samples.count());
-    // Beside the pose of the sample before, moved as the given one has.
+    // First guess: the given pose plus the offset of the sample before.
     let mut off = PerDrive::zeros(space.drives());
     let mut pull = [0.0; 3];
     for i in 0..samples.count() {
@@ -72,7 +76,9 @@ pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b:
         let q = q.ok_or(NoneClose::Pose { time, b, at })?;
         for (joint, a) in space.joints().iter().zip(space.angles(&q).iter()) {
             let [low, high] = joint.bounds();
-            if let (Some(angle), true) = (joint.angle(), *a < low - SLACK || *a > high + SLACK) {
+            if let (Some(angle), true) =
+                (joint.angle(), *a < low - LIMIT_TOLERANCE_RAD || *a > high + LIMIT_TOLERANCE_RAD)
+            {
                 return Err(NoneClose::Limit { time, b, angle, upper: *a > high });
             }
         }
@@ -82,24 +88,25 @@ pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b:
     samples.with_values(rows).ok_or(NoneClose::Pose { time: samples.time(0), b, at: Vector::default() })
 }
 
-/// The constant b whose motion with the same end effector is closest to the given one, rad, and its ‖Δq‖, rad; `None` if
-/// none was found, or the rest is not wanted. Judged by some sixty of the samples.
+/// Finds the constant b whose motion with the same end effector path is closest to the given one, rad, and its ‖Δq‖,
+/// rad, from at most 61 of the samples. Returns `None` if no b was found, or if `goes_on` cancels the search.
 pub(super) fn nearest_b(
     space: &PoseSpace,
     model: &Inertia,
     samples: &Samples,
     goes_on: Watch<'_>,
 ) -> Option<(f64, f64)> {
-    let thin = samples.thinned(JUDGED);
+    let thin = samples.thinned(DEVIATION_SAMPLES);
     let far = |b: f64| same_tip(space, model, &thin, b).map_or(f64::INFINITY, |moved| apart(model, &thin, &moved));
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;
-    let asked = samples.thinned(ASKED);
-    let sets: Option<Vec<BSet>> = (0..asked.count()).map(|i| space.reach(space.place(asked.values(i))).ok()).collect();
+    let reached = samples.thinned(REACH_SAMPLES);
+    let sets: Option<Vec<BSet>> =
+        (0..reached.count()).map(|i| space.reach(space.place(reached.values(i))).ok()).collect();
     least(&BSet::overlap(&sets?), mean, [TRIES, SECTIONS], far, goes_on)
 }
 
-/// The pose at b with the end effector of a given one that is closest to it, from a first guess; `pull` holds what
-/// multiplies the end effector and b, which the next sample begins with.
+/// Finds the pose at b that is closest to a given one and has the same end effector position, from a first guess.
+/// `pull` holds the Lagrange multipliers of the end effector and of b; the next sample starts from them.
 fn closest(
     space: &PoseSpace,
     model: &Inertia,
@@ -113,7 +120,7 @@ fn closest(
     let weight = |k: usize| (model.diagonal(k) / whole).max(1e-6);
     let row = reach / space.lambda().max_abs();
     let mut q = from;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_ITERATIONS {
         let mut square = DMatrix::<f64>::zeros(n + 3, n + 3);
         let mut side = DVector::<f64>::zeros(n + 3);
         let off = (p - space.place(&q)) / reach;
@@ -123,7 +130,7 @@ fn closest(
             for (i, x) in rows.into_iter().enumerate() {
                 (square[(n + i, k)], square[(k, n + i)]) = (x, x);
             }
-            // How the arms curve counts as far as it leaves a least.
+            // Curvature of the constraint, bounded so that the Hessian stays positive.
             let bend = -(pull[0] * arm.re + pull[1] * arm.im);
             square[(k, k)] = weight(k) + bend.max(-0.9 * weight(k));
             side[k] = -weight(k) * (q[k] - given[k]);
@@ -134,14 +141,14 @@ fn closest(
         if !size.is_finite() {
             return None;
         }
-        let short = if size > LONGEST { LONGEST / size } else { 1.0 };
+        let short = if size > MAX_STEP_RAD { MAX_STEP_RAD / size } else { 1.0 };
         q = PerDrive::from_fn(n, |k| q[k] + short * step[k]);
         *pull = [step[n], step[n + 1], step[n + 2]];
-        if size < ARRIVED {
+        if size < STEP_TOLERANCE_RAD {
             let off = (p - space.place(&q)).norm() / reach;
             return (off < 1e-10 && (b - space.b(&q)).abs() < 1e-10).then_some(DriveAngles(q));
         }
     }
-    let (off, left) = ((p - space.place(&q)).norm() / reach, (b - space.b(&q)).abs());
-    (off < 1e-10 && left < 1e-10).then_some(DriveAngles(q))
+    let (off, b_error) = ((p - space.place(&q)).norm() / reach, (b - space.b(&q)).abs());
+    (off < 1e-10 && b_error < 1e-10).then_some(DriveAngles(q))
 }

@@ -1,4 +1,4 @@
-//! How far motions of one timing are apart in the metric of kinetic energy: see [`nearest`](super::nearest).
+//! Distance between motions of equal timing in the metric of kinetic energy: see [`nearest`](super::nearest).
 
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Chain, Inertia};
@@ -9,7 +9,7 @@ use crate::planning::golden::golden;
 use crate::planning::reactionless::BSet;
 use crate::query::Watch;
 
-/// How far two motions of one timing are apart.
+/// Distance between two motions of equal timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// Greatest distance of the end effectors, m.
@@ -21,7 +21,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Between motions that take equally long, by as many instants.
+    /// Returns the deviation between motions of equal duration, from `instants` + 1 even instants.
     pub fn between(tip: &Chain, model: &Inertia, one: &Motion, other: &Motion, instants: usize) -> Self {
         let n = model.drives();
         let mut worst = Self { tip: 0.0, joints: PerDrive::zeros(n), rms: 0.0 };
@@ -43,7 +43,7 @@ impl Deviation {
     }
 }
 
-/// ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
+/// Returns ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
 pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
@@ -55,9 +55,9 @@ pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
     (spaces.sum::<f64>() / (whole * one.duration())).sqrt()
 }
 
-/// The b of a set at which a distance is least, rad, and that: tried at equal steps inside each interval and at a mean, then
-/// searched about the best by golden section, each so many times; `None` if it is finite nowhere, or the rest is not
-/// wanted.
+/// Finds the b of a set, rad, at which the distance `far` is least, and that distance. It tries `tries` even b in each
+/// interval and `mean`, then refines the best by `sections` golden section steps. Returns `None` if the distance is
+/// finite nowhere, or if `goes_on` cancels the search.
 pub(super) fn least(
     set: &BSet,
     mean: f64,
@@ -69,7 +69,7 @@ pub(super) fn least(
     let intervals = set.near(mean).intervals;
     let all = intervals.len() * (tries + 1) + sections + 1;
     let (mut done, mut stopped) = (0, false);
-    // What is not wanted any more is nowhere near.
+    // After cancellation every further distance is infinite.
     let mut far = |b: f64| {
         stopped = stopped || !goes_on(f64::from(done) / all as f64);
         done += 1;

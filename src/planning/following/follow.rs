@@ -1,8 +1,8 @@
-//! Following the pointer and the slider: a smooth reference that stays on its plane.
+//! Following the pointer and the slider: a smooth reference that stays on the plane of its b.
 //!
-//! The reference moves in the coordinates (a, b) of a [`PoseSpace`]. Acceleration is constant over a step and bounded: the
-//! vector ä as a whole, never component by component, and b̈ on its own. While b is not slid it is not
-//! touched at all, so the motion is reactionless to the last bit of b.
+//! The reference moves in the coordinates (a, b) of a [`PoseSpace`]. Acceleration is constant over a step and bounded:
+//! the vector ä as a whole, not component by component, and b̈ separately. While the slider of b rests, b stays
+//! constant to the last bit, so the motion is reactionless.
 
 use std::sync::Arc;
 
@@ -12,10 +12,10 @@ use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Reference;
 use crate::planning::pose_space::{PoseSpace, Reach};
 
-/// Where the end effector is sent, and whether it can go there.
+/// Target position of the end effector, and whether it can be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// m.
+    /// Target position, m.
     pub at: Vector,
     /// Whether it can be reached.
     pub reach: Reach,
@@ -24,16 +24,16 @@ pub struct Target {
 /// Bounds on how fast the reference may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// |ä|, rad/s².
+    /// Bound of |ä|, rad/s².
     pub joint: f64,
-    /// |b̈|, rad/s²; the base feels at most D_1 times this.
+    /// Bound of |b̈|, rad/s²; the base moment is at most D_1 times this.
     pub pose: f64,
 }
 
-/// The aim counts as reached when the reference is nearer than this, rad and rad/s.
-const ARRIVED: f64 = 1e-11;
+/// The aim counts as reached when distance and speed are below this, rad and rad/s.
+const ARRIVAL_TOLERANCE: f64 = 1e-11;
 
-/// A reference that runs after a target on the plane of a pose constant.
+/// A reference that follows a target on the plane of a pose constant.
 #[derive(Clone, Debug)]
 pub struct Follower {
     map: Arc<PoseSpace>,
@@ -45,12 +45,13 @@ pub struct Follower {
     aim_rate: PerDrive,
     b_aim: f64,
     target: Target,
-    /// A link is to be pulled while the end effector stays, once this is at rest; and how that goes.
+    /// A drag of a link that begins once the reference is at rest; the end effector then stays.
     pull: Option<Pull>,
+    /// The reference during a drag of a link.
     held: Option<Held>,
 }
 
-/// A coordinate with its derivatives; the second holds over the present step.
+/// A coordinate with its derivatives; the second is constant over the present step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Course {
     x: f64,
@@ -86,7 +87,7 @@ impl Courses {
 }
 
 impl Follower {
-    /// Takes over from a reference: keeps its pose and rates, then slows to rest at the b it is on. `step` is the time
+    /// Starts at the pose and rates of a reference and slows to rest, with b as near as it can stop. `step` is the time
     /// between calls of [`advance`](Self::advance), s.
     pub fn new(map: Arc<PoseSpace>, bounds: Bounds, step: f64, from: &Reference) -> Self {
         let (x, b) = map.project(&from.q);
@@ -98,7 +99,7 @@ impl Follower {
             b: Course { x: b, v: bd, acc: 0.0 },
             aim: x,
             aim_rate: PerDrive::zeros(x.len()),
-            // The nearest b at which it can stop.
+            // The nearest b at which b can stop.
             b_aim: b + 0.5 * bd * bd.abs() / bounds.pose,
             target: Target { at: map.forward(&x, b), reach: Reach::Inside },
             map,
@@ -110,7 +111,7 @@ impl Follower {
         follower
     }
 
-    /// Sends it to where it can stop soonest.
+    /// Sets the aim to where the reference can stop soonest.
     fn aim_at_stop(&mut self) {
         let stop = norm(&self.a.v) / self.bounds.joint;
         self.aim = self.map.clamped(&self.a.x.plus(0.5 * stop, &self.a.v));
@@ -118,8 +119,8 @@ impl Follower {
         self.target = Target { at: self.aim_point(), reach: Reach::Inside };
     }
 
-    /// Pulls a point of a link while the end effector stays where it is, or where it comes to rest. Nothing moves on
-    /// machines of less than [four drives](PoseSpace::leaves_freedoms).
+    /// Drags a point of a link while the end effector stays where it is or comes to rest. On machines of fewer than
+    /// [four drives](PoseSpace::leaves_freedoms) nothing moves.
     pub fn set_pull(&mut self, pull: Pull) {
         if let Some(held) = &mut self.held {
             held.pull(pull);
@@ -135,7 +136,7 @@ impl Follower {
         self.hold();
     }
 
-    /// Begins to pull, once it is at rest.
+    /// Begins a pending drag if the reference is at rest.
     fn hold(&mut self) {
         if let Some(pull) = self.pull.filter(|_| self.map.leaves_freedoms() && self.is_at_rest()) {
             let bounds = (self.bounds.joint, self.step);
@@ -146,7 +147,7 @@ impl Follower {
         }
     }
 
-    /// No link is pulled any more; the end effector is where it was held.
+    /// Ends the drag of a link; the end effector stays where it was held.
     fn let_go(&mut self) {
         self.pull = None;
         if let Some((x, v)) = self.held.take().map(|held| held.angles()) {
@@ -157,7 +158,7 @@ impl Follower {
         }
     }
 
-    /// Sends the end effector to a point, m.
+    /// Sets the target of the end effector, m.
     pub fn set_target(&mut self, at: Vector) {
         self.let_go();
         self.target.at = at;
@@ -166,7 +167,8 @@ impl Follower {
         self.steer();
     }
 
-    /// Sends the relative angles somewhere, rad, as far as their limits and folds on the straight way let them.
+    /// Sets the target of the relative angles, rad. The aim is the last point before a limit or a fold on the straight
+    /// line there.
     pub fn set_angles(&mut self, a: &PerDrive) {
         self.let_go();
         self.aim = self.as_far_as_open(self.map.clamped(a));
@@ -175,44 +177,44 @@ impl Follower {
         self.steer();
     }
 
-    /// The relative angles that the reference goes to, rad.
+    /// Returns the relative angles that the reference goes to, rad.
     pub fn aim(&self) -> &PerDrive {
         &self.aim
     }
 
-    /// Sends the pose constant to b, rad.
+    /// Sets the target of the pose constant, rad.
     pub fn set_b(&mut self, b: f64) {
         self.let_go();
         self.b_aim = b;
         self.steer();
     }
 
-    /// Where the end effector is sent, and whether it can go there.
+    /// Returns the target of the end effector.
     pub fn target(&self) -> Target {
         self.target
     }
 
-    /// b of the reference, rad.
+    /// Returns b of the reference, rad.
     pub fn b(&self) -> f64 {
         self.b.x
     }
 
-    /// b that the reference goes to, rad.
+    /// Returns the b that the reference goes to, rad.
     pub fn b_aim(&self) -> f64 {
         self.b_aim
     }
 
-    /// What it moves in.
+    /// Returns the pose space.
     pub fn map(&self) -> &PoseSpace {
         &self.map
     }
 
-    /// The bounds it keeps.
+    /// Returns the bounds on accelerations.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Whether the reference has arrived and stands still.
+    /// Returns whether the reference has arrived and stands still.
     pub fn is_at_rest(&self) -> bool {
         if let Some(held) = &self.held {
             return held.is_at_rest();
@@ -220,7 +222,7 @@ impl Follower {
         self.a.v.iter().chain(self.a.acc.iter()).all(|x| *x == 0.0) && self.b.v == 0.0 && self.b.acc == 0.0
     }
 
-    /// The reference dt seconds into the present step.
+    /// Returns the reference dt seconds into the present step.
     pub fn reference(&self, dt: f64) -> Reference {
         if let Some(held) = &self.held {
             return held.reference(dt);
@@ -247,7 +249,7 @@ impl Follower {
         if turning {
             let before = self.aim;
             self.turn_aim();
-            // A nearest pose may leap as b changes; it is gone to, not kept up with.
+            // The nearest pose may jump as b changes: then the aim has no rate to follow.
             if self.target.reach == Reach::Inside {
                 self.aim_rate = self.aim.minus(&before).scaled(1.0 / h);
             }
@@ -255,7 +257,7 @@ impl Follower {
         self.steer();
         let came_to_rest = turning && self.b.v == 0.0 && self.b.acc == 0.0;
         if came_to_rest && matches!(self.target.reach, Reach::Outside { .. }) {
-            // At this b another pose may reach it.
+            // At this b another pose may reach the target.
             self.aim_at_target();
             self.aim_rate = PerDrive::zeros(self.aim.len());
             self.steer();
@@ -263,7 +265,7 @@ impl Follower {
         self.hold();
     }
 
-    /// b has changed: the end effector keeps its place while it can; when it cannot, it turns with the workspace.
+    /// Updates the aim after b has changed: the end effector stays if it can, else it turns with the workspace.
     fn turn_aim(&mut self) {
         match self.target.reach {
             Reach::Inside => match self.map.follow(self.target.at, self.b.x, &self.aim) {
@@ -274,7 +276,7 @@ impl Follower {
                 }
             },
             Reach::Carried => self.target.at = self.aim_point(),
-            // From where it was going, so that it does not depend on how far behind the reference is.
+            // Starts from the aim, so that the result does not depend on the lag of the reference.
             Reach::Outside { .. } => {
                 let (aim, reach) = self.map.pose_beside(self.target.at, self.b.x, &self.aim, self.target.reach);
                 (self.aim, self.target.reach) = (self.as_far_as_open(aim), reach);
@@ -282,7 +284,7 @@ impl Follower {
         }
     }
 
-    /// A pose to go to straight, or the last one before what bars the way there.
+    /// Returns the pose `to`, or the last one before a limit or a fold on the straight line to it.
     fn as_far_as_open(&self, to: PerDrive) -> PerDrive {
         let from = self.a.x;
         if !self.map.has_bars() || self.map.is_open_way(&from, &to) {
@@ -296,7 +298,7 @@ impl Follower {
         self.map.forward(&self.aim, self.b.x)
     }
 
-    /// Puts the reference at rest at b: the end effector keeps its place if it can.
+    /// Puts the reference at rest at b, rad: the end effector keeps its position if it can.
     pub fn pose_at(&mut self, b: f64) {
         self.let_go();
         self.b = Course { x: b, v: 0.0, acc: 0.0 };
@@ -306,49 +308,49 @@ impl Follower {
         self.a = Courses::resting(self.aim);
     }
 
-    /// Finds the pose for the target at the present b and on the present sheet, or the nearest one.
+    /// Sets the aim to the pose of the target at the present b and on the present sheet, or to the nearest pose.
     fn aim_at_target(&mut self) {
-        // From where it is, not from where it was going: what it can go to straight.
+        // Starts from the present pose, not from the aim, so that the aim can be reached on a straight line.
         (self.aim, self.target.reach) = self.map.pose_for(self.target.at, self.b.x, &self.a.x);
     }
 
-    /// The accelerations nearest to the wanted ones after which each angle can still stop before its limit, with an
-    /// equal share of the bound's square each, so that stopping all at once is within the bound.
+    /// Returns the accelerations nearest to the wanted ones after which each angle can still stop before its limit.
+    /// Each angle brakes with at most bound/√n, so that braking all at once keeps the bound.
     fn within_limits(&self, want: &PerDrive) -> PerDrive {
         let n = want.len();
         let (h, brake) = (self.step, self.bounds.joint / (n as f64).sqrt());
         let mut acc = PerDrive::from_fn(n, |i| {
             let (x, v) = (self.a.x[i], self.a.v[i]);
-            // The greatest acceleration towards a wall at distance d, nearing it at v: after this step it can brake
-            // step by step and stand at the wall. Too near for that, it turns back there.
-            let most = |d: f64, v: f64| {
+            // Maximum acceleration towards a limit at distance d, approached at speed v: after this step the angle can
+            // brake step by step and stop at the limit. If it is too near for that, it turns back there.
+            let max_towards = |d: f64, v: f64| {
                 if d == f64::INFINITY {
                     return d;
                 }
                 let room = d - 0.5 * h * v;
-                // Of speeds between n and n + 1 steps of braking, the way to a stop is linear in the speed.
+                // For speeds between n and n + 1 steps of braking, the stopping distance is linear in the speed.
                 let n = (0.5 * (1.0 + 8.0 * room.max(0.0) / (brake * h * h)).sqrt() - 0.5).floor();
                 let s = room.max(0.0) / (h * (n + 1.0)) + 0.5 * brake * h * n;
                 let most = if room < 0.0 && d > 0.0 { -0.5 * v * v / d } else { (s - v) / h };
                 most.max(-brake)
             };
             let [low, high] = self.map.limits(i);
-            let (up, down) = (most(high - x, v), most(x - low, -v));
+            let (up, down) = (max_towards(high - x, v), max_towards(x - low, -v));
             want[i].min(up).max(-down)
         });
-        // Where some must brake harder than wanted, the others leave them the share that they need.
+        // If some angles must brake harder than wanted, the others are scaled down to keep the bound on |ä|.
         let brakes = PerDrive::from_fn(n, |i| f64::from(u8::from(acc[i].abs() > want[i].abs())));
         let size = |which: f64| (0..n).filter(|i| brakes[*i] == which).fold(0.0, |sum: f64, i| sum.hypot(acc[i]));
         let (braking, others) = (size(1.0), size(0.0));
-        let left = (self.bounds.joint.powi(2) - braking * braking).max(0.0).sqrt();
-        if braking > 0.0 && others > left {
-            (0..n).filter(|i| brakes[*i] == 0.0).for_each(|i| acc[i] *= left / others);
+        let available = (self.bounds.joint.powi(2) - braking * braking).max(0.0).sqrt();
+        if braking > 0.0 && others > available {
+            (0..n).filter(|i| brakes[*i] == 0.0).for_each(|i| acc[i] *= available / others);
         }
         acc
     }
 
-    /// The accelerations nearest to the wanted ones, on the way from these to full braking, after which there is a
-    /// straight way on which to stop that keeps to the sheet.
+    /// Returns the accelerations nearest to the wanted ones, between these and full braking, after which the reference
+    /// can stop on a straight line without leaving its sheet.
     fn before_folds(&self, want: &PerDrive) -> PerDrive {
         let wanted = self.within_limits(want);
         if !self.map.has_bars() || self.can_stop_after(&wanted) {
@@ -357,16 +359,17 @@ impl Follower {
         let speed = norm(&self.a.v);
         let brake = self.bounds.joint.min(speed / self.step);
         let braking = self.a.v.scaled(if speed > 0.0 { -brake / speed } else { 0.0 });
-        // Full braking keeps the place at which it stops, so it is always there.
+        // Full braking does not move the stopping point, so it is always feasible.
         let at = |t: f64| self.within_limits(&braking.plus(t, &want.minus(&braking)));
         at(last_open(|t| self.can_stop_after(&at(t))))
     }
 
-    /// Whether nothing bars the way of the coming step with these accelerations, and then straight on to a stop.
+    /// Returns whether the coming step with these accelerations, and the straight line on to a stop, meet no limit or
+    /// fold.
     fn can_stop_after(&self, acc: &PerDrive) -> bool {
         let next = Courses { acc: *acc, ..self.a }.after(self.step);
         let speed = norm(&next.v);
-        // Braked fully step by step, in the last one only as much as it takes.
+        // Full braking step by step, in the last step only as much as needed.
         let whole = (speed / (self.bounds.joint * self.step)).floor();
         let rest = speed - whole * self.bounds.joint * self.step;
         let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
@@ -374,13 +377,14 @@ impl Follower {
         self.map.is_open_way(&self.a.x, &next.x) && self.map.is_open_way(&next.x, &stop)
     }
 
-    /// Chooses the accelerations of the coming step.
+    /// Sets the accelerations of the coming step.
     fn steer(&mut self) {
         let n = self.aim.len();
         let way = self.aim.minus(&self.a.x);
         let v = self.a.v.minus(&self.aim_rate);
         let distance = norm(&way);
-        if self.aim_rate.iter().all(|rate| *rate == 0.0) && distance < ARRIVED && norm(&v) < ARRIVED {
+        if self.aim_rate.iter().all(|rate| *rate == 0.0) && distance < ARRIVAL_TOLERANCE && norm(&v) < ARRIVAL_TOLERANCE
+        {
             self.a = Courses::resting(self.aim);
         } else {
             let speed = approach(distance, self.bounds.joint);
@@ -389,11 +393,11 @@ impl Follower {
             let scale = (self.bounds.joint / norm(&want)).min(1.0);
             self.a.acc = self.before_folds(&want.scaled(scale));
         }
-        let left = self.b_aim - self.b.x;
-        if left.abs() < ARRIVED && self.b.v.abs() < ARRIVED {
+        let b_error = self.b_aim - self.b.x;
+        if b_error.abs() < ARRIVAL_TOLERANCE && self.b.v.abs() < ARRIVAL_TOLERANCE {
             self.b = Course { x: if self.b.v == 0.0 { self.b.x } else { self.b_aim }, v: 0.0, acc: 0.0 };
         } else {
-            let want = (approach(left.abs(), self.bounds.pose).copysign(left) - self.b.v) / LAG;
+            let want = (approach(b_error.abs(), self.bounds.pose).copysign(b_error) - self.b.v) / LAG;
             self.b.acc = want.clamp(-self.bounds.pose, self.bounds.pose);
         }
     }

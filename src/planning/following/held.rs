@@ -1,10 +1,11 @@
-//! A link that is pulled while the end effector is held: what four drives and more have left at one point and one b.
+//! Dragging a link while the end effector is held, for four drives and more: motion in the freedoms left at one point
+//! and one b.
 //!
 //! # Method
-//! With b as it is, the poses of a point are where p(a) stays: n − 3 freedoms of the n − 1 relative angles a. Over a step
-//! the way along the tangents of that set, w, is a parabola of time, and a = a₀ + w + J₀ᵀμ with the μ that leaves the point
-//! where it is, found by Newton's iteration; rates and accelerations follow from J ȧ = 0. So point and b are kept to
-//! rounding at every instant, at whatever speed.
+//! With b fixed, the poses with the same end effector position p(a) form a set of n − 3 dimensions in the n − 1
+//! relative angles a. Over a step the tangential displacement w is a quadratic function of time. Then a = a₀ + w +
+//! J₀ᵀμ, with the μ that keeps the point, found by Newton's method; rates and accelerations follow from J ȧ = 0. So
+//! point and b are kept to rounding at every instant, at any speed.
 
 use std::sync::Arc;
 
@@ -14,31 +15,31 @@ use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 use crate::planning::Reference;
 use crate::planning::pose_space::PoseSpace;
 
-/// A point of a link, and where it is pulled to.
+/// A point of a link, and the position it is dragged to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull {
     /// The point is Σ_k chain_k e^{iq_k}, m.
     pub chain: Chain,
-    /// m.
+    /// Target position, m.
     pub at: Vector,
 }
 
-/// Share of the bound on |ä| for changing the speed.
+/// Fraction of the bound on |ä| that is used tangentially, to change the speed.
 const ALONG_SHARE: f64 = 0.65;
-/// Share of the bound on |ä| for turning with the curve, at most.
+/// Maximum fraction of the bound on |ä| that following the curvature may take.
 const ACROSS_SHARE: f64 = 0.7;
-/// The speed that is wanted leaves the curve this share.
+/// The wanted speed is chosen so that following the curvature takes at most this fraction of the bound on |ä|.
 const TURNING_SHARE: f64 = 0.4;
-/// A pull from farther away than this share of the reach is as strong as from there.
-const FULL_PULL_SHARE: f64 = 0.15;
-/// A point that moves less than this share of the reach for a radian is pulled along less than it could be.
-const STIFF_SHARE: f64 = 0.05;
-/// Slower and nearer than this it stands still, rad/s and rad.
-const STILL: f64 = 1e-8;
-/// The point is kept as near as this, a share of the reach.
-const KEPT: f64 = 1e-15;
+/// The dragging error is clipped to this fraction of the reach.
+const MAX_ERROR_SHARE: f64 = 0.15;
+/// Damping of the least-squares rates, as a fraction of the reach per radian.
+const DAMPING_SHARE: f64 = 0.05;
+/// The reference stops when its wanted and its present speed are below this, rad/s.
+const STILL_BELOW_RAD_S: f64 = 1e-8;
+/// Tolerance of the end effector position, as a fraction of the reach.
+const POSITION_TOLERANCE: f64 = 1e-15;
 
-/// A reference at which the end effector stays while a link is pulled.
+/// A reference that keeps the end effector while a link is dragged.
 #[derive(Clone, Debug)]
 pub struct Held {
     space: Arc<PoseSpace>,
@@ -49,11 +50,11 @@ pub struct Held {
     step: f64,
     a: PerDrive,
     v: PerDrive,
-    /// Along the tangents, for the present step, rad/s².
+    /// Tangential acceleration over the present step, rad/s².
     acc: PerDrive,
 }
 
-/// ∂p/∂a of a pose, m.
+/// Columns of the Jacobian ∂p/∂a, m.
 type Columns = [Vector; MAX_DRIVES];
 
 /// Relative angles with their derivatives.
@@ -63,17 +64,17 @@ struct State {
     acc: PerDrive,
 }
 
-/// J x.
+/// Returns J x.
 fn along(columns: &Columns, x: &PerDrive) -> Vector {
     columns.iter().zip(x.iter()).map(|(c, x)| *c * *x).sum()
 }
 
-/// Jᵀ μ.
+/// Returns Jᵀ μ.
 fn across(columns: &Columns, mu: Vector, n: usize) -> PerDrive {
     PerDrive::from_fn(n, |i| dot(columns[i], mu))
 }
 
-/// The μ with J J₀ᵀ μ = r.
+/// Solves J J₀ᵀ μ = r for μ; `None` if the matrix is singular.
 fn solved(j: &Columns, j0: &Columns, n: usize, r: Vector) -> Option<Vector> {
     let x = along(j, &across(j0, Vector::new(1.0, 0.0), n));
     let y = along(j, &across(j0, Vector::new(0.0, 1.0), n));
@@ -83,7 +84,8 @@ fn solved(j: &Columns, j0: &Columns, n: usize, r: Vector) -> Option<Vector> {
 }
 
 impl Held {
-    /// Holds the end effector where a pose at rest has it, and pulls.
+    /// Holds the end effector at its position in a pose at rest, and starts the drag. `bound` is that of |ä|, rad/s²;
+    /// `step` is the time between calls of [`advance`](Self::advance), s.
     pub fn new(space: Arc<PoseSpace>, a: PerDrive, b: f64, (bound, step): (f64, f64), pull: Pull) -> Self {
         let (point, still) = (space.place(&space.lift(&a, b)), PerDrive::zeros(a.len()));
         let mut held = Self { space, pull, point, b, bound, step, a, v: still, acc: still };
@@ -91,23 +93,23 @@ impl Held {
         held
     }
 
-    /// Pulls elsewhere.
+    /// Changes the drag.
     pub fn pull(&mut self, pull: Pull) {
         self.pull = pull;
         self.steer();
     }
 
-    /// Relative angles and their rates.
+    /// Returns the relative angles, rad, and their rates, rad/s.
     pub fn angles(&self) -> (PerDrive, PerDrive) {
         (self.a, self.v)
     }
 
-    /// Whether it stands still.
+    /// Returns whether the reference stands still.
     pub fn is_at_rest(&self) -> bool {
         self.v.iter().chain(self.acc.iter()).all(|x| *x == 0.0)
     }
 
-    /// The reference dt seconds into the present step.
+    /// Returns the reference dt seconds into the present step.
     pub fn reference(&self, dt: f64) -> Reference {
         let at = self.after(&self.acc, dt).unwrap_or(State { a: self.a, v: self.v, acc: self.acc });
         let rates = |x: &PerDrive| self.space.lift_rates(x, 0.0);
@@ -123,7 +125,7 @@ impl Held {
         self.steer();
     }
 
-    /// How a point of a chain moves with the relative angles.
+    /// Returns the derivatives of a chain's point with respect to the relative angles, m.
     fn columns(&self, chain: &[f64], a: &PerDrive) -> Columns {
         let (q, n) = (self.space.lift(a, self.b), a.len());
         let mut columns = Columns::default();
@@ -139,41 +141,43 @@ impl Held {
         self.columns(self.space.tip(), a)
     }
 
-    /// What of x leaves the end effector where it is.
+    /// Returns the component of x in the null space of J; `None` if J Jᵀ is singular.
     fn tangent(&self, j: &Columns, x: &PerDrive) -> Option<PerDrive> {
         let n = x.len();
         Some(x.minus(&across(j, solved(j, j, n, along(j, x))?, n)))
     }
 
-    /// The pose beside a + w at which the end effector is where it stays.
+    /// Finds the pose near a + w that has the held end effector position, by Newton's method; `None` if there is none.
     fn beside(&self, j0: &Columns, w: &PerDrive) -> Option<PerDrive> {
         let n = w.len();
         let mut a = self.a.plus(1.0, w);
         let gap = |a: &PerDrive| self.point - self.space.place(&self.space.lift(a, self.b));
         let mut off = gap(&a);
         for _ in 0..12 {
-            if off.norm() <= KEPT * self.space.farthest() {
+            if off.norm() <= POSITION_TOLERANCE * self.space.farthest() {
                 break;
             }
             let next = a.plus(1.0, &across(j0, solved(&self.tip(&a), j0, n, off)?, n));
-            let left = gap(&next);
-            // As near as rounding lets it.
-            if left.norm() >= off.norm() {
+            let next_off = gap(&next);
+            // The residual no longer falls: it is at rounding level.
+            if next_off.norm() >= off.norm() {
                 break;
             }
-            (a, off) = (next, left);
+            (a, off) = (next, next_off);
         }
         (off.norm() < 1e-9 * self.space.farthest()).then_some(a)
     }
 
-    /// What keeps to the curve at rates: the part across of ä.
+    /// Returns the normal component of ä that keeps the end effector at given rates. `along_it` is J times the
+    /// tangential acceleration.
     fn turning(&self, j: &Columns, j0: &Columns, a: &PerDrive, v: &PerDrive, along_it: Vector) -> Option<PerDrive> {
         let (q, qd) = (self.space.lift(a, self.b), self.space.lift_rates(v, 0.0));
         let inwards: Vector = (0..q.len()).map(|k| unit(q[k]) * (self.space.tip()[k] * qd[k] * qd[k])).sum();
         Some(across(j0, solved(j, j0, a.len(), inwards - along_it)?, a.len()))
     }
 
-    /// Some time after, with accelerations along the tangents; `None` beyond where the curve turns off.
+    /// Returns the state after the time dt, s, with a tangential acceleration; `None` if no pose keeps the end
+    /// effector.
     fn after(&self, acc: &PerDrive, dt: f64) -> Option<State> {
         let n = self.a.len();
         if self.is_still(acc) {
@@ -198,7 +202,7 @@ impl Held {
         })
     }
 
-    /// Whether the coming step leaves a way on which to stop within limits and bound.
+    /// Returns whether the reference can stop within limits and bound after the coming step.
     fn can_stop_after(&self, acc: &PerDrive) -> bool {
         let Some(next) = self.after(acc, self.step) else { return false };
         if !self.is_within(&next.a) {
@@ -208,7 +212,7 @@ impl Held {
         if speed == 0.0 {
             return true;
         }
-        // Braked fully step by step, in the last one only as much as it takes.
+        // Full braking step by step, in the last step only as much as needed.
         let whole = (speed / (brake * self.step)).floor();
         let rest = speed - whole * brake * self.step;
         let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
@@ -225,18 +229,18 @@ impl Held {
         [0.0, 0.5, 1.0].into_iter().all(fits)
     }
 
-    /// The rates that are wanted: to where the link is pulled, no faster than it can stop at limits and turn with the curve.
+    /// Returns the wanted rates: towards the target of the drag, no faster than limits and curvature permit.
     fn wanted(&self, j: &Columns) -> Option<PerDrive> {
         let (n, reach) = (self.a.len(), self.space.farthest());
         let q = self.space.lift(&self.a, self.b);
         let pulled: Vector = (0..n + 1).map(|k| unit(q[k]) * self.pull.chain[k]).sum();
         let err = self.pull.at - pulled;
-        let err = err * (FULL_PULL_SHARE * reach / err.norm().max(FULL_PULL_SHARE * reach));
+        let err = err * (MAX_ERROR_SHARE * reach / err.norm().max(MAX_ERROR_SHARE * reach));
         let g = self.columns(&self.pull.chain, &self.a);
         let row = |of: fn(&Vector) -> f64| self.tangent(j, &PerDrive::from_fn(n, |i| of(&g[i])));
         let (x, y) = (row(|g| g.re)?, row(|g| g.im)?);
-        let stiff = (STIFF_SHARE * reach).powi(2);
-        let (xx, xy, yy) = (x.dot(&x) + stiff, x.dot(&y), y.dot(&y) + stiff);
+        let damping = (DAMPING_SHARE * reach).powi(2);
+        let (xx, xy, yy) = (x.dot(&x) + damping, x.dot(&y), y.dot(&y) + damping);
         let det = xx * yy - xy * xy;
         let way = x.scaled((yy * err.re - xy * err.im) / det).plus((xx * err.im - xy * err.re) / det, &y);
         let far = norm(&way);
@@ -245,9 +249,9 @@ impl Held {
         }
         let brake = ALONG_SHARE * self.bound;
         let turning = norm(&self.turning(j, j, &self.a, &way.scaled(1.0 / far), Vector::default())?);
-        let most = (TURNING_SHARE * self.bound / turning.max(1e-9)).sqrt();
-        let mut w = way.scaled(approach(far, brake).min(most) / far);
-        // As fast as each angle can stop at its limit, by the least change.
+        let max_speed = (TURNING_SHARE * self.bound / turning.max(1e-9)).sqrt();
+        let mut w = way.scaled(approach(far, brake).min(max_speed) / far);
+        // Reduce the rates by the least change until each angle can stop at its limit.
         let passes = |w: &PerDrive, i: usize| {
             let ([low, high], a) = (self.space.joints()[i].bounds(), self.a[i]);
             let [up, down] = [high - a, a - low].map(|room| approach(room.max(0.0), brake));
@@ -267,7 +271,7 @@ impl Held {
         Some(w.scaled((0..n).map(share).fold(1.0, f64::min)))
     }
 
-    /// Chooses the accelerations of the coming step.
+    /// Sets the tangential acceleration of the coming step.
     fn steer(&mut self) {
         let (n, brake) = (self.a.len(), ALONG_SHARE * self.bound);
         let speed = norm(&self.v);
@@ -275,14 +279,14 @@ impl Held {
         let j = self.tip(&self.a);
         let wish = || {
             let wanted = self.wanted(&j)?;
-            if norm(&wanted) < STILL && speed < STILL {
+            if norm(&wanted) < STILL_BELOW_RAD_S && speed < STILL_BELOW_RAD_S {
                 return None;
             }
             let want = self.tangent(&j, &wanted.minus(&self.v).scaled(1.0 / LAG))?;
             Some(want.scaled((brake / norm(&want)).min(1.0)))
         };
         let Some(want) = wish() else {
-            if speed < STILL {
+            if speed < STILL_BELOW_RAD_S {
                 (self.v, self.acc) = (PerDrive::zeros(n), PerDrive::zeros(n));
             } else {
                 self.acc = braking;

@@ -1,5 +1,5 @@
-//! With b held: a curve followed on one sheet of a plane, or why not; the nearest motion to a given one; the pointer and
-//! the slider.
+//! Motions with b constant: following a curve on one sheet of a plane, the motion nearest to a given one, and following
+//! the pointer and the slider.
 
 mod braking;
 mod closest;

@@ -9,11 +9,11 @@
 //! | b̄ | mean of b(t) over time | rad |
 //!
 //! # Source
-//! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1): the nearest pose on a plane is the
-//! pose turned as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, so that of all constant b the nearest is b̄.
-//! This turns the end effector with the arm. To keep the end effector instead, the pose moves along the null space of
-//! its Jacobian onto the plane, (16) inverted, where b reaches every point of its path; of these b the nearest, in the
-//! same metric, is found by search.
+//! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1). So the nearest pose on a plane is the
+//! pose rotated as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, and the nearest constant b is b̄. This
+//! rotates the end effector with the arm. To keep the end effector instead, the pose moves along the null space of its
+//! Jacobian onto the plane, (16) inverted, if b reaches every point of its path. A search finds the nearest such b in
+//! the same metric.
 
 use thiserror::Error;
 
@@ -27,19 +27,19 @@ use crate::planning::curves::given::Samples;
 use crate::planning::pose_space::PoseSpace;
 use crate::query::Watch;
 
-/// Why a motion has no twin at a b with the same end effector.
+/// Why a motion cannot be moved to a b with the same end effector path.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NotMoved {
     /// Its curve cannot be followed on the plane.
     #[error(transparent)]
     Blocked(#[from] Box<Blocked>),
-    /// Where points leave freedoms, no pose beside a given one does.
+    /// With more than three drives, no feasible pose was found near a given one.
     #[error(transparent)]
     NoneClose(#[from] NoneClose),
 }
 
 impl NotMoved {
-    /// A b at which the curve can be followed, rad, where one is known.
+    /// Returns a b at which the curve can be followed, rad, if one is known.
     pub fn nearest_b(&self) -> Option<f64> {
         match self {
             Self::Blocked(blocked) => blocked.nearest_b,
@@ -48,7 +48,7 @@ impl NotMoved {
     }
 }
 
-/// Every sample turned as a whole onto the plane b, rad: relative angles stay, the end effector turns along.
+/// Rotates every sample as a whole onto the plane b, rad: relative angles stay, the end effector rotates with the arm.
 pub fn turned(lambda: &PerDrive, samples: &Samples, b: f64) -> Option<Samples> {
     let sum: f64 = lambda.iter().sum();
     let row = |i: usize| {
@@ -59,11 +59,12 @@ pub fn turned(lambda: &PerDrive, samples: &Samples, b: f64) -> Option<Samples> {
     samples.with_values((0..samples.count()).map(row))
 }
 
-/// The samples moved onto b, rad, with the end effector where it was at every one of them: on planes along one sheet by a
-/// rule, elsewhere by the poses closest to the given ones.
+/// Moves every sample to b, rad, with its end effector position unchanged. With three drives it follows one sheet of
+/// the plane under a rule, with more it takes the poses closest to the given ones. Returns `None` if the samples define
+/// no path.
 ///
 /// # Errors
-/// Where that cannot be done; `None` if there is nothing to move.
+/// Where a sample cannot be moved.
 pub fn same_tip(
     space: &PoseSpace,
     model: &Inertia,
@@ -77,8 +78,8 @@ pub fn same_tip(
     }
 }
 
-/// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None` if
-/// none was found, or the rest of the search is not wanted. Judged by some of the samples.
+/// Finds the constant b whose motion with the same end effector path is nearest to the given one, rad, and its ‖Δq‖,
+/// rad, from a subset of the samples. Returns `None` if no b was found, or if `goes_on` cancels the search.
 pub fn nearest_b(
     space: &PoseSpace,
     model: &Inertia,

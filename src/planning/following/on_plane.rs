@@ -1,4 +1,4 @@
-//! The motion on a plane that is nearest to a given one with the same end effector: its curve is followed on one sheet.
+//! The motion on a plane that is nearest to a given one and has the same end effector path, followed on one sheet.
 
 use super::deviation::{apart, least};
 use super::trace::{self, Blocked, Rule};
@@ -11,14 +11,15 @@ use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::PlaneMap;
 use crate::query::Watch;
 
-/// b that are tried in each interval, and golden sections after that.
+/// Number of b tried in each interval.
 const TRIES: usize = 32;
+/// Number of golden section steps after that.
 const SECTIONS: usize = 24;
 
-/// Samples that judge a plane.
-const JUDGED: usize = 201;
+/// Number of samples on which the deviation at a b is computed.
+const DEVIATION_SAMPLES: usize = 201;
 
-/// The curve of the end effector over s = t/T that a path of the drives through samples makes.
+/// Returns the end effector curve over s = t/T of a path of the drives.
 fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
     let nodes: Vec<CurvePoint> = path
         .nodes()
@@ -32,8 +33,9 @@ fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
     Curve::through(path.stations(), &nodes)
 }
 
-/// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None`
-/// if none can be followed, or the rest is not wanted. Judged by some two hundred of the samples.
+/// Finds the constant b whose motion with the same end effector path is nearest to the given one, rad, and its ‖Δq‖,
+/// rad, from at most 201 of the samples. Returns `None` if the curve can be followed at no b, or if `goes_on` cancels
+/// the search.
 pub(super) fn nearest_b(
     map: &PlaneMap,
     model: &Inertia,
@@ -41,22 +43,22 @@ pub(super) fn nearest_b(
     rule: Rule,
     goes_on: Watch<'_>,
 ) -> Option<(f64, f64)> {
-    let (thin, tip) = (samples.thinned(JUDGED), &model.end_effector);
+    let (thin, tip) = (samples.thinned(DEVIATION_SAMPLES), &model.end_effector);
     let curve = tip_curve(tip, &thin.path(0.0)?)?;
     let far = |b: f64| {
         let moved = same_tip(map, tip, &thin, b, rule).ok().flatten();
         moved.map_or(f64::INFINITY, |moved| apart(model, &thin, &moved))
     };
     let mean = (0..thin.count()).map(|i| map.project(thin.values(i)).b).sum::<f64>() / thin.count() as f64;
-    // A little inside: at the very ends a relative angle grazes its limit, or two poses meet.
-    least(&trace::common_b(map, std::slice::from_ref(&curve), JUDGED), mean, [TRIES, SECTIONS], far, goes_on)
+    // `least` tries inside the intervals: at their bounds a relative angle touches its limit, or two poses meet.
+    least(&trace::common_b(map, std::slice::from_ref(&curve), DEVIATION_SAMPLES), mean, [TRIES, SECTIONS], far, goes_on)
 }
 
-/// The samples moved onto the plane b, rad, with the end effector where it was at every one of them, on the sheet
-/// nearest to the first pose.
+/// Moves every sample to the plane b, rad, with its end effector position unchanged, on the sheet nearest to the first
+/// pose. Returns `None` if the samples define no path.
 ///
 /// # Errors
-/// Where the plane does not reach, and which b would do; `None` if there is nothing to move.
+/// Where the curve cannot be followed, why, and at which b it can.
 pub(super) fn same_tip(
     map: &PlaneMap,
     tip: &Chain,

@@ -1,4 +1,4 @@
-//! A course of b: how the pose constant changes along a motion, and what the base feels of it.
+//! A course of b: the pose constant along a motion, and the resulting base moment.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -14,22 +14,23 @@ pub struct BCourse {
     nodes: Vec<[f64; 3]>,
 }
 
-/// What the base feels of a motion.
+/// Base moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// Largest |n_B|, N m.
+    /// Maximum |n_B|, N m.
     pub peak: f64,
-    /// Root of the mean of n_B², N m.
+    /// Root mean square of n_B over the motion, N m.
     pub rms: f64,
 }
 
 impl BCourse {
-    /// The same b throughout.
+    /// Returns the course of constant b, rad.
     pub fn constant(b: f64) -> Self {
         Self { nodes: vec![[b, 0.0, 0.0]; 2] }
     }
 
-    /// From b″ at even nodes, from rest; changed by what is linear in u so that it ends at rest, and at `end` if given.
+    /// Integrates b″ at even nodes, from rest at `start`, rad. A term linear in u is added to b″ so that the course
+    /// ends at rest, and at `end`, rad, if given.
     pub(super) fn integrated(start: f64, mut second: Vec<f64>, end: Option<f64>) -> Self {
         let spaces = second.len() - 1;
         let h = 1.0 / spaces as f64;
@@ -52,12 +53,12 @@ impl BCourse {
         Self { nodes: sum(&second).0 }
     }
 
-    /// b, b′, b″ at even u from 0 to 1.
+    /// Returns b, b′, b″ at even u from 0 to 1, rad.
     pub fn nodes(&self) -> &[[f64; 3]] {
         &self.nodes
     }
 
-    /// b, b′, b″ at u, 0..1.
+    /// Returns b, b′, b″ at u, clamped to 0..1, rad.
     pub fn at(&self, u: f64) -> [f64; 3] {
         let spaces = self.nodes.len() - 1;
         let x = u.clamp(0.0, 1.0) * spaces as f64;
@@ -71,13 +72,13 @@ impl BCourse {
         ]
     }
 
-    /// Whether b never changes.
+    /// Returns whether b is constant.
     pub fn is_constant(&self) -> bool {
         self.nodes.iter().all(|node| node[1] == 0.0 && node[2] == 0.0)
     }
 
-    /// What the base feels of it on a machine of D_1, kg m², in a motion of `duration`, s: exact, as b″ is linear
-    /// between nodes.
+    /// Returns the base moment for D_1 = `inertia`, kg m², and a motion of `duration`, s. It is exact, because b″ is
+    /// linear between nodes.
     pub fn reaction(&self, inertia: f64, duration: f64) -> Reaction {
         let spaces = (self.nodes.len() - 1) as f64;
         let peak = self.nodes.iter().fold(0.0_f64, |m, node| m.max(node[2].abs()));

@@ -1,37 +1,39 @@
-//! The program behind the least reaction: which course of b within a corridor has the least ∫ b″² or the least peak of
-//! b″.
+//! The convex program of the least reaction: the course of b within a corridor with the least ∫ b″² or the least peak
+//! of
+//! |b″|.
 //!
-//! b″ is linear between even nodes; b and b′ of the nodes are unknowns too, bound together by exact integration.
+//! b″ is linear between even nodes. b and b′ of the nodes are unknowns too, with exact integration as equality
+//! constraints.
 
 use crate::convex::{Program, Row};
 use crate::planning::off_plane::b_course::BCourse;
 use crate::planning::off_plane::corridor::{Corridor, Station};
 use crate::planning::reactionless::SLACK;
 
-/// Stations of the corridor in each piece.
+/// Number of stations of the corridor in each piece.
 pub(super) const STATIONS: usize = 8;
-/// Stations are thinned by this where only the value of a program is wanted.
-const EVERY_SECOND: usize = 2;
-/// b would keep this far from the corridor's ends, rad, or a tenth of its width: at a fold the joints would be
-/// infinitely fast.
-const MARGIN: f64 = 1e-3;
-/// Of that margin no more is kept than raises what is to be least by this part.
+/// Stride of the stations where only the value of a program is wanted.
+const STRIDE_FOR_VALUE: usize = 2;
+/// Margin of b to the corridor's bounds, rad, at most a tenth of its width. At a fold the joint rates would be
+/// infinite.
+const MARGIN_RAD: f64 = 1e-3;
+/// The margin is reduced until it raises the objective by at most this fraction.
 const MARGIN_COST: f64 = 4e-3;
-/// Kept in any case, rad: rounding.
-const MIN_MARGIN: f64 = 1e-8;
-/// Where the start pose is nearer to an end than that, the margin grows over this part of the motion.
+/// Margin that is always kept, against rounding, rad.
+const MIN_MARGIN_RAD: f64 = 1e-8;
+/// If the start or the end lies within the margin, the margin grows from there over this fraction of the motion.
 const GROWTH_SHARE: f64 = 0.1;
-/// How often the walls are drawn in where the course passes the corridor's end between stations.
-const ROUNDS: usize = 4;
-/// What a smooth course may add to the least peak, as a part of it.
+/// Maximum number of times that the bounds are tightened because the course leaves the corridor between stations.
+const MAX_TIGHTENINGS: usize = 4;
+/// Fraction of the least peak by which the smoothest course may exceed it.
 const SMOOTHING_COST: f64 = 1e-7;
 
-/// Between which b − b_0 the course must stay at each station, the even ones first.
+/// Lower and upper bound of b − b_0 at each station, rad: the even stations first, then those between.
 type Walls = Vec<[f64; 2]>;
 
-/// The course of least ∫ b″² du, or of least peak of |b″|, that stays within the corridor at every station and, to
-/// second order, between them; or a word on why there is none. The corridor has [`STATIONS`] stations for each of the
-/// spaces. `ease` is how many times [`MARGIN_COST`] the distance from the corridor's ends may cost.
+/// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
+/// second order, between them. Each of the `spaces` pieces has [`STATIONS`] stations. The margin may cost `ease` times
+/// [`MARGIN_COST`]. Fails with the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -40,7 +42,7 @@ pub(super) fn least_course(
     ease: f64,
 ) -> Result<BCourse, String> {
     let value = |share: f64| value(corridor, &walls(corridor, end, share, 0.0), end, peak, spaces);
-    // What is to be least is convex in the share of the margin, so that a chord bounds what a share of it costs.
+    // The objective is convex in the share of the margin, so that a chord bounds the cost of a share from above.
     let free = value(0.0)?;
     let mut shares = match value(1.0) {
         Ok(wide) if wide - free <= ease * MARGIN_COST * free => vec![1.0],
@@ -74,14 +76,15 @@ fn kept_within(
             return Ok(course);
         }
         rounds += 1;
-        if rounds > ROUNDS {
+        if rounds > MAX_TIGHTENINGS {
             return Err(format!("{past:.1e} rad past its end between nodes"));
         }
         extra += 2.0 * past;
     }
 }
 
-/// How far a course passes the ends of its corridor, at stations and halfway between them, rad.
+/// Returns the maximum distance of a course beyond the bounds of its corridor, at stations and halfway between them,
+/// rad.
 fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     let stations = corridor.stations();
     let at = stations.iter().chain(corridor.between()).map(|s| {
@@ -92,7 +95,7 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
         let b = course.at(0.5 * (w[0].u + w[1].u))[0];
         let side = |side: usize, ends: [f64; 2]| {
             let bulges = [k, k + 1].map(|k| bulge(corridor, k, side));
-            // Across a jump of the corridor there is nothing to interpolate.
+            // Across a jump of the corridor interpolation has no meaning.
             let [Some(i), Some(j)] = bulges else { return f64::NEG_INFINITY };
             let sense = [1.0, -1.0][side];
             sense * (0.5 * (ends[0] + ends[1]) - b) + i.min(j)
@@ -102,26 +105,26 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     at.chain(between).fold(0.0, f64::max)
 }
 
-/// How far the corridor may be narrower halfway to the next station than its ends there say, by second differences;
-/// `None` where they say that it jumps, as where another limit takes over.
+/// Estimates from second differences by how much, rad, a bound of the corridor may lie further inside halfway to the
+/// next station than linear interpolation gives. Returns `None` at a jump, such as where another limit takes over.
 fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
     let stations = corridor.stations();
-    let ends = |k: usize| [stations[k].low, stations[k].high][side];
+    let bound = |k: usize| [stations[k].low, stations[k].high][side];
     let second = |k: usize| {
         let k = k.clamp(1, stations.len().max(3) - 2);
-        let bend = (2.0 * ends(k) - ends(k - 1) - ends((k + 1).min(stations.len() - 1))) / 8.0;
+        let bend = (2.0 * bound(k) - bound(k - 1) - bound((k + 1).min(stations.len() - 1))) / 8.0;
         if bend.is_finite() { bend } else { 0.0 }
     };
     let (here, beside) = (second(k), second(k.saturating_sub(2)).abs().max(second(k + 2).abs()));
-    let smooth = here.abs() <= 8.0 * beside + MIN_MARGIN;
+    let smooth = here.abs() <= 8.0 * beside + MIN_MARGIN_RAD;
     smooth.then(|| ([1.0, -1.0][side] * here).max(0.0))
 }
 
-/// Unknowns b − b_0, b′, b″ of each node, side by side, so that every row has few of them.
+/// Solves for the course. The unknowns b − b_0, b′, b″ of each node are adjacent, so that the matrix is banded.
 fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<BCourse, String> {
     let mut least = program(corridor, walls, end, spaces, 1, 0);
     if peak {
-        // First the peak alone; then of all courses with that peak the smoothest.
+        // First minimise the peak alone, then ∫ b″² at that peak.
         let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SMOOTHING_COST);
         for i in 0..=spaces {
             least.at_most.push(Row::new([(3 * i + 2, 1.0)], bound));
@@ -133,12 +136,12 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
     Ok(BCourse::integrated(corridor.start().b, second, end))
 }
 
-/// What is least: the root of ∫ b″² du, or the peak of |b″|.
+/// Returns the least value of the objective, rad: the root of ∫ b″² du, or the peak of |b″|.
 fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<f64, String> {
     if peak {
-        return least_peak(corridor, walls, end, spaces, EVERY_SECOND);
+        return least_peak(corridor, walls, end, spaces, STRIDE_FOR_VALUE);
     }
-    let x = solution(&squared(program(corridor, walls, end, spaces, EVERY_SECOND, 0), spaces))?;
+    let x = solution(&squared(program(corridor, walls, end, spaces, STRIDE_FOR_VALUE, 0), spaces))?;
     let square = |i: usize| {
         let (x, y) = (x[3 * i + 2], x[3 * i + 5]);
         (x * x + x * y + y * y) / (3.0 * spaces as f64)
@@ -146,7 +149,7 @@ fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, space
     Ok((0..spaces).map(square).sum::<f64>().sqrt())
 }
 
-/// The least peak of |b″|: one unknown more.
+/// Returns the least peak of |b″|, rad, from a linear program with the peak as an additional unknown.
 fn least_peak(
     corridor: &Corridor,
     walls: &Walls,
@@ -168,7 +171,7 @@ fn solution(program: &Program) -> Result<Vec<f64>, String> {
     program.solve().map(|least| least.x).map_err(|why| why.to_string())
 }
 
-/// ∫ b″² du.
+/// Adds the objective ∫ b″² du to a program.
 fn squared(mut program: Program, spaces: usize) -> Program {
     let third = 1.0 / (3.0 * spaces as f64);
     for i in 0..spaces {
@@ -180,8 +183,8 @@ fn squared(mut program: Program, spaces: usize) -> Program {
     program
 }
 
-/// What holds of every course, with room for more unknowns behind; walls at every so-manyth even station, and at those
-/// between.
+/// Builds the constraints of a course, with `more` additional unknowns at the end. Bounds apply at every `every`th even
+/// station and at all stations between.
 fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, every: usize, more: usize) -> Program {
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
@@ -215,8 +218,8 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
     program
 }
 
-/// The corridor less a share of the margin, and what it may be narrower between stations. Where a given end of the
-/// course lies within that, it grows from there.
+/// Returns the bounds of b − b_0, rad: the corridor reduced by a share of the margin and by its curvature between
+/// stations. If the start or a given end of the course lies within the margin, the margin grows from there.
 fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls {
     let stations = corridor.stations();
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);
@@ -224,7 +227,7 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
     let wall = |station: &Station, bulges: [f64; 2]| {
         let tenth = 0.1 * (station.high - station.low);
         let inset = |side: usize, gap: [f64; 2]| {
-            let whole = share * MARGIN.min(tenth) + (bulges[side] + MIN_MARGIN + extra).min(tenth);
+            let whole = share * MARGIN_RAD.min(tenth) + (bulges[side] + MIN_MARGIN_RAD + extra).min(tenth);
             let from = |gap: f64, u: f64| whole.min(gap.max(0.0) + whole * (u / GROWTH_SHARE).powi(3));
             from(gap[0], station.u).min(if end.is_some() { from(gap[1], 1.0 - station.u) } else { whole })
         };

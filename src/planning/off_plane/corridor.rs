@@ -1,8 +1,8 @@
-//! The corridor of b along a motion of the end effector: between which b_min and b_max the drives can serve each of its
-//! points on the sheet of the start pose, within the joint limits.
+//! The corridor of b along a motion of the end effector: the interval from b_min to b_max in which each of its points
+//! can be reached on the sheet of the start pose, within the joint limits.
 //!
-//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is all that is left to choose. The
-//! self-motion of each point, cut where b turns back, gives the ends exactly: joint limits or folds.
+//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is the only free coordinate. The self-motion
+//! of each point, divided where b reverses, gives the bounds exactly: joint limits or folds.
 
 use thiserror::Error;
 
@@ -10,39 +10,40 @@ use crate::mechanics::planar::Vector;
 use crate::planning::curves::curve::CurvePoint;
 use crate::planning::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, between, metres};
 
-/// Points of a self-motion that tell its parts from each other.
+/// Number of samples of a self-motion with which its parts are told apart.
 const SAMPLES: usize = 25;
-/// From one station to the next a pose may move by this much, rad; further away is another branch.
-const MAX_POSE_MOVE: f64 = 0.2;
-/// Newton's iteration from a guess is trusted if it moves no further than this, rad.
-const MAX_NEWTON_MOVE: f64 = 0.05;
-/// Steps of b below this are rounding, rad.
-const FLAT: f64 = 1e-11;
-/// An end of the corridor that moves so many times further between two stations than beside them jumps there.
+/// Maximum change of a pose between neighbouring stations, rad; a pose further away is on another branch.
+const MAX_POSE_CHANGE_RAD: f64 = 0.2;
+/// The result of Newton's method is accepted if it is closer than this to the guess, rad.
+const MAX_NEWTON_MOVE_RAD: f64 = 0.05;
+/// Differences of b below this are rounding errors, rad.
+const B_ROUNDING_RAD: f64 = 1e-11;
+/// A bound of the corridor jumps in an interval between stations if it changes there by more than this factor times its
+/// change in the neighbouring intervals, plus [`MIN_JUMP_RAD`].
 const JUMP_FACTOR: f64 = 4.0;
-/// By no less than this, rad.
-const MIN_JUMP: f64 = 1e-6;
-/// How often the place of a jump is halved.
+/// Minimum size of a jump, rad.
+const MIN_JUMP_RAD: f64 = 1e-6;
+/// Number of bisections that locate a jump.
 const HALVINGS: usize = 24;
-/// Stations from a jump to the next even one, each twice as far from it as the one before.
+/// Number of stations between a jump and the next even one; each is twice as far from the jump as the one before.
 const GRADES: i32 = 10;
-/// So many jumps are looked at more closely.
-const JUMPS: usize = 32;
+/// Maximum number of jumps at which stations are added.
+const MAX_JUMPS: usize = 32;
 
-/// What b may be at one instant.
+/// Corridor of b at one instant.
 #[derive(Clone, Debug)]
 pub struct Station {
     /// u = t/T.
     pub u: f64,
-    /// The end effector and its derivatives by u.
+    /// Position of the end effector and its derivatives by u, m.
     pub point: CurvePoint,
-    /// b_min, rad; −∞ where b may turn without end.
+    /// b_min, rad; −∞ if b is unbounded.
     pub low: f64,
-    /// b_max, rad.
+    /// b_max, rad; ∞ if b is unbounded.
     pub high: f64,
-    /// Poses from b_min to b_max; never none.
+    /// Poses from b_min to b_max; at least one.
     line: Vec<PlanePoint>,
-    /// As det ∂(x, y)/∂(a_1, a_2) on the sheet, in sign.
+    /// A number with the sign of det ∂(x, y)/∂(a_1, a_2) on the sheet.
     det: f64,
 }
 
@@ -52,50 +53,50 @@ pub struct Corridor {
     map: PlaneMap,
     start: PlanePoint,
     stations: Vec<Station>,
-    /// Between the even ones, where an end of the corridor jumps.
+    /// Additional stations between the even ones, where a bound of the corridor jumps.
     between: Vec<Station>,
 }
 
-/// Why there is no corridor.
+/// Why a corridor does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CorridorError {
-    /// The start pose belongs to another point.
+    /// The start pose does not reach the first point of the motion.
     #[error("the start pose has the end effector {miss:.2e} m off the motion's first point: want it there")]
     Start {
-        /// m.
+        /// Distance of its end effector from that point, m.
         miss: f64,
     },
-    /// The motion begins nowhere.
+    /// The first point of the motion is not finite.
     #[error("the motion's first point is no point, or too far away to count: want finite coordinates")]
     Nowhere,
-    /// The start pose passes a joint limit.
+    /// The start pose is beyond a joint limit.
     #[error("the start pose has a_{number} = {angle:.3} rad: want it {}", between(*.min, *.max))]
     Limit {
-        /// 1 or 2.
+        /// Number of the relative angle, 1 or 2.
         number: usize,
-        /// rad.
+        /// The angle, rad.
         angle: f64,
-        /// rad.
+        /// Its lower limit, rad.
         min: f64,
-        /// rad.
+        /// Its upper limit, rad.
         max: f64,
     },
-    /// det = 0.
+    /// det = 0 at the start pose.
     #[error("the start pose lies on a fold, where two sheets meet: want det ∂(x, y)/∂(a_1, a_2) ≠ 0")]
     Fold,
-    /// No b at all.
+    /// No b reaches a point of the motion.
     #[error("at u = {u:.3} of the motion, ({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
     Unreachable {
         /// t/T.
         u: f64,
-        /// m.
+        /// x of the point, m.
         x: f64,
-        /// m.
+        /// y of the point, m.
         y: f64,
         /// Why no b reaches the point.
         reason: NoReach,
     },
-    /// Other poses only.
+    /// A point of the motion can be reached on other sheets only.
     #[error(
         "at u = {u:.3} the sheet of the start pose ends: the rest of the motion wants another elbow, or wider joint limits"
     )]
@@ -103,7 +104,7 @@ pub enum CorridorError {
         /// t/T.
         u: f64,
     },
-    /// The curve is no curve.
+    /// The motion is not finite.
     #[error("the motion is not finite at u = {u:.3}")]
     NotFinite {
         /// t/T.
@@ -112,24 +113,24 @@ pub enum CorridorError {
 }
 
 impl Station {
-    /// The pose of this instant at b, rad, on the corridor's sheet.
+    /// Finds the pose at this instant and b, rad, on the corridor's sheet; `None` if b is outside the corridor.
     pub fn pose(&self, map: &PlaneMap, b: f64) -> Option<PlanePoint> {
         let (first, last) = (self.line.first()?, self.line.last()?);
         let turns = if self.low.is_finite() { 0.0 } else { map.period() * ((b - first.b) / map.period()).floor() };
         let on = (b - turns).clamp(first.b, last.b);
-        if (on - (b - turns)).abs() > FLAT {
+        if (on - (b - turns)).abs() > B_ROUNDING_RAD {
             return None;
         }
         let i = self.line.partition_point(|at| at.b < on).clamp(1, self.line.len().max(2) - 1);
         let [from, to] = [self.line[i - 1], *self.line.get(i).unwrap_or(last)];
-        if let Some(end) = [from, to].into_iter().find(|end| (end.b - on).abs() <= FLAT) {
+        if let Some(end) = [from, to].into_iter().find(|end| (end.b - on).abs() <= B_ROUNDING_RAD) {
             return Some(PlanePoint { a: end.a, b });
         }
         let share = (on - from.b) / (to.b - from.b);
         let guess = [0, 1].map(|i| from.a[i] + share * (to.a[i] - from.a[i]));
         if map.det(guess) * self.det > 0.0
             && let Some(a) = map.follow(self.point.p, on, guess)
-            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < MAX_NEWTON_MOVE
+            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < MAX_NEWTON_MOVE_RAD
         {
             return Some(PlanePoint { a, b });
         }
@@ -139,31 +140,31 @@ impl Station {
         own.min_by(|x, y| far(x).total_cmp(&far(y))).map(|x| PlanePoint { a: x.a, b })
     }
 
-    /// b_min or b_max, rad.
+    /// Returns b_min for side 0, b_max for side 1, rad.
     fn end(&self, side: usize) -> f64 {
         [self.low, self.high][side]
     }
 
-    /// The b furthest from both ends; b itself where there are none.
+    /// Returns the middle of the corridor, rad, or `b` itself if it is unbounded.
     fn middle(&self, b: f64) -> f64 {
         if self.low.is_finite() { 0.5 * (self.low + self.high) } else { b }
     }
 }
 
-/// How far apart two b are, whole turns aside.
+/// Returns the distance between two b modulo the period, rad.
 fn off(x: f64, b: f64, map: &PlaneMap) -> f64 {
     let gap = (x - b).abs();
     (gap - map.period() * (gap / map.period()).round()).abs()
 }
 
-/// From one end of a corridor to another; nothing between two that are endless.
+/// Returns the distance between two bounds, rad; 0 if they are equal, also if both are infinite.
 fn gap(x: f64, y: f64) -> f64 {
     if x == y { 0.0 } else { (x - y).abs() }
 }
 
 impl Corridor {
     /// Follows the sheet of a start pose along a motion p(u), u = t/T from 0 to 1, with `count` + 1 stations. Where
-    /// joint limits part the corridor in two, it is the part nearer to the middle of the corridor just before.
+    /// joint limits divide the corridor, it takes the part nearest to the middle of the corridor at the station before.
     ///
     /// # Errors
     /// If the pose does not fit the motion's start, or where the sheet ends.
@@ -208,20 +209,21 @@ impl Corridor {
         Ok(corridor)
     }
 
-    /// The spaces between stations in which an end of the corridor jumps, as where a fold begins, and which end.
+    /// Returns the intervals between stations in which a bound of the corridor jumps, such as where a fold begins, each
+    /// with the side of the bound.
     fn jumps(&self) -> Vec<(usize, usize)> {
         let step = |k: usize, side: usize| gap(self.stations[k].end(side), self.stations[k + 1].end(side));
         let last = self.stations.len() - 2;
         let sudden = |&(k, side): &(usize, usize)| {
             let beside = [k.checked_sub(1), (k < last).then_some(k + 1)];
-            let most = beside.into_iter().flatten().map(|k| step(k, side)).fold(0.0, f64::max);
-            step(k, side) > JUMP_FACTOR * most + MIN_JUMP
+            let max_beside = beside.into_iter().flatten().map(|k| step(k, side)).fold(0.0, f64::max);
+            step(k, side) > JUMP_FACTOR * max_beside + MIN_JUMP_RAD
         };
-        (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(JUMPS).collect()
+        (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(MAX_JUMPS).collect()
     }
 
-    /// Stations on the narrower side of a jump, ever nearer to it: what passes there passes close to a corner that the
-    /// even ones do not show.
+    /// Returns stations on the narrower side of a jump, at distances that halve towards it. They resolve the corner of
+    /// the corridor that the even stations miss.
     fn beside(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
         let [before, after] = [&self.stations[k], &self.stations[k + 1]];
         let ends = [before.end(side), after.end(side)];
@@ -245,7 +247,7 @@ impl Corridor {
         graded.chain([corner]).filter_map(|u| self.at(&curve, u)).collect()
     }
 
-    /// The corridor at any u; `None` if the sheet does not reach it.
+    /// Returns the corridor at any u; `None` if the sheet does not extend there.
     pub(super) fn at(&self, curve: impl Fn(f64) -> CurvePoint, u: f64) -> Option<Station> {
         let count = self.stations.len() - 1;
         let det = self.map.det(self.start.a);
@@ -257,32 +259,32 @@ impl Corridor {
         })
     }
 
-    /// Keeps a station between the even ones.
+    /// Adds a station between the even ones.
     pub(super) fn keep(&mut self, station: Station) {
         self.between.push(station);
     }
 
-    /// Stations between the even ones, in no order.
+    /// Returns the stations between the even ones, unordered.
     pub(super) fn between(&self) -> &[Station] {
         &self.between
     }
 
-    /// The stations, from u = 0 to 1.
+    /// Returns the even stations, from u = 0 to 1.
     pub fn stations(&self) -> &[Station] {
         &self.stations
     }
 
-    /// The pose it begins with.
+    /// Returns the start pose.
     pub fn start(&self) -> PlanePoint {
         self.start
     }
 
-    /// Eqs (13)–(16) of its machine.
+    /// Returns the plane map, Eqs (13)–(16), of the machine.
     pub fn map(&self) -> &PlaneMap {
         &self.map
     }
 
-    /// The first station at which a b, rad, lies outside; `None` if it can be kept all the way.
+    /// Returns the first station at which a b, rad, is outside the corridor; `None` if b can stay constant throughout.
     pub fn leaves(&self, b: f64) -> Option<&Station> {
         let outside = |s: &&Station| !(s.low - SLACK <= b && b <= s.high + SLACK);
         let all = self.stations.iter().chain(&self.between);
@@ -290,7 +292,7 @@ impl Corridor {
     }
 }
 
-/// The corridor at a point, on the branch that passes nearest to a pose.
+/// Finds the corridor at a point, on the branch of the self-motion that passes nearest to a pose.
 fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64) -> Result<Station, CorridorError> {
     let p: Vector = point.p;
     let finite = [p, point.first, point.second].iter().all(|x| x.re.is_finite() && x.im.is_finite());
@@ -301,10 +303,10 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     for branch in map.self_motion(p, SAMPLES) {
         for mut line in sheets(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
-            // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is
-            // anything.
+            // Folds bound a part, so that det has one sign inside it. If a sheet has shrunk to a point, the sign is
+            // arbitrary.
             let own = map.det(inside(&line));
-            if own * det < 0.0 && high - low > FLAT {
+            if own * det < 0.0 && high - low > B_ROUNDING_RAD {
                 continue;
             }
             let endless = high - low >= map.period() - 1e-9;
@@ -314,7 +316,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
             let candidate = Station { u, point, low, high, line, det: own };
             let Some(at) = candidate.pose(map, near.b.clamp(low, high)) else { continue };
             let moved = (at.a[0] - near.a[0]).hypot(at.a[1] - near.a[1]);
-            if moved < MAX_POSE_MOVE && best.as_ref().is_none_or(|(least, _)| moved < *least) {
+            if moved < MAX_POSE_CHANGE_RAD && best.as_ref().is_none_or(|(least, _)| moved < *least) {
                 best = Some((moved, candidate));
             }
         }
@@ -328,7 +330,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     })
 }
 
-/// A pose between the ends of a part.
+/// Returns the relative angles of a pose inside a part.
 fn inside(line: &[PlanePoint]) -> [f64; 2] {
     match line {
         [from, to] => [0, 1].map(|i| 0.5 * (from.a[i] + to.a[i])),
@@ -336,7 +338,7 @@ fn inside(line: &[PlanePoint]) -> [f64; 2] {
     }
 }
 
-/// A branch of a self-motion cut where b turns back; each part with b rising.
+/// Divides a branch of a self-motion where b reverses; in each part b rises.
 fn sheets(map: &PlaneMap, branch: Vec<PlanePoint>) -> Vec<Vec<PlanePoint>> {
     let closes = match (branch.first(), branch.last()) {
         (Some(x), Some(y)) if branch.len() > 2 => {
@@ -352,16 +354,16 @@ fn sheets(map: &PlaneMap, branch: Vec<PlanePoint>) -> Vec<Vec<PlanePoint>> {
         };
         let last = part[part.len() - 1];
         let step = at.b - last.b;
-        if step.abs() > FLAT && *way * step < 0.0 {
+        if step.abs() > B_ROUNDING_RAD && *way * step < 0.0 {
             parts.push((step.signum(), vec![last, at]));
         } else {
-            if step.abs() > FLAT {
+            if step.abs() > B_ROUNDING_RAD {
                 *way = step.signum();
             }
             part.push(at);
         }
     }
-    // Around a closed branch the last part goes on as the first.
+    // On a closed branch the last part continues as the first.
     if closes && parts.len() > 1 && parts[0].0 == parts[parts.len() - 1].0 {
         let (_, first) = parts.remove(0);
         if let Some((_, last)) = parts.last_mut() {

@@ -1,7 +1,7 @@
-//! Drift: a closed path of the end effector, followed at zero angular momentum time after time.
+//! Joint drift on a closed path of the end effector that is followed repeatedly at zero angular momentum.
 //!
-//! D(q) q̇ = 0 is nonholonomic where D depends on the pose: the end effector comes back, the joints do not. On an
-//! invariant machine they do, to rounding. It is why the paper wants invariance, (8).
+//! D(q) q̇ = 0 is nonholonomic if D depends on the pose: the end effector returns, the joints do not. On an invariant
+//! machine the joints return too, to rounding. For this reason the paper requires invariance, (8).
 
 use thiserror::Error;
 
@@ -17,7 +17,7 @@ use crate::planning::off_plane::null_space::{
 };
 use crate::settings::number::counted;
 
-/// Why a motion of zero momentum does not follow a curve.
+/// Why no motion of zero momentum follows a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
     /// The machine has fewer than three drives.
@@ -26,29 +26,29 @@ pub enum DriftError {
         /// Drives of the machine.
         drives: usize,
     },
-    /// The start is elsewhere.
+    /// The start pose is not on the curve's first point.
     #[error("the start pose has the end effector {miss:.2e} m off the curve's first point: want it there")]
     Start {
-        /// m.
+        /// Distance of its end effector from that point, m.
         miss: f64,
     },
-    /// The end is not the start.
+    /// The curve is not closed.
     #[error("the curve ends {gap:.2e} m from where it begins: want a closed one")]
     Open {
-        /// m.
+        /// Distance between its ends, m.
         gap: f64,
     },
     /// [J; D] has lost rank.
     #[error("at s = {s:.3} of the curve, time {cycle} round, no rates of zero momentum follow it")]
     Singular {
-        /// Along the curve.
+        /// s of the curve, 0 to 1.
         s: f64,
-        /// Counted from 1.
+        /// Number of the cycle, counted from 1.
         cycle: usize,
     },
 }
 
-/// A circle run through once, counter-clockwise, from a point of it, m.
+/// Returns a full circle over s from 0 to 1, counter-clockwise from a point of it, m.
 pub fn circle(centre: Vector, start: Vector) -> impl Fn(f64) -> CurvePoint + Clone {
     let radius = start - centre;
     move |s| {
@@ -59,20 +59,20 @@ pub fn circle(centre: Vector, start: Vector) -> impl Fn(f64) -> CurvePoint + Clo
     }
 }
 
-/// Spaces between the nodes of a followed curve.
-const SPACES: usize = 256;
-/// Steps of the integration from node to node.
-const STEPS: usize = 4;
-/// Newton steps that bring the end effector back onto the curve after each step.
-const CORRECTIONS: usize = 4;
-/// How near it is brought, as a part of the arm.
-const ON_CURVE: f64 = 1e-14;
-/// How far off a single step may leave it, as a part of the arm; further off it has jumped over a singular pose.
-const OFF_CURVE: f64 = 1e-4;
+/// Number of intervals between the nodes of a followed curve.
+const NODE_INTERVALS: usize = 256;
+/// Number of integration steps from node to node.
+const STEPS_PER_INTERVAL: usize = 4;
+/// Maximum number of Newton steps that project the end effector back onto the curve after each integration step.
+const MAX_CORRECTIONS: usize = 4;
+/// Tolerance of this projection, as a fraction of the arm length.
+const CURVE_TOLERANCE: f64 = 1e-14;
+/// Maximum error of one integration step, as a fraction of the arm length; a larger one means a singular pose.
+const MAX_STEP_ERROR: f64 = 1e-4;
 
-/// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the fourth-order rule; after
-/// each step the end effector is put back onto the curve by rates of zero momentum. Any time law, from rest to rest,
-/// keeps the moment at zero. Four drives and more take the least rates of these.
+/// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the classical fourth-order
+/// Runge–Kutta method. After each step, rates of zero momentum project the end effector back onto the curve. Any time
+/// law from rest to rest keeps the moment at zero. With four drives or more the rates are the least of these.
 ///
 /// # Errors
 /// If there are fewer than three drives, the start is not on the curve, or [J; D] loses rank.
@@ -81,10 +81,11 @@ pub fn zero_momentum_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, DriftError> {
-    PathTable::even(round(model, start, &curve, SPACES, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+    PathTable::even(round(model, start, &curve, NODE_INTERVALS, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
 }
 
-/// The same along a curve of pieces, each with spaces of its own, for the given time round.
+/// Follows a curve at zero angular momentum piece by piece, each piece with its own intervals. `cycle` is named in
+/// errors.
 ///
 /// # Errors
 /// As [`zero_momentum_path`].
@@ -100,9 +101,10 @@ pub fn zero_momentum_curve(
             other => other,
         })
     };
-    by_pieces(curve, start, SPACES, piece)?.ok_or(DriftError::Singular { s: 0.0, cycle })
+    by_pieces(curve, start, NODE_INTERVALS, piece)?.ok_or(DriftError::Singular { s: 0.0, cycle })
 }
 
+/// Follows a curve once and returns the nodes.
 fn round(
     model: &Inertia,
     start: DriveAngles,
@@ -121,13 +123,13 @@ fn round(
     }
     let singular = |s: f64| DriftError::Singular { s, cycle };
     let slope = |q: &DriveAngles, s: f64| rates(model, q, curve(s).first, 0.0).ok_or(singular(s));
-    let steps = spaces * STEPS;
+    let steps = spaces * STEPS_PER_INTERVAL;
     let h = 1.0 / steps as f64;
     let mut q = start;
     let mut nodes = Vec::with_capacity(spaces + 1);
     for i in 0..=steps {
         let s = i as f64 * h;
-        if i % STEPS == 0 {
+        if i % STEPS_PER_INTERVAL == 0 {
             nodes.push(node(model, &q, &curve(s)).ok_or(singular(s))?);
         }
         if i == steps {
@@ -139,12 +141,12 @@ fn round(
         let k4 = slope(&DriveAngles(q.0.plus(h, &k3)), s + h)?;
         q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
         let goal = curve((i + 1) as f64 * h).p;
-        for j in 0..CORRECTIONS {
+        for j in 0..MAX_CORRECTIONS {
             let gap = goal - end_effector(&model.end_effector, &q.units());
-            if j == 0 && (gap.is_nan() || gap.norm() > OFF_CURVE * reach) {
+            if j == 0 && (gap.is_nan() || gap.norm() > MAX_STEP_ERROR * reach) {
                 return Err(singular(s));
             }
-            if gap.norm() <= ON_CURVE * reach {
+            if gap.norm() <= CURVE_TOLERANCE * reach {
                 break;
             }
             q.0 = q.0.plus(1.0, &rates(model, &q, gap, 0.0).ok_or(singular(s))?);
@@ -153,7 +155,7 @@ fn round(
     Ok(nodes)
 }
 
-/// q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
+/// Returns q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
 fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
     if !determines(model) {
         let (first, second) = least(model, q, point.first, point.second, 0.0)?;
@@ -168,24 +170,24 @@ fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoin
     Some(PathPoint { q: *q, first, second })
 }
 
-/// Where the joints are each time the end effector has come round.
+/// Joint angles after each cycle of the end effector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
     /// q at the start and after each cycle, rad.
     pub ends: Vec<DriveAngles>,
-    /// The first cycle.
+    /// Path of the first cycle.
     pub first: PathTable,
 }
 
 impl Drift {
-    /// q after the last cycle less q at the start, rad.
+    /// Returns q after the last cycle minus q at the start, rad.
     pub fn total(&self) -> PerDrive {
         let last = self.ends.len() - 1;
         self.ends[last].0.minus(&self.ends[0].0)
     }
 }
 
-/// Follows a closed curve of the end effector time after time, once at least, at zero angular momentum.
+/// Follows a closed curve of the end effector `cycles` times, at least once, at zero angular momentum.
 ///
 /// # Errors
 /// As [`zero_momentum_path`], or if the curve is not closed.
@@ -195,10 +197,11 @@ pub fn drift(
     curve: impl Fn(f64) -> CurvePoint,
     cycles: usize,
 ) -> Result<Drift, DriftError> {
-    drift_in(model, start, curve, cycles, SPACES)
+    drift_in(model, start, curve, cycles, NODE_INTERVALS)
 }
 
-/// The same in so many spaces a cycle, 2 to 4096, each of four steps: the error falls with their fourth power.
+/// Follows a closed curve as [`drift`], with a given number of intervals per cycle, 2 to 4096, each of four steps. The
+/// error falls with the fourth power of this number.
 ///
 /// # Errors
 /// As [`drift`].

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | w | p e^{−i b*}: the end effector in the workspace before it is turned by b* = b/Σλ | m |
+//! | w | p e^{−i b*}: the end effector rotated back by b* = b/Σλ | m |
 //! | F(a) | Σ_k c_k e^{i (u_k · a + v_k)} = w, (16) | m |
 //!
 //! w′ = F_1 a_1′ + F_2 a_2′ and w″ = F_1 a_1″ + F_2 a_2″ − Σ_k c_k e^{i (u_k · a + v_k)} (u_k · a′)².
@@ -13,7 +13,7 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::CurvePoint;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 
-/// (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.
+/// Returns (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.
 pub(in crate::planning) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
     let arms = map.arms(a);
     let [c1, c2] = map.columns(&arms);
@@ -24,8 +24,8 @@ pub(in crate::planning) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, sec
     [ad, solve(second + inward)]
 }
 
-/// The pose that has the end effector on a point of a curve at b = `[b, b′, b″]`, found continuously from the pose
-/// `from`, and how it moves along. Derivatives are by the parameter of the curve.
+/// Finds the pose with the end effector on a point of a curve at b = `[b, b′, b″]`, on the sheet of the pose `from`,
+/// and its derivatives by the parameter of the curve.
 ///
 /// `None` where [`PlaneMap::follow`] finds no such pose, or where det ∂(x, y)/∂(a_1, a_2) = 0.
 pub fn pose_along(map: &PlaneMap, point: &CurvePoint, b: [f64; 3], from: [f64; 2]) -> Option<(PlanePoint, PathPoint)> {

@@ -1,8 +1,8 @@
-//! Leaving the plane, and transmitting as little as possible: the redundant mode.
+//! Leaving the plane with the least base moment: the redundant mode.
 //!
-//! The end effector's motion p(u), u = t/T, is given; on one sheet q = q(x, y, b), so that b(u) within its
-//! [`Corridor`] is all that is left to choose, and n_B = −D_1 b̈. The least ∫ n_B² dt is a quadratic program, the least
-//! peak of |n_B| a linear one. Where a constant b serves, it is the answer, and the base feels nothing.
+//! The end effector's motion p(u), u = t/T, is given. On one sheet q = q(x, y, b), so that only b(u) within its
+//! [`Corridor`] is free, and n_B = −D_1 b̈. The least ∫ n_B² dt is a quadratic program, the least peak of |n_B| a
+//! linear one. If a constant b is feasible, it is the solution, and the base moment is zero.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -28,29 +28,30 @@ use crate::planning::off_plane::inverse::pose_along;
 use crate::planning::off_plane::price::{Price, PriceError};
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK, between};
 
-/// Pieces of b″ unless more are asked for.
+/// Default number of pieces of b″.
 pub const SPACES: usize = 96;
-/// The most pieces.
+/// Maximum number of pieces.
 pub const MAX_SPACES: usize = 512;
-/// How near to its curve the end effector is kept between nodes, as a part of the arm.
-const ON_CURVE: f64 = 1e-10;
-/// The same near a fold, where spaces between nodes are halved so often to keep it.
-const NEAR_CURVE: f64 = 1e-8;
-const HALVINGS: usize = 12;
-/// For each station no more nodes than this.
-const CROWD: usize = 16;
-/// Further off it counts as not followed.
-const AWAY: f64 = 1e-6;
+/// Tolerance of the end effector on its curve between nodes, as a fraction of the arm length.
+const CURVE_TOLERANCE: f64 = 1e-10;
+/// The same tolerance near a fold, where intervals between nodes are halved to meet it.
+const CURVE_TOLERANCE_NEAR_FOLD: f64 = 1e-8;
+/// Maximum number of such halvings.
+const MAX_HALVINGS: usize = 12;
+/// Maximum number of nodes per station.
+const MAX_NODES_PER_STATION: usize = 16;
+/// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
+const MAX_DEVIATION: f64 = 1e-6;
 
-/// How often a corridor is looked at between its stations before the course keeps farther from its ends.
-const LOOKS: usize = 4;
+/// Maximum number of courses for one margin, with a corridor station added after each; then the margin grows.
+const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
-/// What is to be least.
+/// The objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// ∫ n_B² dt.
     Rms,
-    /// The peak of |n_B|, and of all motions with that peak the least ∫ n_B² dt.
+    /// The peak of |n_B|; among all motions with that peak, ∫ n_B² dt.
     Peak,
 }
 
@@ -63,35 +64,35 @@ pub struct LeastReaction {
     inertia: f64,
 }
 
-/// Why there is none.
+/// Why no such motion was found.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum LeastReactionError {
     /// b has no corridor.
     #[error(transparent)]
     Corridor(#[from] CorridorError),
-    /// No b, or another machine.
+    /// The machine has no b.
     #[error(transparent)]
     Price(#[from] PriceError),
-    /// The end effector does not rest.
+    /// The end effector is not at rest at the start or the end.
     #[error("the end effector moves at u = {u}: want a motion from rest to rest, dp/du = 0 at both ends")]
     NotAtRest {
-        /// 0 or 1.
+        /// t/T, 0 or 1.
         u: f64,
     },
-    /// The wanted end.
+    /// The wanted b at the end is outside its corridor.
     #[error("b = {b:.3} rad at the end is outside of its corridor there: want b {} rad", between(*.low, *.high))]
     EndOutside {
-        /// rad.
+        /// The wanted b, rad.
         b: f64,
-        /// rad.
+        /// Lower bound of the corridor, rad.
         low: f64,
-        /// rad.
+        /// Upper bound of the corridor, rad.
         high: f64,
     },
-    /// The program has no answer.
+    /// The convex program has no solution.
     #[error("no smooth course of b stays within its corridor ({solver}): want a shorter motion, or wider joint limits")]
     NoCourse {
-        /// The solver's word.
+        /// The solver's reason.
         solver: String,
     },
     /// The drives cannot follow the course of b.
@@ -119,7 +120,8 @@ impl LeastReaction {
         Self::plan_in(map, model, curve, start, end, goal, SPACES)
     }
 
-    /// The same with b″ in that many pieces, 2 to [`MAX_SPACES`]: the answer's error falls with their square.
+    /// Plans as [`plan`](Self::plan), with a given number of pieces of b″, 2 to [`MAX_SPACES`]. The error falls with
+    /// the square of this number.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).
@@ -154,16 +156,16 @@ impl LeastReaction {
             }
         }
         let mut refused = None;
-        // Too near to a fold the drives cannot follow: then farther from it, at a cost.
+        // If the drives cannot follow close to a fold, increase the margin at a higher cost.
         for ease in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, f64::INFINITY] {
-            for _ in 0..LOOKS {
+            for _ in 0..MAX_CORRIDOR_REFINEMENTS {
                 let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
                     .map_err(|solver| LeastReactionError::NoCourse { solver })?;
                 let why = match followed(&corridor, &curve, &course) {
                     Ok(path) => return Ok(Self { corridor, course, path, inertia }),
                     Err(why) => why,
                 };
-                // Past an end of the corridor that no station shows, as where a fold begins between two?
+                // Does b leave the corridor between stations there, such as where a fold begins between two?
                 let place = match &why {
                     LeastReactionError::NotFollowed { u } => corridor.at(&curve, *u),
                     _ => None,
@@ -178,28 +180,28 @@ impl LeastReaction {
         Err(refused.unwrap_or(LeastReactionError::NotFollowed { u: 0.0 }))
     }
 
-    /// b over u.
+    /// Returns b over u.
     pub fn course(&self) -> &BCourse {
         &self.course
     }
 
-    /// The drives over u = t/T; rates are q′/T, accelerations q″/T².
+    /// Returns the path of the drives over u = t/T; rates are q′/T, accelerations q″/T².
     pub fn path(&self) -> &PathTable {
         &self.path
     }
 
-    /// Between which b it could choose.
+    /// Returns the corridor of b.
     pub fn corridor(&self) -> &Corridor {
         &self.corridor
     }
 
-    /// What the base feels when it takes `duration`, s.
+    /// Returns the base moment for a motion of `duration`, s.
     pub fn reaction(&self, duration: f64) -> Reaction {
         self.course.reaction(self.inertia, duration)
     }
 
-    /// The three ways to make the same motion of the end effector in `duration`, s, and what each does to the base.
-    /// `tip` and `curve` are those of the plan.
+    /// Compares the base moments of three ways to make the same motion of the end effector in `duration`, s. `tip` and
+    /// `curve` are those of the plan.
     pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
         let start = self.corridor.start();
         let fixed = match self.corridor.leaves(start.b) {
@@ -207,11 +209,12 @@ impl LeastReaction {
             Some(station) => FixedB::Leaves { u: station.u, low: station.low, high: station.high },
         };
         let from = DriveAngles::from(self.corridor.map().lift(start));
-        let minimum_norm = minimum_norm_path(tip, from, curve).map(|path| self.judge(&path, duration));
+        let minimum_norm = minimum_norm_path(tip, from, curve).map(|path| self.assess(&path, duration));
         Verdicts { fixed, minimum_norm, least: self.reaction(duration) }
     }
 
-    fn judge(&self, path: &PathTable, duration: f64) -> MinimumNorm {
+    /// Returns the base moment of a path in `duration`, s, its final b, and whether it keeps the joint limits.
+    fn assess(&self, path: &PathTable, duration: f64) -> MinimumNorm {
         let map = self.corridor.map();
         let scale = self.inertia / (duration * duration);
         let n_b = |u: f64| scale * map.project_rates(&path.at(u).second).1.abs();
@@ -233,18 +236,18 @@ impl LeastReaction {
     }
 }
 
-/// Three ways to make one motion of the end effector, from one pose.
+/// Comparison of three ways to make one motion of the end effector from one pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdicts {
-    /// b kept: no reaction at all, where it can be done.
+    /// Constant b: no reaction, if feasible.
     pub fixed: FixedB,
     /// Minimum-norm rates, q′ = J⁺ p′, as in case 1.
     pub minimum_norm: Result<MinimumNorm, PathError>,
-    /// The least reaction.
+    /// Base moment of the least reaction.
     pub least: Reaction,
 }
 
-/// What each would cost, and how far the first gets: t/T from which on it does not serve.
+/// The base moment of each way, and the t/T from which constant b is infeasible.
 impl Serialize for Verdicts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -263,18 +266,18 @@ impl Serialize for Verdicts {
     }
 }
 
-/// Whether the start pose's own b serves the whole motion.
+/// Whether the b of the start pose is feasible for the whole motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FixedB {
-    /// It does, and n_B = 0.
+    /// It is feasible, and n_B = 0.
     Serves,
-    /// From here on it does not.
+    /// It is infeasible from some u on.
     Leaves {
         /// t/T.
         u: f64,
-        /// b that would serve there, rad.
+        /// Lower bound of the corridor there, rad.
         low: f64,
-        /// rad.
+        /// Upper bound of the corridor there, rad.
         high: f64,
     },
 }
@@ -282,7 +285,7 @@ pub enum FixedB {
 /// The motion with minimum-norm rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinimumNorm {
-    /// What the base feels.
+    /// Base moment.
     pub reaction: Reaction,
     /// b at its end, rad.
     pub end_b: f64,
@@ -290,8 +293,9 @@ pub struct MinimumNorm {
     pub keeps_limits: bool,
 }
 
-/// The drives along a course of b: as few nodes as keep the end effector on its curve at every station, because the
-/// rounding of q″ between nodes grows with their number. Near a fold it takes them all, and more between them.
+/// Returns the path of the drives along a course of b, with as few nodes as keep the end effector on its curve at every
+/// station, because rounding errors of q″ between nodes grow with their number. Near a fold it takes all stations and
+/// more nodes between them.
 fn followed(
     corridor: &Corridor,
     curve: impl Fn(f64) -> CurvePoint,
@@ -309,21 +313,21 @@ fn followed(
         from = at.a;
         nodes.push(node);
     }
-    let nothing = LeastReactionError::NotFollowed { u: 0.0 };
+    let invalid = LeastReactionError::NotFollowed { u: 0.0 };
     let reach = map.c().iter().map(|c| c.abs()).sum::<f64>();
     let off = |table: &PathTable, u: f64, p: Vector| {
         let at = map.project(&table.at(u).q);
         (map.forward(at.a, at.b) - p).norm()
     };
     for step in [STATIONS / 2, STATIONS / 4] {
-        let table = PathTable::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
-        if stations.iter().all(|station| off(&table, station.u, station.point.p) <= ON_CURVE * reach) {
+        let table = PathTable::even(nodes.iter().step_by(step).copied().collect()).ok_or(invalid.clone())?;
+        if stations.iter().all(|station| off(&table, station.u, station.point.p) <= CURVE_TOLERANCE * reach) {
             return Ok(table);
         }
     }
-    let mut table = PathTable::even(nodes.clone()).ok_or(nothing.clone())?;
+    let mut table = PathTable::even(nodes.clone()).ok_or(invalid.clone())?;
     let mut u: Vec<f64> = stations.iter().map(|station| station.u).collect();
-    for round in 0..=HALVINGS {
+    for round in 0..=MAX_HALVINGS {
         let mut worst = (0.0, 0.0);
         let (mut finer, mut finer_nodes) = (Vec::with_capacity(u.len()), Vec::with_capacity(u.len()));
         for (i, w) in u.windows(2).enumerate() {
@@ -332,7 +336,7 @@ fn followed(
             let middle = 0.5 * (w[0] + w[1]);
             let point = curve(middle);
             let gap = off(&table, middle, point.p);
-            if gap <= NEAR_CURVE * reach {
+            if gap <= CURVE_TOLERANCE_NEAR_FOLD * reach {
                 continue;
             }
             if gap > worst.0 {
@@ -342,7 +346,7 @@ fn followed(
             let missing = LeastReactionError::NotFollowed { u: middle };
             let from = [i, i + 1].map(|i| map.project(&nodes[i].q).a);
             let on = from.into_iter().find_map(|from| pose_along(map, &point, b, from)).or_else(|| {
-                // Near a fold, from the corridor's own pose.
+                // Near a fold, start from the corridor's own pose.
                 pose_along(map, &point, b, corridor.at(&curve, middle)?.pose(map, b[0])?.a)
             });
             finer.push(middle);
@@ -351,8 +355,8 @@ fn followed(
         if worst.0 == 0.0 {
             break;
         }
-        if round == HALVINGS || finer.len() > CROWD * stations.len() {
-            return if worst.0 > AWAY * reach {
+        if round == MAX_HALVINGS || finer.len() > MAX_NODES_PER_STATION * stations.len() {
+            return if worst.0 > MAX_DEVIATION * reach {
                 Err(LeastReactionError::NotFollowed { u: worst.1 })
             } else {
                 Ok(table)
@@ -361,7 +365,7 @@ fn followed(
         finer.push(1.0);
         finer_nodes.push(nodes[nodes.len() - 1]);
         (u, nodes) = (finer, finer_nodes);
-        table = PathTable::new(u.clone(), nodes.clone()).ok_or(nothing.clone())?;
+        table = PathTable::new(u.clone(), nodes.clone()).ok_or(invalid.clone())?;
     }
     Ok(table)
 }

@@ -1,8 +1,8 @@
 //! Why invariance matters: motions of zero angular momentum on machines whose mass matrix depends on the pose.
 //!
-//! At each pose the rates with D(q) · q̇ = 0 transmit no moment: n − 1 directions. Where D is constant they are the
-//! planes b = const, and a closed path of the end effector brings the joints back. Where it is not, they fit together
-//! to no surface (for three drives and more): each time the end effector comes round, the joints have drifted.
+//! At each pose the rates with D(q) · q̇ = 0 transmit no moment; they span n − 1 directions. If D is constant, they
+//! span the planes b = const, and a closed path of the end effector brings the joints back. If D is not constant, with
+//! three drives or more these directions are not integrable to a surface: the joints drift with every cycle.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
@@ -13,10 +13,10 @@
 //! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
 //!
 //! # Source
-//! D_k = C_kk + J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0
-//! is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} + (H_22
-//! C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]: it vanishes in all poses only if its
-//! coefficients do, and where H is positive definite only if every C_kl is zero.
+//! D_k = C_kk + J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D
+//! q̇ = 0 is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} +
+//! (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]: it vanishes in all poses only if
+//! its coefficients do, and if H is positive definite, only if every C_kl is zero.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -27,7 +27,7 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector}
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::table::PathTable;
 
-/// D_k at a pose, kg m², (A3).
+/// Returns D_k at a pose, kg m², (A3).
 #[inline]
 pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
     let n = model.drives();
@@ -35,7 +35,7 @@ pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
     PerDrive::from_fn(n, |k| h.momentum_row(k))
 }
 
-/// Ḋ_k at a pose for rates q̇, kg m²/s.
+/// Returns Ḋ_k at a pose for rates q̇, kg m²/s.
 #[inline]
 pub fn momentum_row_rate(model: &Inertia, e: &Units, qd: &PerDrive) -> PerDrive {
     let n = model.drives();
@@ -43,7 +43,7 @@ pub fn momentum_row_rate(model: &Inertia, e: &Units, qd: &PerDrive) -> PerDrive 
     PerDrive::from_fn(n, |k| (0..n).map(|l| -coupling(model, e, k, l).im * (qd[l] - qd[k])).sum())
 }
 
-/// Z_kl, kg m².
+/// Returns Z_kl, kg m².
 #[inline]
 fn coupling(model: &Inertia, e: &Units, k: usize, l: usize) -> Vector {
     model.coupling(k, l) * (e[k].conj() * e[l])
@@ -57,12 +57,12 @@ pub struct NullSpace {
 }
 
 impl NullSpace {
-    /// At a pose q, rad.
+    /// Returns the null space at a pose q, rad.
     pub fn of(model: &Inertia, q: &DriveAngles) -> Self {
         let n = model.drives();
         let d = momentum_row(model, &q.units());
         let norm = d.dot(&d).sqrt();
-        // The reflection that takes D to the first axis takes the other axes to a basis of what is normal to D.
+        // The Householder reflection that maps D to the first axis maps the other axes to a basis of D's complement.
         let mut v = d;
         v[0] += norm.copysign(d[0]);
         let square = v.dot(&v);
@@ -75,43 +75,44 @@ impl NullSpace {
         Self { basis, len: n - 1 }
     }
 
-    /// n − 1 rates of the drives, each of length 1, at right angles to each other and to D.
+    /// Returns n − 1 orthonormal vectors of drive rates, orthogonal to D.
     pub fn basis(&self) -> &[PerDrive] {
         &self.basis[..self.len]
     }
 }
 
-/// The rates of zero momentum nearest to wanted ones: w − D (D · w)/(D · D).
+/// Returns the rates of zero momentum nearest to wanted ones w: w − D (D · w)/(D · D).
 pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
     let d = momentum_row(model, &q.units());
     w.plus(-share(&d, w), &d)
 }
 
-/// (D · w)/(D · D); 0 where D is, so that nothing has to be taken away.
+/// Returns (D · w)/(D · D), or 0 if D = 0.
 fn share(d: &PerDrive, w: &PerDrive) -> f64 {
     let square = d.dot(d);
     if square > 0.0 { d.dot(w) / square } else { 0.0 }
 }
 
-/// Spaces between the nodes of a motion.
-const SPACES: usize = 256;
-/// Steps of its integration from node to node.
-const STEPS: usize = 4;
+/// Number of intervals between the nodes of a motion.
+const NODE_INTERVALS: usize = 256;
+/// Number of integration steps from node to node.
+const STEPS_PER_INTERVAL: usize = 4;
 
-/// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it
-/// transmits nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and
-/// direction are of the machine and finite.
+/// Integrates a motion of zero momentum from a pose, for any number of drives, by the classical fourth-order
+/// Runge–Kutta method. q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On an invariant
+/// machine the motion is a straight line. Returns `None` unless pose and direction have the machine's drives and are
+/// finite.
 pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
         return None;
     }
-    let h = 1.0 / (SPACES * STEPS) as f64;
+    let h = 1.0 / (NODE_INTERVALS * STEPS_PER_INTERVAL) as f64;
     let slope = |q: &PerDrive| projected(model, &DriveAngles(*q), w);
     let mut q = start.0;
-    let mut nodes = Vec::with_capacity(SPACES + 1);
-    for i in 0..=SPACES * STEPS {
-        if i % STEPS == 0 {
+    let mut nodes = Vec::with_capacity(NODE_INTERVALS + 1);
+    for i in 0..=NODE_INTERVALS * STEPS_PER_INTERVAL {
+        if i % STEPS_PER_INTERVAL == 0 {
             nodes.push(node(model, DriveAngles(q), w));
         }
         let k1 = slope(&q);
@@ -123,7 +124,7 @@ pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathT
     PathTable::even(nodes)
 }
 
-/// q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
+/// Returns q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
 fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
     let e = q.units();
     let d = momentum_row(model, &e);
@@ -135,9 +136,9 @@ fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
     PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
 }
 
-/// The rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s about B: [J; D] q̇ = [v; h];
-/// of more than three drives, or where no drive has angular momentum, the least. `None` for other numbers of drives, or
-/// where the matrix has lost rank.
+/// Returns the rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, about B: [J; D] q̇
+/// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the least rates. Returns
+/// `None` for fewer drives, or if the matrix has lost rank.
 pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
     if model.drives() > 3 || turns_nothing(model) {
         return least(model, q, v, Vector::default(), h).map(|(rates, _)| rates);
@@ -146,10 +147,10 @@ pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerD
     solve(&lines, v, h / scale)
 }
 
-/// Along what a machine's end effector moves at zero momentum.
+/// Curves that a machine's end effector can follow at zero angular momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MomentumFreedom {
-    /// Nothing: one drive has momentum as soon as it turns.
+    /// None: a single drive has momentum as soon as it turns.
     None,
     /// One curve through each pose: two drives.
     OneCurve,
@@ -158,7 +159,7 @@ pub enum MomentumFreedom {
 }
 
 impl MomentumFreedom {
-    /// Of a machine.
+    /// Classifies a machine.
     pub fn of(model: &Inertia) -> Self {
         match model.drives() {
             1 => Self::None,
@@ -168,20 +169,21 @@ impl MomentumFreedom {
     }
 }
 
-/// Whether the rates of the end effector and the momentum determine those of the drives: three that have some.
+/// Returns whether the velocity of the end effector and the momentum determine the rates of the drives. This holds for
+/// three drives with angular momentum.
 pub(super) fn determines(model: &Inertia) -> bool {
     model.drives() == 3 && !turns_nothing(model)
 }
 
-/// Whether no motion has any angular momentum.
+/// Returns whether no motion of the machine has angular momentum.
 pub fn turns_nothing(model: &Inertia) -> bool {
     let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());
-    let most = model.momenta().max_abs();
-    most <= BALANCED * whole && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCED * whole)
+    let max_momentum = model.momenta().max_abs();
+    max_momentum <= BALANCED * whole && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCED * whole)
 }
 
-/// Of all rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, the least, and their
-/// exact derivative for v̇ and the same h.
+/// Returns the least rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, and their
+/// exact derivative for v̇ = `vd`, m/s², and constant h.
 pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
     let e = q.units();
     if turns_nothing(model) {
@@ -191,7 +193,8 @@ pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: 
     minimum_norm_with(&model.end_effector, (&d, h), |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
 }
 
-/// J and D of three drives, D divided by its length so that both are of one size for an arm of a metre.
+/// Returns [J; D/scale] of three drives and the scale, kg m, at which D is as long as the arm. Returns `None` for other
+/// numbers of drives, or if the matrix has lost rank.
 pub(super) fn lines(model: &Inertia, e: &Units) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
@@ -205,41 +208,41 @@ pub(super) fn lines(model: &Inertia, e: &Units) -> Option<(Matrix3<f64>, f64)> {
     (m.determinant().abs() > 1e-9 * reach.powi(3)).then_some((m, scale))
 }
 
+/// Solves `lines` q̇ = [v; h] for q̇; `None` if the matrix is singular.
 pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive> {
     let x = lines.lu().solve(&Vector3::new(v.re, v.im, h))?;
     x.iter().all(|x| x.is_finite()).then(|| PerDrive::from([x[0], x[1], x[2]]))
 }
 
-/// How far D q̇ = 0 is from being integrable at a pose, (kg m²)²: the largest component of D ∧ dD,
-/// 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. 0 for one or two drives, and where D is
-/// constant.
+/// Returns the violation of integrability of D q̇ = 0 at a pose, (kg m²)²: the largest component of D ∧ dD, 2 |D_j Im
+/// Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. It is 0 for one or two drives, and if D is constant.
 pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
     let (n, e) = (model.drives(), q.units());
     let d = momentum_row(model, &e);
     let z = |k: usize, l: usize| coupling(model, &e, k, l).im;
-    let mut most = 0.0_f64;
+    let mut largest = 0.0_f64;
     for j in 0..n {
         for k in j + 1..n {
             for l in k + 1..n {
-                most = most.max(2.0 * (d[j] * z(k, l) + d[k] * z(l, j) + d[l] * z(j, k)).abs());
+                largest = largest.max(2.0 * (d[j] * z(k, l) + d[k] * z(l, j) + d[l] * z(j, k)).abs());
             }
         }
     }
-    most
+    largest
 }
 
-/// Whether the machine has a pose constant: a b(q) whose surfaces are all that motions of zero momentum stay on.
+/// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always do. Three and more do if H_jj C_kl = C_kj C_jl for any three of them; where every drive has
-/// some inertia of its own that is an invariant mass matrix, D constant and b = Σ λ_k q_k.
+/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for any three of them. If every
+/// drive has some inertia of its own, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
-    // Of D without its couplings: rotors count in H, not in D.
+    // Inertias in D without couplings: rotors count in H, not in D.
     let own = model.momenta();
     let holds = |j: usize, k: usize, l: usize| {
-        let left = own[j] * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
-        left.norm() <= BALANCED * whole * whole
+        let residual = own[j] * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
+        residual.norm() <= BALANCED * whole * whole
     };
     Inertia::pairs(n).all(|(k, l)| (0..n).filter(|j| *j != k && *j != l).all(|j| holds(j, k, l)))
 }

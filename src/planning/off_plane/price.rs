@@ -1,8 +1,7 @@
-//! The price of b: what the base feels when a motion leaves its plane, stated before it starts.
+//! The price of b: the base moment of a motion that leaves its plane, known before it starts.
 //!
-//! A machine whose mass matrix is constant transmits n_B = −D_1 b̈ and nothing else, whatever its other coordinates do.
-//! So a motion from a pose of one b to a pose of another has a price that depends on Δb, on the time and on the law
-//! alone.
+//! A machine whose mass matrix is constant transmits n_B = −D_1 b̈ only, whatever its other coordinates do. So the
+//! price of a motion from a pose of one b to a pose of another depends on Δb, the duration and the time law alone.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -15,8 +14,8 @@
 //! | μ | m_b M / (m_b + M), M the mass of the manipulator | kg |
 //!
 //! # Source
-//! (11)–(13): angular momentum about B is D q̇ = D_1 ḃ. It holds while C_kl = 0 for k ≠ l, nothing pulls at the end
-//! effector and gravity has no moment about B; of what gravity does, the price says nothing.
+//! (11)–(13): angular momentum about B is D q̇ = D_1 ḃ. It holds if C_kl = 0 for k ≠ l, no force acts on the end
+//! effector and gravity has no moment about B; the price does not include gravity.
 
 use thiserror::Error;
 
@@ -31,7 +30,7 @@ use crate::planning::reactionless::BSet;
 use crate::planning::timing::law::TimeLaw;
 use crate::settings::number::counted;
 
-/// How b goes from rest to rest.
+/// Time law of b from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseLaw {
     /// Constant b̈ for half of T, its negative for the rest: the least peak of n_B, and the least time for a peak.
@@ -43,7 +42,7 @@ pub enum PoseLaw {
 }
 
 impl PoseLaw {
-    /// T² max|b̈|/|Δb|: 4, 6, 10/√3.
+    /// Returns T² max|b̈|/|Δb|: 4, 6, 10/√3.
     pub fn peak(self) -> f64 {
         match self {
             Self::BangBang => 4.0,
@@ -52,7 +51,7 @@ impl PoseLaw {
         }
     }
 
-    /// T ∫|b̈|dt/|Δb|, twice the peak of ḃ: 4, 3, 15/4.
+    /// Returns T ∫|b̈|dt/|Δb|, twice T max|ḃ|/|Δb|: 4, 3, 15/4.
     pub fn impulse(self) -> f64 {
         match self {
             Self::BangBang => 4.0,
@@ -61,7 +60,7 @@ impl PoseLaw {
         }
     }
 
-    /// T² times the root of the mean of b̈² over |Δb|: 4, √12, √(120/7).
+    /// Returns T² times the root mean square of b̈, divided by |Δb|: 4, √12, √(120/7).
     pub fn rms(self) -> f64 {
         match self {
             Self::BangBang => 4.0,
@@ -71,37 +70,37 @@ impl PoseLaw {
     }
 }
 
-/// Why a change of b has no price that could be stated.
+/// Why a change of b has no price.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum PriceError {
     /// H depends on the pose.
     #[error("the mass matrix depends on the pose (|C_kl| up to {residual:.2e} kg m²), so there is no b: want C_kl = 0")]
     NotInvariant {
-        /// kg m².
+        /// Maximum |C_kl|, kg m².
         residual: f64,
     },
     /// The centre of mass moves.
     #[error("the centre of mass moves (|g_k| up to {residual:.2e} kg m): the turn of a free base wants g_k = 0")]
     NotBalanced {
-        /// kg m.
+        /// Maximum |g_k|, kg m.
         residual: f64,
     },
-    /// Poses of another machine.
+    /// Poses with another number of angles than the machine has drives.
     #[error("poses of {from} and {to} angles for a machine of {}: want {drives} each", counted(drives, "drive"))]
     Drives {
-        /// Of the first pose.
+        /// Number of angles of the first pose.
         from: usize,
-        /// Of the second.
+        /// Number of angles of the second pose.
         to: usize,
-        /// Of the machine.
+        /// Number of drives of the machine.
         drives: usize,
     },
-    /// The numbers of a base.
+    /// Invalid mass, inertia or centre of mass of a base.
     #[error("a free base wants finite numbers, with mass and inertia not below 0 and one of them above")]
     Base,
 }
 
-/// A base that floats freely.
+/// A free-floating base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatingBase {
     /// m_b, kg.
@@ -112,7 +111,7 @@ pub struct FloatingBase {
     pub com: Vector,
 }
 
-/// What it costs to change b by Δb, from rest to rest.
+/// Cost of changing b by Δb, from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
     inertia: f64,
@@ -120,10 +119,10 @@ pub struct Price {
 }
 
 impl Price {
-    /// The price of Δb, rad, on a machine whose mass matrix is constant.
+    /// Returns the price of Δb, rad, on a machine whose mass matrix is constant.
     ///
     /// # Errors
-    /// If it is not.
+    /// If the mass matrix is not constant.
     pub fn of(model: &Inertia, delta_b: f64) -> Result<Self, PriceError> {
         if !model.is_invariant() {
             return Err(PriceError::NotInvariant { residual: model.invariance_residual() });
@@ -131,10 +130,10 @@ impl Price {
         Ok(Self { inertia: model.pose_inertia(), delta_b })
     }
 
-    /// The price of any motion from one pose to another: Δb = Σ λ_k Δq_k, in absolute drive angles.
+    /// Returns the price of any motion from one pose to another: Δb = Σ λ_k Δq_k, in absolute drive angles.
     ///
     /// # Errors
-    /// If the mass matrix is not constant, or the poses are not of this machine.
+    /// If the mass matrix is not constant, or the poses have another number of angles.
     pub fn between(model: &Inertia, from: &DriveAngles, to: &DriveAngles) -> Result<Self, PriceError> {
         let drives = model.drives();
         if from.len() != drives || to.len() != drives {
@@ -143,47 +142,48 @@ impl Price {
         Self::of(model, model.lambda().dot(&to.0.minus(&from.0)))
     }
 
-    /// D_1, kg m².
+    /// Returns D_1, kg m².
     pub fn inertia(&self) -> f64 {
         self.inertia
     }
 
-    /// Δb, rad.
+    /// Returns Δb, rad.
     pub fn delta_b(&self) -> f64 {
         self.delta_b
     }
 
-    /// Peak |n_B| of a law that takes `duration`, s: 4 or 5.7735 … times D_1 |Δb|/T², N m.
+    /// Returns the peak |n_B| of a law that takes `duration`, s: 4 or 5.7735 … times D_1 |Δb|/T², N m.
     pub fn peak(&self, law: PoseLaw, duration: f64) -> f64 {
         law.peak() * self.size() / (duration * duration)
     }
 
-    /// The least peak |n_B| of any motion that takes `duration`, s: 4 D_1 |Δb|/T², bang-bang, N m.
+    /// Returns the least peak |n_B| of any motion that takes `duration`, s: 4 D_1 |Δb|/T², bang-bang, N m.
     pub fn least_peak(&self, duration: f64) -> f64 {
         self.peak(PoseLaw::BangBang, duration)
     }
 
-    /// ∫|n_B|dt, N m s.
+    /// Returns ∫|n_B|dt of a law that takes `duration`, s, in N m s.
     pub fn impulse(&self, law: PoseLaw, duration: f64) -> f64 {
         law.impulse() * self.size() / duration
     }
 
-    /// Root of the mean of n_B², N m.
+    /// Returns the root mean square of n_B of a law that takes `duration`, s, in N m.
     pub fn rms(&self, law: PoseLaw, duration: f64) -> f64 {
         law.rms() * self.size() / (duration * duration)
     }
 
-    /// T at which a law just keeps |n_B| ≤ `limit`, N m; infinite for a limit of zero, unless Δb is zero too.
+    /// Returns the least T, s, for which a law keeps |n_B| ≤ `limit`, N m; infinite for a limit of zero, unless Δb is
+    /// zero.
     pub fn time(&self, law: PoseLaw, limit: f64) -> f64 {
         if self.delta_b == 0.0 { 0.0 } else { (law.peak() * self.size() / limit.max(0.0)).sqrt() }
     }
 
-    /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and
-    /// the time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here Δb is that of the angles between drives and base, q_k −
-    /// θ.
+    /// Returns the final rotation of a free-floating base that starts at rest, whatever the path, law and duration: Δθ
+    /// = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here Δb is that of the angles between drives and base,
+    /// q_k − θ.
     ///
     /// # Errors
-    /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is none.
+    /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is invalid.
     pub fn base_turn(&self, model: &Inertia, base: &FloatingBase) -> Result<f64, PriceError> {
         Self::of(model, self.delta_b)?;
         if !model.is_force_balanced() {
@@ -204,8 +204,8 @@ impl Price {
     }
 }
 
-/// The b of two sets that lie nearest to each other on the real line, lifted by whole turns so that the first is as
-/// near as can be to `near`, rad. Where the sets overlap both are the common b nearest to it. `None` if a set is empty.
+/// Returns the b of two sets that are nearest to each other, rad, shifted by whole periods so that the first is as near
+/// as possible to `near`. If the sets overlap, both are the common b nearest to it. Returns `None` if a set is empty.
 pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     let common = BSet::overlap(&[from.clone(), to.clone()]);
     if let Some(b) = common.nearest(near) {
@@ -214,7 +214,7 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     let mut best: Option<[f64; 2]> = None;
     let cost = |pair: &[f64; 2]| ((pair[1] - pair[0]).abs(), (pair[0] - near).abs());
     for start in &from.near(near).intervals {
-        // Either end of an interval may be the one to leave from.
+        // Either bound of an interval may be the nearest start.
         for b in start {
             let Some(end) = to.nearest(*b) else { continue };
             let pair = [*b, end];
@@ -226,20 +226,21 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     best
 }
 
-/// Shares of the way to the middle of an interval of b, for an end of it that misses its pose by rounding.
+/// Fractions of the way to the middle of an interval of b, tried in turn if rounding leaves its bound without a pose.
 pub const INWARDS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
-/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits of relative
-/// angles form a box, so that the line keeps those that its ends keep.
+/// Returns the straight joint line between two poses of any b; b then follows the time law. Limits of relative angles
+/// form a box, so that the line keeps them if its ends do.
 pub fn joint_line([from, to]: &[Posed; 2]) -> Path {
     Path::JointLine { from: from.q, to: to.q }
 }
 
-/// A move in which only b is bang-bang over the whole of T, while the relative angles go by the quintic law: the least
-/// peak of n_B with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations
-/// q″/T².
+/// Returns a motion in which b is bang-bang over the whole of T, while the relative angles follow the quintic law: the
+/// least peak of n_B with relative angles that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and
+/// accelerations q″/T².
 ///
-/// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
+/// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the second half begins at the next floating-point
+/// number after ½.
 pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[Posed; 2]) -> Option<PathTable> {
     let step = to.a.minus(&from.a);
     let delta_b = to.b - from.b;
@@ -255,6 +256,6 @@ pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[Posed; 2]) -> Option<Path
         point(middle, [0.5, 2.0, -4.0]),
         point([1.0, 0.0, 0.0], [1.0, 0.0, -4.0]),
     ];
-    // No number lies between the two nodes of the kink, so the quintic between them is never asked.
+    // No number lies between the two nodes of the jump, so the quintic between them is never evaluated.
     PathTable::new(vec![0.0, 0.5, 0.5f64.next_up(), 1.0], nodes)
 }

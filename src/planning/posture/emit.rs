@@ -1,4 +1,4 @@
-//! A path through the poses at all stations, with its derivatives, and how well it is one.
+//! A path through the poses at all stations, with its derivatives, its errors and its objective values.
 
 use super::goal::{Weight, times};
 use super::refine::Bound;
@@ -7,12 +7,12 @@ use super::stations::{GAUSS, Leg, Stations, weights};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::curves::{PathPoint, PathTable};
 
-/// Places within a space at which limits are looked at.
-const LOOKS: usize = 4;
-/// Steps from the look beside a peak to the peak.
+/// Number of samples per interval at which limits are checked.
+const LIMIT_SAMPLES: usize = 4;
+/// Number of Newton steps from a sample to the extremum beside it.
 const PEAK_STEPS: usize = 4;
 
-/// Tables of all legs of a path.
+/// Returns a table for each leg of a path; `None` if the rows depend on each other at a pose.
 pub(super) fn tables(held: &Held<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
     stations.legs.iter().map(|leg| table(held, leg, &q[leg.first..=leg.last()])).collect()
 }
@@ -33,14 +33,14 @@ fn table(held: &Held<'_>, leg: &Leg, q: &[PerDrive]) -> Option<PathTable> {
     PathTable::new(leg.s.clone(), nodes.collect::<Option<_>>()?)
 }
 
-/// By how much paths miss their curves between stations, m, by leg and space.
+/// Returns the distance of paths from their curves between stations, m, by leg and interval.
 pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTable]) -> Vec<Vec<f64>> {
     let off = |table: &PathTable, (s, p): &(f64, Vector)| (held.space.place(&table.at(*s).q) - p).norm();
     let legs = stations.legs.iter().zip(tables);
     legs.map(|(leg, table)| leg.between.iter().map(|between| off(table, between)).collect()).collect()
 }
 
-/// The pose of a path where an angle is greatest or least, between places: Newton's iteration on its slope.
+/// Returns the pose where a relative angle has an extremum in an interval of s, by Newton's method on its derivative.
 fn peak(table: &PathTable, bound: &Bound, [from, place, to]: [f64; 3]) -> PerDrive {
     let mut s = place;
     for _ in 0..PEAK_STEPS {
@@ -53,35 +53,35 @@ fn peak(table: &PathTable, bound: &Bound, [from, place, to]: [f64; 3]) -> PerDri
     table.at(s).q.0
 }
 
-/// By how much each limit is passed at most, rad.
+/// Returns for each limited angle the maximum distance beyond its limits, rad; negative inside.
 pub(super) fn past(bounds: &[Bound], stations: &Stations, tables: &[PathTable]) -> Vec<f64> {
-    let mut most = vec![f64::NEG_INFINITY; bounds.len()];
+    let mut largest = vec![f64::NEG_INFINITY; bounds.len()];
     for (leg, table) in stations.legs.iter().zip(tables) {
-        let within = |w: &[f64], k: usize| w[0] + k as f64 / LOOKS as f64 * (w[1] - w[0]);
-        let places = leg.s.windows(2).flat_map(|w| (0..LOOKS).map(move |k| within(w, k)));
-        let looks: Vec<(f64, PerDrive)> = places.chain(leg.s.last().copied()).map(|s| (s, table.at(s).q.0)).collect();
-        for (most, bound) in most.iter_mut().zip(bounds) {
-            let past: Vec<f64> = looks.iter().map(|(_, q)| bound.past(q)).collect();
-            *most = past.iter().copied().fold(*most, f64::max);
+        let within = |w: &[f64], k: usize| w[0] + k as f64 / LIMIT_SAMPLES as f64 * (w[1] - w[0]);
+        let places = leg.s.windows(2).flat_map(|w| (0..LIMIT_SAMPLES).map(move |k| within(w, k)));
+        let samples: Vec<(f64, PerDrive)> = places.chain(leg.s.last().copied()).map(|s| (s, table.at(s).q.0)).collect();
+        for (largest, bound) in largest.iter_mut().zip(bounds) {
+            let past: Vec<f64> = samples.iter().map(|(_, q)| bound.past(q)).collect();
+            *largest = past.iter().copied().fold(*largest, f64::max);
             for (i, w) in past.windows(3).enumerate() {
-                // A peak is less than half its sides above the look beside it.
+                // A peak exceeds the sample beside it by less than half of the difference to the neighbours.
                 let may = w[1] + 0.5 * (w[1] - w[0].min(w[2]));
-                if w[1] >= w[0] && w[1] >= w[2] && may > *most {
-                    let q = peak(table, bound, [looks[i].0, looks[i + 1].0, looks[i + 2].0]);
-                    *most = most.max(bound.past(&q));
+                if w[1] >= w[0] && w[1] >= w[2] && may > *largest {
+                    let q = peak(table, bound, [samples[i].0, samples[i + 1].0, samples[i + 2].0]);
+                    *largest = largest.max(bound.past(&q));
                 }
             }
         }
     }
-    most
+    largest
 }
 
-/// ∫ q′ᵀ S q′ ds along all legs, s by their length.
+/// Returns ∫ q′ᵀ S q′ ds along all legs, with s proportional to their length.
 pub(super) fn rates(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
     along(stations, tables, |point| point.first.dot(&times(weight, &point.first)), |share| 1.0 / share)
 }
 
-/// ∫ what ds along all legs, s by their length.
+/// Returns the integral of `what` over s along all legs, with s proportional to their length.
 pub(super) fn places(stations: &Stations, tables: &[PathTable], what: impl Fn(&PerDrive) -> f64) -> f64 {
     along(stations, tables, |point| what(&point.q.0), |share| share)
 }
@@ -102,7 +102,7 @@ fn along(
     stations.legs.iter().zip(tables).map(leg).sum()
 }
 
-/// ∫ q̈ᵀ S q̈ dt along all legs in a time of 1.
+/// Returns ∫ q̈ᵀ S q̈ dt along all legs for a duration of 1.
 pub(super) fn accelerations(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
     let leg = |(leg, table): (&Leg, &PathTable)| {
         let at = |(_, [s, rate, acceleration, time]): (usize, [f64; 4])| {

@@ -1,6 +1,6 @@
-//! [`Envelope`]: symmetric equations whose rows begin where their first entry is, solved by Cholesky's factors.
+//! [`Envelope`]: a symmetric matrix in envelope (skyline) storage, with Cholesky factorisation.
 
-/// A symmetric matrix by the lower halves of its rows, each from its first entry on.
+/// A symmetric matrix. For each row it stores the entries from the first non-zero one to the diagonal.
 #[derive(Clone, Debug)]
 pub(super) struct Envelope {
     first: Vec<usize>,
@@ -8,11 +8,11 @@ pub(super) struct Envelope {
     values: Vec<f64>,
 }
 
-/// A pivot below this share of its diagonal entry is none.
-const NO_PIVOT: f64 = 1e-12;
+/// Relative pivot tolerance: a pivot below this fraction of its diagonal entry is treated as zero.
+const PIVOT_TOLERANCE: f64 = 1e-12;
 
 impl Envelope {
-    /// All zero, with rows that begin at these columns.
+    /// Returns a zero matrix whose rows begin at the given columns.
     pub fn zeros(first: Vec<usize>) -> Self {
         let mut start = Vec::with_capacity(first.len() + 1);
         let mut size = 0;
@@ -29,7 +29,7 @@ impl Envelope {
         self.values.fill(0.0);
     }
 
-    /// The entry of a row i and a column j ≤ i.
+    /// Returns the entry of row i and column j ≤ i.
     pub fn entry(&mut self, i: usize, j: usize) -> &mut f64 {
         &mut self.values[self.start[i] + j - self.first[i]]
     }
@@ -38,7 +38,7 @@ impl Envelope {
         &self.values[self.start[i]..self.start[i + 1]]
     }
 
-    /// Replaces the matrix by its factor; `false` if it is not positive definite.
+    /// Replaces the matrix by its Cholesky factor. Returns `false` if it is not positive definite.
     pub fn factor(&mut self) -> bool {
         for i in 0..self.first.len() {
             let from = self.first[i];
@@ -53,7 +53,7 @@ impl Envelope {
                 own[j - from] = (own[j - from] - sum) / other[j - self.first[j]];
             }
             let pivot = whole - own[..i - from].iter().map(|x| x * x).sum::<f64>();
-            if pivot.is_nan() || pivot <= NO_PIVOT * whole.abs() {
+            if pivot.is_nan() || pivot <= PIVOT_TOLERANCE * whole.abs() {
                 return false;
             }
             own[i - from] = pivot.sqrt();
@@ -61,7 +61,7 @@ impl Envelope {
         true
     }
 
-    /// Solves the factored equations in place.
+    /// Solves the factorised equations in place.
     pub fn solve(&self, x: &mut [f64]) {
         for i in 0..x.len() {
             let (row, from) = (self.row(i), self.first[i]);

@@ -1,12 +1,12 @@
-//! [`Goal`]: what a path is to have least, as a quadratic form of its poses at all stations.
+//! [`Goal`]: the objective of a path as a quadratic form of its poses at all stations.
 
 use super::stations::{Stations, weights};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 
-/// Stations that a row of a form joins: its own and three more.
+/// Number of stations coupled in a row of a form: its own and the next three.
 const BAND: usize = 4;
-/// Waves of so many spaces are smoothed away.
-const SMOOTHED: f64 = 8.0;
+/// Wavelength, in intervals, at which the smoothing term weighs as much as the rates.
+const SMOOTHING_WAVELENGTH: f64 = 8.0;
 
 /// A matrix over the drives.
 pub(super) type Weight = [[f64; MAX_DRIVES]; MAX_DRIVES];
@@ -20,24 +20,24 @@ pub(super) struct Term {
     pub weight: Weight,
 }
 
-/// Several forms about one pose c.
+/// A sum of forms about one pose c.
 #[derive(Clone, Debug)]
 pub(super) struct Goal {
     pub terms: Vec<Term>,
     pub centre: PerDrive,
 }
 
-/// 1 for every drive.
+/// Returns the identity matrix over n drives.
 pub(super) fn even(n: usize) -> Weight {
     std::array::from_fn(|k| std::array::from_fn(|l| f64::from(u8::from(k == l && k < n))))
 }
 
-/// S x.
+/// Returns S x.
 pub(super) fn times(weight: &Weight, x: &PerDrive) -> PerDrive {
     PerDrive::from_fn(x.len(), |k| x.dot(&weight[k]))
 }
 
-/// A weight, scaled.
+/// Returns a weight matrix multiplied by a factor.
 pub(super) fn scaled(weight: &Weight, by: f64) -> Weight {
     weight.map(|row| row.map(|x| by * x))
 }
@@ -54,7 +54,7 @@ impl Term {
         }
     }
 
-    /// ∫ |q′|²_S ds.
+    /// Returns the form of ∫ |q′|²_S ds.
     pub fn rates(stations: &Stations, weight: Weight) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
@@ -65,7 +65,7 @@ impl Term {
         term
     }
 
-    /// ∫ ½ |q − c|²_S ds.
+    /// Returns the form of ∫ ½ |q − c|²_S ds.
     pub fn places(stations: &Stations, weight: Weight) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
@@ -77,7 +77,7 @@ impl Term {
         term
     }
 
-    /// ∫ |q̈|²_S dt, in a time of 1.
+    /// Returns the form of ∫ |q̈|²_S dt for a duration of 1.
     pub fn accelerations(stations: &Stations, weight: Weight) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
@@ -92,7 +92,8 @@ impl Term {
         term
     }
 
-    /// What keeps short waves out, where a wave of so many spaces counts as much as rates do.
+    /// Returns a form in third derivatives that suppresses short waves. With `factor` = 1, a wave of
+    /// [`SMOOTHING_WAVELENGTH`] intervals weighs as much as its rates.
     pub fn smooth(stations: &Stations, weight: Weight, factor: f64) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in stations.legs.iter().filter(|leg| leg.s.len() >= BAND) {
@@ -100,7 +101,7 @@ impl Term {
                 let s = &leg.s[i..i + BAND];
                 let h = (s[BAND - 1] - s[0]) / 3.0;
                 let w = weights(s, 0.5 * (s[1] + s[2]));
-                let wave = (SMOOTHED * h / std::f64::consts::TAU).powi(4);
+                let wave = (SMOOTHING_WAVELENGTH * h / std::f64::consts::TAU).powi(4);
                 term.add(leg.first + i, &w[3][..BAND], factor * wave * h / leg.share);
             }
         }
@@ -109,7 +110,7 @@ impl Term {
 }
 
 impl Goal {
-    /// Its gradient at each station.
+    /// Returns the gradient at each station.
     pub fn gradient(&self, q: &[PerDrive]) -> Vec<PerDrive> {
         let n = self.centre.len();
         let mut all = vec![PerDrive::zeros(n); q.len()];
@@ -131,12 +132,13 @@ impl Goal {
         all
     }
 
-    /// Its value where its gradient is known.
+    /// Returns the value for given poses and their gradient.
     pub fn value(&self, q: &[PerDrive], gradient: &[PerDrive]) -> f64 {
         0.5 * q.iter().zip(gradient).map(|(q, g)| q.minus(&self.centre).dot(g)).sum::<f64>()
     }
 
-    /// κ_ii S summed over the drives and averaged: how stiff a single pose is held.
+    /// Returns the stiffness of a single pose: the trace of S times the median of κ_ii, per drive, summed over the
+    /// terms.
     pub fn stiffness(&self) -> f64 {
         let of = |term: &Term| {
             let trace: f64 = (0..MAX_DRIVES).map(|k| term.weight[k][k]).sum();

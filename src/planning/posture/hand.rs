@@ -1,4 +1,4 @@
-//! [`Postures`]: what torques and ranges weigh.
+//! [`Postures`]: weights of motor torques and of ranges.
 
 use nalgebra::SMatrix;
 
@@ -7,32 +7,32 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 use crate::planning::pose_space::PoseSpace;
 
-/// What a drive that turns nothing costs, as a share of all: a little keeps rates finite.
-const IDLE_DRIVE_COST: f64 = 1e-9;
+/// Weight of every drive as a fraction of the trace, so that rates stay finite for a drive without inertia.
+const MIN_DRIVE_WEIGHT: f64 = 1e-9;
 
 /// Weights of a machine's drives.
 #[derive(Clone, Debug)]
 pub struct Postures<'a> {
     space: &'a PoseSpace,
-    /// TᵀT as a share of its trace.
+    /// TᵀT divided by its trace.
     pub(super) torque: Weight,
     /// ∂x_i/∂q_k.
     shares: Vec<PerDrive>,
 }
 
 impl<'a> Postures<'a> {
-    /// Of a machine with its poses of a b.
+    /// Returns the weights of a machine with its pose space.
     pub fn of(machine: &Machine, space: &'a PoseSpace) -> Self {
         let n = machine.drives();
         let inertia = Inertia::of(machine);
         let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
-        let asked: Vec<PerDrive> =
+        let torques: Vec<PerDrive> =
             (0..n).map(|l| inertia.motors().torques(&PerDrive::from_fn(n, |k| inertia.constant(k, l)))).collect();
-        let trace: f64 = asked.iter().map(|column| column.dot(column)).sum();
+        let trace: f64 = torques.iter().map(|column| column.dot(column)).sum();
         let mut torque = [[0.0; MAX_DRIVES]; MAX_DRIVES];
         for (k, row) in torque.iter_mut().enumerate().take(n) {
-            (0..n).for_each(|l| row[l] = asked[k].dot(&asked[l]) / trace);
-            row[k] += IDLE_DRIVE_COST;
+            (0..n).for_each(|l| row[l] = torques[k].dot(&torques[l]) / trace);
+            row[k] += MIN_DRIVE_WEIGHT;
         }
         let turned: Vec<PerDrive> = (0..n).map(|k| space.angle_rates(&one(k))).collect();
         let half = |i: usize| half_range(space, i);
@@ -40,7 +40,7 @@ impl<'a> Postures<'a> {
         Self { space, torque, shares }
     }
 
-    /// The inverse of what weighs rates by the torques that they take, TᵀT as a share of its trace.
+    /// Returns the inverse of TᵀT divided by its trace; `None` if it is singular.
     pub fn least_torque(&self) -> Option<[[f64; MAX_DRIVES]; MAX_DRIVES]> {
         let n = self.space.drives();
         let weigh = |k: usize, l: usize| if k < n && l < n { self.torque[k][l] } else { f64::from(u8::from(k == l)) };
@@ -51,13 +51,13 @@ impl<'a> Postures<'a> {
         })
     }
 
-    /// ½ Σ x_i²: how far relative angles are from the middle of their ranges.
+    /// Returns ½ Σ x_i², the squared distance of the relative angles from the middle of their ranges.
     pub fn off_middle(&self, q: &DriveAngles) -> f64 {
         let (a, middle) = (self.space.angles(q), self.space.middle());
         (0..a.len()).map(|i| 0.5 * ((a[i] - middle[i]) / half_range(self.space, i)).powi(2)).sum()
     }
 
-    /// ∂²/∂q_k∂q_l of ½ Σ x².
+    /// Returns the Hessian ∂²/∂q_k∂q_l of ½ Σ x².
     pub(super) fn ranges(&self) -> Weight {
         std::array::from_fn(|k| {
             std::array::from_fn(|l| {
@@ -68,7 +68,7 @@ impl<'a> Postures<'a> {
     }
 }
 
-/// Half of what a relative angle may turn, rad.
+/// Returns half the range of relative angle i, rad; infinite if it has no limits.
 fn half_range(space: &PoseSpace, i: usize) -> f64 {
     let [low, high] = space.joints()[i].bounds();
     if low.is_finite() { 0.5 * (high - low).max(1e-6) } else { f64::INFINITY }

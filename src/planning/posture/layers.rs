@@ -1,35 +1,36 @@
-//! [`Layers`]: poses at stations along a path, spread over all that can be reached from its start.
+//! [`Layers`]: samples of the poses at stations along a path that can be reached from its start.
 //!
 //! # Method
-//! The first layer begins with the poses from which every piece of the set of poses is reached. A layer is filled along
-//! the free directions until every pose has others about it; then each pose is taken along to the next station, within
-//! the limits. What no pose reaches so, no path from the start does.
+//! The first layer begins with one pose or more on every component of the set of poses. A layer is filled along the
+//! free directions until it covers its component. Then each pose is continued to the next station, within the limits.
+//! If no pose reaches a station in this way, no path is assumed to reach it.
 
 use super::rows::{left_free, lifted};
 use super::stations::Stations;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 use crate::planning::pose_space::PoseSpace;
 
-/// How finely is looked.
+/// Resolution of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Detail {
-    /// Layers along the whole path, about.
+    /// Approximate number of layers along the whole path.
     pub layers: usize,
-    /// How far poses of a layer are apart, rad, and how many there are at most.
+    /// Distance between neighbouring poses of a layer, rad.
     pub apart: f64,
-    pub most: usize,
+    /// Maximum number of poses of a layer.
+    pub max_poses: usize,
 }
 
 /// Poses of one station.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// The station.
+    /// Index of the station.
     pub at: usize,
     /// Relative angles, rad.
     pub angles: Vec<PerDrive>,
-    /// The same as drive angles, rad.
+    /// The poses as drive angles, rad.
     pub poses: Vec<PerDrive>,
-    /// Where each one goes in the next layer, if it can.
+    /// Each pose continued to the next layer, if that is possible.
     pub next: Vec<Option<PerDrive>>,
 }
 
@@ -42,20 +43,20 @@ pub(super) struct Layers<'a> {
     pub apart: f64,
 }
 
-/// Poses nearer to another than this share of the distance are left out.
+/// A pose nearer to another than this fraction of `apart` is omitted.
 const THINNING_SHARE: f64 = 0.5;
-/// Fewer poses than this that can be taken along are few.
+/// With fewer poses than this, all poses of a station are computed as well.
 pub(super) const FEW_POSES: usize = 8;
-/// Directions that keep less than this share of the reach depend on each other.
-const NO_RANK: f64 = 1e-9;
-/// How far beyond its window an angle without limits is filled, rad.
-const FILLED_BEYOND: f64 = std::f64::consts::PI;
+/// Rank tolerance: rows shorter than this fraction of the reach after orthogonalisation are treated as dependent.
+const RANK_TOLERANCE: f64 = 1e-9;
+/// Distance beyond its limits up to which an unbounded angle is sampled, rad.
+const FILLED_BEYOND_RAD: f64 = std::f64::consts::PI;
 
 impl<'a> Layers<'a> {
-    /// Of poses at b, rad, within the limits.
+    /// Builds the layers at b, rad, within the limits, from the relative angles of the start poses.
     ///
     /// # Errors
-    /// The station that no path reaches.
+    /// The index of the station that no pose reaches.
     pub fn of(
         (space, b): (&'a PoseSpace, f64),
         stations: &Stations,
@@ -75,12 +76,12 @@ impl<'a> Layers<'a> {
             let mut next: Vec<Option<PerDrive>> = match ats.get(i + 1) {
                 Some(to) => angles_here
                     .iter()
-                    .map(|a| taken((space, b), a, &stations.places[*at..=*to], &windows, detail.apart))
+                    .map(|a| continued((space, b), a, &stations.places[*at..=*to], &windows, detail.apart))
                     .collect(),
                 None => vec![None; angles_here.len()],
             };
             angles.extend(next.iter().flatten());
-            // Where few poses are left, steps along the path miss them: they are found from where they end.
+            // With few poses, continuation may fail: take the nearest of all poses of the next station.
             if let Some(to) = ats.get(i + 1)
                 && angles.len() < FEW_POSES
             {
@@ -97,12 +98,12 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Where each relative angle may be, rad.
+/// Returns the bounds of each relative angle, rad.
 pub(super) fn bounds(space: &PoseSpace) -> [[f64; 2]; MAX_DRIVES] {
     std::array::from_fn(|i| space.joints().get(i).map_or([0.0; 2], |joint| joint.bounds()))
 }
 
-/// Stations of layers: both ends of every leg, and others between.
+/// Chooses the stations of layers: both ends of every leg, and others between.
 fn chosen(stations: &Stations, layers: usize) -> Vec<usize> {
     let mut all = vec![0];
     for leg in &stations.legs {
@@ -114,8 +115,8 @@ fn chosen(stations: &Stations, layers: usize) -> Vec<usize> {
     all
 }
 
-/// A pose taken along, in as few steps as keep it beside itself.
-fn taken(
+/// Continues a pose along places, in one step if that keeps it close, else place by place. Returns `None` if it jumps.
+fn continued(
     (space, b): (&PoseSpace, f64),
     a: &PerDrive,
     places: &[Vector],
@@ -134,29 +135,29 @@ fn taken(
     Some(a)
 }
 
-/// The nearest of some poses, if it is no farther than this, rad.
-pub(super) fn nearest(all: &[PerDrive], a: &PerDrive, most: f64) -> Option<PerDrive> {
+/// Returns the nearest of some poses if it is no farther than `max_distance`, rad.
+pub(super) fn nearest(all: &[PerDrive], a: &PerDrive, max_distance: f64) -> Option<PerDrive> {
     let far = |other: &PerDrive| other.minus(a).max_abs();
-    all.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y))).filter(|other| far(other) <= most)
+    all.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y))).filter(|other| far(other) <= max_distance)
 }
 
-/// Orthonormal directions of the relative angles that move neither the end effector nor b.
+/// Returns orthonormal directions of the relative angles that move neither the end effector nor b.
 fn free_directions(space: &PoseSpace, q: &PerDrive) -> Vec<PerDrive> {
     let n = space.joints().len();
     let (_, columns) = space.columns(&DriveAngles(*q));
     let rows = [PerDrive::from_fn(n, |i| columns[i].re), PerDrive::from_fn(n, |i| columns[i].im)];
     let mut across: Vec<PerDrive> = Vec::with_capacity(n);
     for row in rows {
-        let left = across.iter().fold(row, |left, u| left.plus(-left.dot(u), u));
-        let length = left.dot(&left).sqrt();
-        if length > NO_RANK * space.farthest() {
-            across.push(left.scaled(1.0 / length));
+        let rest = across.iter().fold(row, |rest, u| rest.plus(-rest.dot(u), u));
+        let length = rest.dot(&rest).sqrt();
+        if length > RANK_TOLERANCE * space.farthest() {
+            across.push(rest.scaled(1.0 / length));
         }
     }
     left_free(&across, n)
 }
 
-/// Whether relative angles are less than a distance apart, its square given.
+/// Returns whether the squared distance of relative angles is at most `square`, rad².
 pub(super) fn near(a: &PerDrive, b: &PerDrive, square: f64) -> bool {
     let (a, b) = (a.padded(), b.padded());
     let (mut sum, mut k) = (0.0, 0);
@@ -167,7 +168,7 @@ pub(super) fn near(a: &PerDrive, b: &PerDrive, square: f64) -> bool {
     sum <= square
 }
 
-/// Poses and what lies between and about them, thinned.
+/// Fills the set of poses of a point from start poses along the free directions, with a minimum distance.
 fn filled(
     (space, p, b): (&PoseSpace, Vector, f64),
     starts: Vec<PerDrive>,
@@ -178,26 +179,26 @@ fn filled(
     let mut poses: Vec<PerDrive> = Vec::new();
     let is_new = |poses: &[PerDrive], a: &PerDrive| !poses.iter().any(|other| near(other, a, thin * thin));
     for a in starts {
-        if poses.len() < detail.most && is_new(&poses, &a) {
+        if poses.len() < detail.max_poses && is_new(&poses, &a) {
             poses.push(a);
         }
     }
     let room: [[f64; 2]; MAX_DRIVES] = std::array::from_fn(|i| match space.joints().get(i) {
         Some(joint) if windows[i][0].is_infinite() => {
-            [joint.limits()[0] - FILLED_BEYOND, joint.limits()[1] + FILLED_BEYOND]
+            [joint.limits()[0] - FILLED_BEYOND_RAD, joint.limits()[1] + FILLED_BEYOND_RAD]
         }
         Some(_) => windows[i],
         None => [0.0; 2],
     });
     let mut i = 0;
     let mut seed = 1u64;
-    while i < poses.len() && poses.len() < detail.most {
+    while i < poses.len() && poses.len() < detail.max_poses {
         let a = poses[i];
         i += 1;
         let free = free_directions(space, &lifted(space, &a, b));
         let mut ways: Vec<PerDrive> = free.clone();
         if free.len() > 1 {
-            // Between the axes, too.
+            // Random directions between the axes as well.
             for _ in 0..free.len() {
                 let mixed = free.iter().fold(PerDrive::zeros(a.len()), |sum, z| sum.plus(noise(&mut seed), z));
                 let size = mixed.dot(&mixed).sqrt();
@@ -210,7 +211,10 @@ fn filled(
                 there.clamp(room[k][0].min(a[k]), room[k][1].max(a[k]))
             });
             let Some(there) = space.solved(p, b, &beside, windows) else { continue };
-            if there.minus(&a).max_abs() <= 2.0 * detail.apart && poses.len() < detail.most && is_new(&poses, &there) {
+            if there.minus(&a).max_abs() <= 2.0 * detail.apart
+                && poses.len() < detail.max_poses
+                && is_new(&poses, &there)
+            {
                 poses.push(there);
             }
         }
@@ -218,7 +222,7 @@ fn filled(
     poses
 }
 
-/// A number from −1 to 1 of a sequence that is the same every time.
+/// Returns the next pseudo-random number from −1 to 1 of a reproducible sequence.
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0

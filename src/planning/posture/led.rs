@@ -1,4 +1,4 @@
-//! How a hand leads a machine of a posture, and whether its ways keep off change points.
+//! Pose spaces with the rule of a posture for dragging, and whether their paths avoid change points.
 
 use std::sync::Arc;
 
@@ -7,7 +7,8 @@ use crate::mechanics::machine::Machine;
 use crate::planning::pose_space::{Lead, PoseSpace};
 use crate::query::{Quick, Same};
 
-/// A pose space of a machine, led as a posture has it, with ways that keep off change points or lead across them.
+/// Query for a pose space of a machine with the rule of a posture for dragging. Its paths avoid change points or cross
+/// them.
 pub struct Led;
 
 impl Quick for Led {
@@ -20,7 +21,7 @@ impl Quick for Led {
     }
 }
 
-/// The same space, led as a posture has it where a point leaves freedoms.
+/// Returns a pose space with the rule of a posture for dragging; without free degrees of freedom it is unchanged.
 fn led(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
     if !space.leaves_freedoms() {
         return space;

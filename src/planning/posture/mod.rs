@@ -1,18 +1,18 @@
-//! What becomes of the freedoms that a point leaves to four drives and more while b is held.
+//! Use of the degrees of freedom that four drives and more have at a given point and b.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | q′ | dq/ds, s the share of the whole way | rad |
+//! | q′ | dq/ds, s the fraction of the whole path length | rad |
 //! | T | motor torques are T q̈ from rest: A⁻ᵀ H | kg m² |
-//! | x_i | relative angle a_i as a share of its range, −1 and 1 at its limits; 0 where it has none | 1 |
+//! | x_i | relative angle a_i scaled to −1 and 1 at its limits; 0 if it has none | 1 |
 //!
 //! # Method
-//! The freedoms are found along the whole path at once. Poses are spread over the set of poses of (p, b) at stations along
-//! the path (`layers`); the cheapest way from one to the next (`route`) is refined until it is the best beside it
-//! (`refine`): least ∫ |q′|² ds, least ∫ |T q̈|² dt by the time law, or least ∫ ½ Σ x_i² ds (`goal`). Each of these begins at
-//! the results of all others as well, and of all paths that were found the one with the least goal is taken. Where a way
-//! exists, the layers find it but for passages narrower than their poses are apart.
+//! The search optimises the whole path at once. It samples the set of poses of (p, b) at stations along the path
+//! (`layers`), finds the cheapest route through the samples (`route`), and refines it to a local optimum (`refine`).
+//! The objective is ∫ |q′|² ds, ∫ |T q̈|² dt by the time law, or ∫ ½ Σ x_i² ds (`goal`). Each objective also starts
+//! from the results of the others, and the path with the least objective is taken. The layers find an existing path
+//! unless it has a passage narrower than the distance of the samples.
 
 mod emit;
 mod envelope;
@@ -33,9 +33,9 @@ pub use search::{Asked, Found, NoWay};
 use crate::settings::word::words;
 
 words! {
-    /// How the freedoms that a point leaves are used.
+    /// Use of the degrees of freedom that are left at a given point and b.
     pub enum Posture {
-        /// Searched for: least ∫ |q′|² ds.
+        /// Least ∫ |q′|² ds.
         LeastRates = "least-rates", "Drives turn least", "The drives turn as little as they can";
         Orientation = "orientation", "Keep the hand's orientation", "The last link does not turn";
         /// Least ∫ τ² dt.

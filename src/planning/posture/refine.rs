@@ -1,9 +1,10 @@
-//! A path made better until it is the best beside it: Newton's iteration over all its poses at once.
+//! Refinement of a path to a local optimum: Newton's method over all its poses at once.
 //!
 //! # Method
-//! The poses q_i keep (p_i, b), so a step is Z_i z_i with the free directions Z_i of each. On them the curvature is
-//! Zᵀ (∇²f + diag(ν·c_k e^{iq_k})) Z, as ∂²p/∂q_k² = −c_k e^{iq_k} with the multipliers ν of p; a banded matrix. Limits
-//! are kept by multipliers that grow until no limit is passed (augmented Lagrangian). Every step comes back onto (p, b).
+//! The poses q_i keep (p_i, b), so a step is Z_i z_i with a null space basis Z_i of each. The reduced Hessian is Zᵀ
+//! (∇²f + diag(ν·c_k e^{iq_k})) Z, a banded matrix, because ∂²p/∂q_k² = −c_k e^{iq_k} and ν are the multipliers of p.
+//! An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is projected
+//! back onto (p, b).
 
 use super::envelope::Envelope;
 use super::goal::{Goal, times};
@@ -11,18 +12,19 @@ use super::rows::{Held, Rows, arms};
 use super::stations::Stations;
 use crate::mechanics::planar::{PerDrive, dot};
 
-/// Steps of Newton's iteration, and how often multipliers of limits are raised.
+/// Maximum number of Newton steps between updates of the multipliers.
 const MAX_STEPS: usize = 25;
+/// Maximum number of updates of the multipliers of limits.
 const MAX_ROUNDS: usize = 10;
-/// The longest step, rad.
-const LONGEST: f64 = 0.3;
-/// How often a step is halved.
+/// Maximum Newton step, rad.
+const MAX_STEP_RAD: f64 = 0.3;
+/// Maximum number of halvings of a step.
 const MAX_HALVINGS: usize = 8;
-/// A limit may be passed by this much, rad.
-const KEPT: f64 = 1e-9;
-/// How hard limits push, as a multiple of how hard the goal does.
-const PUSH: f64 = 30.0;
-/// What a value may rise by rounding, a share of it.
+/// Tolerance of the limits, rad.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
+/// Penalty factor of the limits, as a multiple of the stiffness of the objective.
+const PENALTY_FACTOR: f64 = 30.0;
+/// Relative increase of the objective that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A relative angle and its limits.
@@ -32,36 +34,36 @@ pub(super) struct Bound {
     pub row: PerDrive,
     /// a at q = 0, rad.
     pub offset: f64,
-    /// rad.
+    /// Lower and upper limit, rad.
     pub limits: [f64; 2],
 }
 
 impl Bound {
-    /// The angle, rad.
+    /// Returns the angle, rad.
     pub fn of(&self, q: &PerDrive) -> f64 {
         self.row.dot(q) + self.offset
     }
 
-    /// By how much a pose passes a limit, rad.
+    /// Returns the distance of a pose beyond the limits, rad; negative inside.
     pub fn past(&self, q: &PerDrive) -> f64 {
         let a = self.of(q);
         (self.limits[0] - a).max(a - self.limits[1])
     }
 }
 
-/// What is refined.
+/// Problem data of a refinement.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Refining<'a> {
     pub held: &'a Held<'a>,
     pub stations: &'a Stations,
     pub bounds: &'a [Bound],
-    /// Whether the last pose is the first one.
+    /// Whether the last pose must equal the first one.
     pub closed: bool,
-    /// Steps below this length, rad, are the last.
+    /// Step tolerance: the iteration ends with a step below this, rad.
     pub done: f64,
 }
 
-/// What a pose keeps, and the directions that this leaves free.
+/// Constraint rows at a pose, and an orthonormal basis of their null space.
 struct Frame {
     rows: Rows,
     free: Vec<PerDrive>,
@@ -73,26 +75,29 @@ impl Frame {
     }
 }
 
-/// A limit that pushes: which pose, how stiffly, and in which direction.
-type Pushing = (usize, f64, PerDrive);
+/// An active limit: index of the pose, penalty factor, and gradient of the angle.
+type ActiveLimit = (usize, f64, PerDrive);
 
-/// Forces of the limits on each pose.
+/// Multipliers and penalty factor of the limits.
 struct Forces {
-    /// For each pose and limit.
+    /// Multipliers for each pose and limit.
     multipliers: Vec<f64>,
-    push: f64,
+    /// Penalty factor.
+    penalty: f64,
 }
 
 impl Refining<'_> {
-    /// The path of the least goal beside another path.
+    /// Finds a local minimum of the objective, starting from a path; `None` if a Newton step cannot be computed.
     pub fn refined(&self, goal: &Goal, start: &[PerDrive]) -> Option<Vec<PerDrive>> {
         let mut q = start.to_vec();
         let d = self.held.freedoms();
         if d == 0 || q.len() < 3 {
             return Some(q);
         }
-        let mut forces =
-            Forces { multipliers: vec![0.0; 2 * self.bounds.len() * q.len()], push: PUSH * goal.stiffness() };
+        let mut forces = Forces {
+            multipliers: vec![0.0; 2 * self.bounds.len() * q.len()],
+            penalty: PENALTY_FACTOR * goal.stiffness(),
+        };
         let mut matrix = Envelope::zeros(self.profile(d, q.len()));
         for round in 0..MAX_ROUNDS {
             let done = self.done.max(1e-4 * 0.1f64.powi(2 * round as i32));
@@ -104,14 +109,14 @@ impl Refining<'_> {
                 }
             }
             let worst = self.raise(&q, &mut forces);
-            if worst <= KEPT.max(self.done) && done <= self.done {
+            if worst <= LIMIT_TOLERANCE_RAD.max(self.done) && done <= self.done {
                 break;
             }
         }
         Some(q)
     }
 
-    /// Where the rows of the matrix begin.
+    /// Returns the first column of each row of the matrix.
     fn profile(&self, d: usize, count: usize) -> Vec<usize> {
         let rows = self.places(d, count);
         let mut first = vec![0; rows.1];
@@ -127,7 +132,7 @@ impl Refining<'_> {
         first
     }
 
-    /// Which row each pose begins with, and how many rows there are; the first pose of closed paths comes last.
+    /// Returns the first row of each pose and the number of rows; the first pose of closed paths comes last.
     fn places(&self, d: usize, count: usize) -> (impl Fn(usize) -> usize + use<>, usize) {
         let closed = self.closed;
         let at = move |i: usize| match closed {
@@ -138,17 +143,18 @@ impl Refining<'_> {
         (at, if closed { (count - 1) * d } else { count * d })
     }
 
-    /// What limits add to the goal.
-    fn pushed(&self, q: &[PerDrive], forces: &Forces) -> f64 {
+    /// Returns the contribution of the limits to the augmented Lagrangian.
+    fn limit_terms(&self, q: &[PerDrive], forces: &Forces) -> f64 {
         let mut sum = 0.0;
         self.each_limit(q, |i, past, _, _| {
             let own = forces.multipliers[i];
-            sum += ((own + forces.push * past).max(0.0).powi(2) - own * own) / (2.0 * forces.push);
+            sum += ((own + forces.penalty * past).max(0.0).powi(2) - own * own) / (2.0 * forces.penalty);
         });
         sum
     }
 
-    /// Each limit of each pose: its place, by how much it is passed, the pose, and the direction in which it is.
+    /// Calls `what` for each limit of each pose with the index of the limit, the distance beyond it, rad, the index of
+    /// the pose, and sign and gradient of the angle.
     fn each_limit(&self, q: &[PerDrive], mut what: impl FnMut(usize, f64, usize, (f64, &PerDrive))) {
         let count = self.bounds.len();
         for (i, q) in q.iter().enumerate() {
@@ -160,19 +166,19 @@ impl Refining<'_> {
         }
     }
 
-    /// Raises the multipliers; the answer is by how much the limits are passed at most, rad.
+    /// Updates the multipliers and returns the maximum distance beyond a limit, rad.
     fn raise(&self, q: &[PerDrive], forces: &mut Forces) -> f64 {
         let mut worst = 0.0_f64;
-        let push = forces.push;
+        let penalty = forces.penalty;
         let multipliers = &mut forces.multipliers;
         self.each_limit(q, |i, past, _, _| {
             worst = worst.max(past);
-            multipliers[i] = (multipliers[i] + push * past).max(0.0);
+            multipliers[i] = (multipliers[i] + penalty * past).max(0.0);
         });
         worst
     }
 
-    /// A step, and how long it is, rad.
+    /// Makes a Newton step and returns the new poses and the length of the step, rad.
     fn step(
         &self,
         goal: &Goal,
@@ -183,13 +189,13 @@ impl Refining<'_> {
         let d = self.held.freedoms();
         let frames: Vec<Frame> = q.iter().map(|q| self.held.rows(q).map(Frame::of)).collect::<Option<_>>()?;
         let mut gradient = goal.gradient(q);
-        let now = goal.value(q, &gradient) + self.pushed(q, forces);
-        let mut stiff: Vec<Pushing> = Vec::new();
+        let now = goal.value(q, &gradient) + self.limit_terms(q, forces);
+        let mut active: Vec<ActiveLimit> = Vec::new();
         self.each_limit(q, |i, past, at, (sign, row)| {
-            let force = forces.multipliers[i] + forces.push * past;
+            let force = forces.multipliers[i] + forces.penalty * past;
             if force > 0.0 {
                 gradient[at] = gradient[at].plus(sign * force, row);
-                stiff.push((at, forces.push, *row));
+                active.push((at, forces.penalty, *row));
             }
         });
         let (place, rows) = self.places(d, q.len());
@@ -198,7 +204,7 @@ impl Refining<'_> {
             (0..d).for_each(|k| side[place(i) + k] -= frame.free[k].dot(gradient));
         }
         let solved = [true, false].into_iter().find_map(|bent| {
-            self.assemble(goal, q, (&frames, &gradient, &stiff), bent, matrix);
+            self.assemble(goal, q, (&frames, &gradient, &active), bent, matrix);
             if !matrix.factor() {
                 return None;
             }
@@ -216,7 +222,7 @@ impl Refining<'_> {
             })
             .collect();
         let size = way.iter().map(PerDrive::max_abs).fold(0.0, f64::max);
-        let mut share = (LONGEST / size.max(1e-300)).min(1.0);
+        let mut share = (MAX_STEP_RAD / size.max(1e-300)).min(1.0);
         for _ in 0..MAX_HALVINGS {
             let moved = q.iter().zip(&way).zip(&self.stations.places);
             let next: Option<Vec<PerDrive>> =
@@ -226,7 +232,7 @@ impl Refining<'_> {
                     let last = next.len() - 1;
                     next[last] = next[0];
                 }
-                let there = goal.value(&next, &goal.gradient(&next)) + self.pushed(&next, forces);
+                let there = goal.value(&next, &goal.gradient(&next)) + self.limit_terms(&next, forces);
                 if there <= now + ROUNDING * now.abs() {
                     return Some((next, share * size));
                 }
@@ -236,12 +242,12 @@ impl Refining<'_> {
         Some((q.to_vec(), 0.0))
     }
 
-    /// The curvature on the free directions; without what p bends, where that is not to count against it.
+    /// Assembles the reduced Hessian. Without `bent`, negative curvature of the constraint p is set to zero.
     fn assemble(
         &self,
         goal: &Goal,
         q: &[PerDrive],
-        (frames, gradient, stiff): (&[Frame], &[PerDrive], &[Pushing]),
+        (frames, gradient, active): (&[Frame], &[PerDrive], &[ActiveLimit]),
         bent: bool,
         matrix: &mut Envelope,
     ) {
@@ -279,11 +285,11 @@ impl Refining<'_> {
                 }
             }
         }
-        for (i, push, row) in stiff {
+        for (i, penalty, row) in active {
             for k in 0..d {
                 for l in 0..=k {
                     *matrix.entry(place(*i) + k, place(*i) + l) +=
-                        push * frames[*i].free[k].dot(row) * frames[*i].free[l].dot(row);
+                        penalty * frames[*i].free[k].dot(row) * frames[*i].free[l].dot(row);
                 }
             }
         }

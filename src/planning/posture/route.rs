@@ -1,4 +1,4 @@
-//! [`Route`]: the shortest way from pose to pose over the layers.
+//! The cheapest route from pose to pose over the layers.
 
 use std::collections::HashSet;
 
@@ -7,25 +7,26 @@ use super::rows::lifted;
 use super::stations::Stations;
 use crate::mechanics::planar::PerDrive;
 
-/// A pose goes on to those that are so near to where it is taken, as a multiple of the distance of poses.
+/// A continued pose is connected to the poses within this multiple of `apart`.
 const NEXT_POSE_FACTOR: f64 = 1.25;
-/// Routes that turn out to be none, before it is given up.
+/// Maximum number of routes that are tried before the search fails.
 const MAX_TRIES: usize = 40;
-/// Starts of closed paths that are tried at most.
+/// Approximate maximum number of start poses that are tried for closed paths.
 const MAX_STARTS: usize = 60;
-/// What a step of a path may be longer than its share of a step of the route, as a factor.
+/// Maximum length of a step of the path, as a factor of its share of a step of the route.
 const STRETCH_FACTOR: f64 = 4.0;
-/// And by how much beside that, rad.
-const STRETCH_SLACK: f64 = 0.02;
+/// Amount added to this maximum, rad.
+const STRETCH_SLACK_RAD: f64 = 0.02;
 
-/// What a step of a route costs, by the layer that it leaves: both poses.
+/// Cost of a step of a route: index of the layer that it leaves, start pose and end pose.
 pub(super) type Cost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
 
-/// Steps between layers: the pose that is gone to, and the cost.
+/// Steps between layers, by layer and pose: index of the next pose, and the cost.
 type Steps = Vec<Vec<Vec<(usize, f64)>>>;
 
 impl Layers<'_> {
-    /// Poses at all stations along the cheapest way, or one that ends where it began.
+    /// Returns the poses at all stations along the cheapest route; if `closed`, along the cheapest that ends where it
+    /// began.
     pub fn route(&self, stations: &Stations, cost: Cost<'_>, closed: bool) -> Option<Vec<PerDrive>> {
         let mut steps = self.steps(cost);
         if closed {
@@ -45,7 +46,7 @@ impl Layers<'_> {
         None
     }
 
-    /// The last layer of a closed path is the first one again.
+    /// Replaces the steps to the last layer by steps to the first, for closed paths.
     fn closing(&self, steps: &mut Steps, cost: Cost<'_>) {
         let last = self.all.len() - 1;
         steps[last - 1] = self.leaving(last - 1, &self.all[0], cost);
@@ -55,6 +56,7 @@ impl Layers<'_> {
         (0..self.all.len() - 1).map(|i| self.leaving(i, &self.all[i + 1], cost)).collect()
     }
 
+    /// Returns the steps from layer i to the layer `onto`.
     fn leaving(&self, i: usize, onto: &Layer, cost: Cost<'_>) -> Vec<Vec<(usize, f64)>> {
         let (layer, square) = (&self.all[i], (NEXT_POSE_FACTOR * self.apart).powi(2));
         let each = |(k, there): (usize, &Option<PerDrive>)| {
@@ -65,7 +67,8 @@ impl Layers<'_> {
         layer.next.iter().enumerate().map(each).collect()
     }
 
-    /// The pose of each layer along the cheapest way, from one start or any, and what it costs.
+    /// Finds the index of the pose in each layer along the cheapest route, from one start or any, and its cost. Routes
+    /// from a given start also end there.
     fn cheapest(
         &self,
         steps: &Steps,
@@ -108,7 +111,7 @@ impl Layers<'_> {
         Some((way, costs[end]))
     }
 
-    /// The same of ways that end where they began.
+    /// Finds the cheapest closed route, as [`cheapest`](Self::cheapest).
     fn cheapest_round(&self, steps: &Steps, banned: &HashSet<(usize, usize, usize)>) -> Option<(Vec<usize>, f64)> {
         let count = self.all[0].poses.len();
         let every = count.div_ceil(MAX_STARTS);
@@ -116,7 +119,7 @@ impl Layers<'_> {
         rounds.min_by(|x, y| x.1.total_cmp(&y.1))
     }
 
-    /// The poses at all stations, or the step of the route that is none.
+    /// Returns the poses at all stations, or the index of the step of the route that is infeasible.
     fn expanded(&self, stations: &Stations, way: &[usize], closed: bool) -> Result<Vec<PerDrive>, usize> {
         let windows = bounds(self.space);
         let last = self.all.len() - 1;
@@ -126,7 +129,7 @@ impl Layers<'_> {
             let (from, to) = (angles(i), angles(i + 1));
             let [first, end] = [self.all[i].at, self.all[i + 1].at];
             let step = to.minus(from);
-            let allowed = STRETCH_FACTOR * step.max_abs() / (end - first) as f64 + STRETCH_SLACK;
+            let allowed = STRETCH_FACTOR * step.max_abs() / (end - first) as f64 + STRETCH_SLACK_RAD;
             for k in first + 1..=end {
                 let share = (k - first) as f64 / (end - first) as f64;
                 let guess = from.plus(share, &step);

@@ -1,4 +1,4 @@
-//! [`Asked`]: the path of a posture, of all paths that are found.
+//! [`Asked`]: the search for the best path of a posture.
 
 use thiserror::Error;
 
@@ -16,89 +16,96 @@ use crate::planning::curves::{Curve, PathTable};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 
-/// How finely is looked, the next where the one before finds no way: layers, how far poses are apart beside what
-/// [`POSE_SPACING`] says, and how many there are.
-const DETAILS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 0.25, 1200)];
-/// How far poses are apart with one, two … freedoms, rad.
-const POSE_SPACING: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
-/// Spaces between stations, at first and for the paths that are taken, and when steps of their refinement are done, rad.
-const ROUGH: (usize, f64) = (48, 1e-5);
-const FINE: (usize, f64) = (192, 1e-10);
-/// How often spaces are parted in which a fine path misses its curve, and how many stations there are at most.
-const MAX_PARTINGS: usize = 5;
+/// Resolutions of the search, each tried if the one before finds no path: number of layers, factor on
+/// [`POSE_SPACING_RAD`], and maximum number of poses of a layer.
+const RESOLUTIONS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 0.25, 1200)];
+/// Distance between neighbouring poses with one, two … degrees of freedom, rad.
+const POSE_SPACING_RAD: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
+/// Number of intervals between stations of rough paths.
+const ROUGH_INTERVALS: usize = 48;
+/// Step tolerance of the refinement of rough paths, rad.
+const ROUGH_STEP_TOLERANCE_RAD: f64 = 1e-5;
+/// Initial number of intervals between stations of final paths.
+const FINE_INTERVALS: usize = 192;
+/// Step tolerance of the refinement of final paths, rad.
+const FINE_STEP_TOLERANCE_RAD: f64 = 1e-10;
+/// Maximum number of times that intervals are divided because a final path misses its curve there.
+const MAX_DIVISIONS: usize = 5;
+/// Intervals are not divided any further with this number of stations or more.
 const MAX_STATIONS: usize = 2400;
-/// Rough paths are made fine if they cost at most this share more than the least.
-const MAX_DEARER_SHARE: f64 = 0.15;
-/// And no more of them than this.
-const MAX_MADE_FINE: usize = 4;
-/// A path misses its curve by less than this share of the reach.
-const ON_CURVE: f64 = 1e-9;
-/// A rough one by less than this.
-const NEAR_CURVE: f64 = 1e-2;
-/// Limits are missed by less than this, rad.
-const KEPT: f64 = 1e-7;
+/// A rough path is refined finely if its cost exceeds the least by at most this fraction.
+const MAX_COST_EXCESS: f64 = 0.15;
+/// Maximum number of rough paths that are refined finely.
+const MAX_REFINED: usize = 4;
+/// Tolerance of a final path on its curve, as a fraction of the reach.
+const CURVE_TOLERANCE: f64 = 1e-9;
+/// Tolerance of a rough path on its curve, as a fraction of the reach.
+const ROUGH_CURVE_TOLERANCE: f64 = 1e-2;
+/// Tolerance of limits, and of the closure of closed paths, rad.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-7;
+/// Maximum number of refinements with growing margins to the limits.
 const MAX_MARGINS: usize = 5;
-/// What a limit may be passed by where there is no room to keep off it, rad.
-const AT_LIMIT: f64 = 8e-7;
-/// Nearness of paths that are one, rad.
-const SAME_PATH: f64 = 0.02;
-/// What rates count beside the middle of ranges, one after another.
-const BESIDE_MIDDLE: [f64; 3] = [1e-2, 1e-4, 1e-6];
-/// What smoothness counts beside torques.
+/// Tolerance of limits where margins do not suffice, rad.
+const FINAL_LIMIT_TOLERANCE_RAD: f64 = 8e-7;
+/// Paths whose poses differ by less than this are treated as equal, rad.
+const SAME_PATH_BELOW_RAD: f64 = 0.02;
+/// Weights of rates in the mid-range objective, used one after another.
+const RATE_WEIGHTS_IN_MID_RANGE: [f64; 3] = [1e-2, 1e-4, 1e-6];
+/// Weight of smoothness in the torque objective.
 const SMOOTHNESS_WEIGHT: f64 = 120.0;
-/// What every drive's rate counts beside its torque, so that light drives count, too.
+/// Weight of every drive in the smoothness term of the torque objective, so that light drives count as well.
 const LIGHT_DRIVE_WEIGHT: f64 = 1e-4;
-/// What rates count beside torques.
-const BESIDE_TORQUE: f64 = 1e-6;
-/// Starts that are tried for paths that keep an orientation.
-const ORIENTATIONS: usize = 80;
+/// Weight of rates in the torque objective.
+const RATE_WEIGHT_IN_TORQUE: f64 = 1e-6;
+/// Approximate number of start poses that are tried for paths of constant orientation.
+const MAX_ORIENTATION_STARTS: usize = 80;
 
-/// What is wanted: the end effector along curves from rest to rest, with b held.
+/// Task of the search: the end effector follows curves from rest to rest, with b constant.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     /// The machine.
     pub machine: &'a Machine,
-    /// Its poses.
+    /// Its pose space.
     pub space: &'a PoseSpace,
-    /// b, rad.
+    /// Pose constant b, rad.
     pub b: f64,
     /// Curves of the end effector, m, one after another.
     pub curves: &'a [Curve],
-    /// The law by which each is passed in its share of the time; quintic where the law is to be the fastest. None where the
-    /// curves are passed evenly.
+    /// Time law of each curve in its share of the duration; the quintic stands in for the fastest law. `None` for
+    /// constant speed.
     pub law: Option<TimeLaw>,
-    /// Whether the curves end where they begin, and the drives should.
+    /// Whether the curves are closed and the path of the drives should be closed, too.
     pub closed: bool,
-    /// For the posture `orientation`: the drive of the last link, and its angle, rad, up to whole turns, if it is given.
+    /// For the posture `orientation`: the drive of the last link, and its angle, rad, modulo whole turns, if given.
     pub hand: (usize, Option<f64>),
 }
 
-/// A path for each curve.
+/// Result of the search.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// The paths.
+    /// Path of the drives for each curve.
     pub tables: Vec<PathTable>,
 }
 
-/// Why there is no path.
+/// Why the search found no path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoWay {
-    /// Poses end on the way.
+    /// The poses that can be reached from the start end before the path does.
     #[error("no way of the joints within their limits goes farther than {:.1} % along", 100.0 * .share)]
     Ends {
-        /// How far the poses go that can be reached from the start, a share of the way.
+        /// Fraction of the path that can be reached, 0 to 1.
         share: f64,
     },
-    /// No pose that keeps the orientation goes all the way.
+    /// No path of constant orientation exists.
     #[error("no way of the joints keeps the last link's orientation all along")]
     Turns,
-    /// There are ways, but none that a path follows closely enough.
+    /// Routes exist, but none can be refined to a path that follows the curves closely enough.
     #[error("the joints would have to turn too abruptly on the way")]
     Abrupt,
 }
 
 impl NoWay {
-    /// How near it came to a path.
+    /// Returns a number that is greater the nearer the search came to a path.
     fn rank(&self) -> f64 {
         match self {
             Self::Ends { share } => *share,
@@ -108,70 +115,73 @@ impl NoWay {
     }
 }
 
-/// Why a way makes no path.
+/// Why a route cannot be refined to a path.
 #[derive(Clone, Debug)]
 enum Missed {
-    /// It misses its curve in the spaces that are marked, by leg.
+    /// It misses its curve in the marked intervals, by leg.
     Between(Vec<Vec<bool>>),
-    /// It does not come to an end, or passes limits.
+    /// The refinement fails, or passes limits.
     Elsewhere,
 }
 
-/// A path with what it has of each goal.
+/// A path with its value of each objective.
 #[derive(Clone, Debug)]
 struct Way {
     q: Vec<PerDrive>,
     tables: Vec<PathTable>,
-    /// Whether it was made to end where it begins.
+    /// Whether it ends where it begins.
     closed: bool,
-    /// The drive that keeps its angle, rad.
+    /// A drive of constant angle, and this angle, rad.
     hand: Option<(usize, f64)>,
+    /// Values of the objectives [`GOALS`].
     values: [f64; GOALS.len()],
 }
 
-/// What can be least.
+/// The objectives.
 const GOALS: [Posture; 3] = [Posture::LeastRates, Posture::LeastTorque, Posture::MidRange];
 
-/// Everything that is the same for all ways.
+/// Data that all paths of a search share.
 struct Search<'a> {
     asked: &'a Asked<'a>,
     stations: Stations,
     weights: Postures<'a>,
     bounds: Vec<Bound>,
     goals: [Vec<Goal>; GOALS.len()],
-    /// When steps are done, rad.
+    /// Step tolerance of the refinement, rad.
     done: f64,
 }
 
 impl Asked<'_> {
-    /// The path with the least of what a posture wants.
+    /// Finds the path with the least objective of a posture.
     ///
     /// # Errors
-    /// How far a way goes.
+    /// Why no path was found, and up to which fraction of the path poses reach.
     pub fn path(&self, posture: Posture) -> Result<Found, NoWay> {
-        self.looked(&DETAILS, posture, |ways, turned| match posture {
+        self.searched(&RESOLUTIONS, posture, |ways, turned| match posture {
             Posture::Orientation => Some(self.finest(turned, posture)?.1),
             _ => self.least_of_all(ways, turned, posture),
         })
     }
 
-    /// The same after a quick look. Where that finds a path, [`path`](Self::path) finds one, too.
+    /// Finds a good path with a coarse search. If this search finds a path, [`path`](Self::path) finds one, too.
     ///
     /// # Errors
     /// As [`path`](Self::path).
     pub fn quick_path(&self, posture: Posture) -> Result<Found, NoWay> {
-        self.looked(&DETAILS[..1], posture, |ways, turned| {
+        self.searched(&RESOLUTIONS[..1], posture, |ways, turned| {
             Some(self.finest(if posture == Posture::Orientation { turned } else { ways }, posture)?.1)
         })
     }
 
-    fn looked(
+    /// Searches at several resolutions and returns the best path that `best` selects from the unrestricted paths and
+    /// those of constant orientation.
+    fn searched(
         &self,
         details: &[(usize, f64, usize)],
         posture: Posture,
         best: impl Fn(&[Way], &[Way]) -> Option<Way>,
     ) -> Result<Found, NoWay> {
-        let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH.0), ROUGH.1);
+        let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH_INTERVALS), ROUGH_STEP_TOLERANCE_RAD);
         let starts = self.space.sheets(rough.stations.places[0], self.b);
         let mut refused = NoWay::Ends { share: 0.0 };
         for detail in details {
@@ -192,8 +202,9 @@ impl Asked<'_> {
         Err(refused)
     }
 
-    /// The one with the least of what a posture wants among the best ways by every goal, those that keep the orientation,
-    /// and what every goal makes of them: whichever posture is wanted, the same ways are compared.
+    /// Returns the path with the least objective of a posture. The candidates are the best paths by every objective,
+    /// those of constant orientation, and their refinements by the other objectives. They are the same for every
+    /// posture.
     fn least_of_all(&self, ways: &[Way], turned: &[Way], posture: Posture) -> Option<Way> {
         let closes = ways.iter().any(|way| way.closed);
         let turned: Vec<Way> = turned.iter().filter(|way| way.closed || !closes).cloned().collect();
@@ -210,14 +221,16 @@ impl Asked<'_> {
         all.into_iter().min_by(|x, y| x.values[goal].total_cmp(&y.values[goal]))
     }
 
-    /// The best of rough ways, made fine, and on which stations; with more of them where they turn sharply.
+    /// Refines the best of rough paths finely and returns the search with its stations; adds stations where a path
+    /// misses its curve.
     fn finest(&self, ways: &[Way], posture: Posture) -> Option<(Search<'_>, Way)> {
-        let mut fine = Search::on(self, Stations::of(self.curves, self.law, FINE.0), FINE.1);
-        for _ in 0..=MAX_PARTINGS {
+        let mut fine = Search::on(self, Stations::of(self.curves, self.law, FINE_INTERVALS), FINE_STEP_TOLERANCE_RAD);
+        for _ in 0..=MAX_DIVISIONS {
             match fine.finest(ways, goal_of(posture), posture == Posture::Orientation) {
                 Ok(way) => return Some((fine, way)),
                 Err(Missed::Between(marked)) if fine.stations.places.len() < MAX_STATIONS => {
-                    fine = Search::on(self, fine.stations.parted(self.curves, self.law, &marked), FINE.1);
+                    fine =
+                        Search::on(self, fine.stations.parted(self.curves, self.law, &marked), FINE_STEP_TOLERANCE_RAD);
                 }
                 Err(_) => return None,
             }
@@ -250,10 +263,10 @@ impl<'a> Search<'a> {
             std::array::from_fn(|k| std::array::from_fn(|l| torque[k][l] + LIGHT_DRIVE_WEIGHT * all[k][l]));
         let torques = goal(vec![
             Term::accelerations(&stations, torque),
-            Term::rates(&stations, scaled(&all, BESIDE_TORQUE)),
+            Term::rates(&stations, scaled(&all, RATE_WEIGHT_IN_TORQUE)),
             Term::smooth(&stations, slow, SMOOTHNESS_WEIGHT),
         ]);
-        let middle = BESIDE_MIDDLE.map(|beside| {
+        let middle = RATE_WEIGHTS_IN_MID_RANGE.map(|beside| {
             let own = scaled(&all, beside);
             goal(vec![
                 Term::places(&stations, weights.ranges()),
@@ -269,14 +282,18 @@ impl<'a> Search<'a> {
         Held { space: self.asked.space, b: self.asked.b, hand: None }
     }
 
-    fn layers(&self, starts: &[PerDrive], (layers, finer, most): (usize, f64, usize)) -> Result<Layers<'a>, usize> {
+    fn layers(
+        &self,
+        starts: &[PerDrive],
+        (layers, finer, max_poses): (usize, f64, usize),
+    ) -> Result<Layers<'a>, usize> {
         let freedoms = self.held().freedoms();
-        let apart = finer * POSE_SPACING[freedoms.clamp(1, POSE_SPACING.len()) - 1];
-        Layers::of((self.asked.space, self.asked.b), &self.stations, starts, Detail { layers, apart, most })
+        let apart = finer * POSE_SPACING_RAD[freedoms.clamp(1, POSE_SPACING_RAD.len()) - 1];
+        Layers::of((self.asked.space, self.asked.b), &self.stations, starts, Detail { layers, apart, max_poses })
     }
 
-    /// Ways over the layers, refined, and from one that keeps the orientation; those of closed curves that close, if there
-    /// are any.
+    /// Returns refined paths over the layers, and those refined from one of constant orientation. For closed curves
+    /// these are closed paths, if there are any.
     fn ways(&self, layers: &Layers<'_>, turned: Option<&Way>) -> Vec<Way> {
         let closings: &[bool] = if self.asked.closed { &[true, false] } else { &[false] };
         for closed in closings {
@@ -295,7 +312,7 @@ impl<'a> Search<'a> {
         Vec::new()
     }
 
-    /// Adds what each goal makes of the best way of every other one, until none gains.
+    /// Adds refinements of the best paths of each objective by every other objective, until no path is added.
     fn crossed(&self, ways: &mut Vec<Way>, closed: bool) {
         let mut tried: Vec<(usize, usize)> = Vec::new();
         for _ in 0..3 {
@@ -303,10 +320,10 @@ impl<'a> Search<'a> {
             for i in 0..GOALS.len() {
                 for from in 0..before {
                     let Some(best) = least(ways, i) else { return };
-                    if tried.contains(&(i, from)) || apart(&ways[best].q, &ways[from].q) < SAME_PATH {
+                    if tried.contains(&(i, from)) || apart(&ways[best].q, &ways[from].q) < SAME_PATH_BELOW_RAD {
                         continue;
                     }
-                    // Only what is the best of something is worth it, at first whatever there is.
+                    // With more than eight paths, start only from those that are best by some objective.
                     if before > 8 && !(0..GOALS.len()).any(|goal| least(ways, goal) == Some(from)) {
                         continue;
                     }
@@ -321,8 +338,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best of the rough ways that are worth it, on these stations; `turned` where they keep the orientation that
-    /// they have.
+    /// Refines the cheapest rough paths on these stations and returns the best. If `turned`, each keeps its
+    /// orientation.
     fn finest(&self, ways: &[Way], goal: usize, turned: bool) -> Result<Way, Missed> {
         let mut order: Vec<&Way> = ways.iter().collect();
         order.sort_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
@@ -331,10 +348,10 @@ impl<'a> Search<'a> {
         let (mut dearest, mut count) = (f64::INFINITY, 0);
         let mut before: Vec<&Way> = Vec::new();
         for way in order {
-            if way.values[goal] > dearest || count >= MAX_MADE_FINE {
+            if way.values[goal] > dearest || count >= MAX_REFINED {
                 break;
             }
-            if before.iter().any(|other| apart(&other.q, &way.q) < SAME_PATH) {
+            if before.iter().any(|other| apart(&other.q, &way.q) < SAME_PATH_BELOW_RAD) {
                 continue;
             }
             before.push(way);
@@ -342,12 +359,12 @@ impl<'a> Search<'a> {
             let Some(start) = self.placed(way, &held) else { continue };
             match self.refined(&if turned { held } else { self.held() }, goal, &start, way.closed) {
                 Ok(made) => {
-                    dearest = dearest.min((1.0 + MAX_DEARER_SHARE) * way.values[goal]);
+                    dearest = dearest.min((1.0 + MAX_COST_EXCESS) * way.values[goal]);
                     count += 1;
                     let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
                     best = if better { Some(made) } else { best };
                 }
-                // The spaces of the cheapest such way.
+                // Keep the marked intervals of the cheapest path that fails.
                 Err(why) => {
                     let is_first = matches!((&missed, &why), (Missed::Elsewhere, Missed::Between(_)));
                     count += usize::from(matches!(why, Missed::Between(_)));
@@ -358,7 +375,7 @@ impl<'a> Search<'a> {
         best.ok_or(missed)
     }
 
-    /// The poses of a rough way at these stations.
+    /// Returns the poses of a rough path at these stations.
     fn placed(&self, way: &Way, held: &Held<'_>) -> Option<Vec<PerDrive>> {
         let mut q: Vec<PerDrive> = Vec::with_capacity(self.stations.places.len());
         for (leg, table) in self.stations.legs.iter().zip(&way.tables) {
@@ -374,7 +391,7 @@ impl<'a> Search<'a> {
             let legs = &self.stations.legs;
             legs.iter().rev().find(|leg| leg.first <= station && station < leg.last()).unwrap_or(&legs[0])
         };
-        // By layer that is left: how far s goes, and for how long.
+        // For each layer: difference in s and in time to the next layer.
         let spans: Vec<[f64; 2]> = layers
             .all
             .windows(2)
@@ -400,12 +417,12 @@ impl<'a> Search<'a> {
         layers.route(&self.stations, &cost, closed)
     }
 
-    /// The best way beside another one by a goal.
+    /// Refines a path by an objective, through its stages of weights.
     fn refined(&self, held: &Held<'_>, goal: usize, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
         let mut best: Result<Way, Missed> = Err(Missed::Elsewhere);
         let mut q = start.to_vec();
         for goal in &self.goals[goal] {
-            match self.kept(held, goal, &q, closed) {
+            match self.within_limits(held, goal, &q, closed) {
                 Ok(way) => {
                     q.clone_from(&way.q);
                     best = Ok(way);
@@ -417,12 +434,12 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The same within the limits between stations as well, but where only a rough path is wanted.
-    fn kept(&self, held: &Held<'_>, goal: &Goal, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
+    /// Refines a path by one quadratic objective. Final paths also keep the limits between stations, by margins.
+    fn within_limits(&self, held: &Held<'_>, goal: &Goal, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
         let mut bounds = self.bounds.clone();
         let mut q = start.to_vec();
-        let rough = self.done >= ROUGH.1;
-        let on_curve = held.space.farthest() * if rough { NEAR_CURVE } else { ON_CURVE };
+        let rough = self.done >= ROUGH_STEP_TOLERANCE_RAD;
+        let curve_tolerance = held.space.farthest() * if rough { ROUGH_CURVE_TOLERANCE } else { CURVE_TOLERANCE };
         for i in 0..MAX_MARGINS {
             let refining = Refining { held, stations: &self.stations, bounds: &bounds, closed, done: self.done };
             q = refining.refined(goal, &q).ok_or(Missed::Elsewhere)?;
@@ -431,19 +448,19 @@ impl<'a> Search<'a> {
             if off.iter().flatten().any(|off| off.is_nan()) {
                 return Err(Missed::Elsewhere);
             }
-            if off.iter().flatten().any(|off| *off > on_curve) {
-                let marks = off.iter().map(|leg| leg.iter().map(|off| *off > on_curve).collect());
+            if off.iter().flatten().any(|off| *off > curve_tolerance) {
+                let marks = off.iter().map(|leg| leg.iter().map(|off| *off > curve_tolerance).collect());
                 return Err(Missed::Between(marks.collect()));
             }
             let past = emit::past(&self.bounds, &self.stations, &tables);
             let worst = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            if rough || worst <= KEPT || (i + 1 == MAX_MARGINS && worst <= AT_LIMIT) {
+            if rough || worst <= LIMIT_TOLERANCE_RAD || (i + 1 == MAX_MARGINS && worst <= FINAL_LIMIT_TOLERANCE_RAD) {
                 let values = self.values(&tables);
-                let closed = closed || gap(&q) < KEPT;
+                let closed = closed || gap(&q) < LIMIT_TOLERANCE_RAD;
                 return Ok(Way { q, tables, closed, hand: held.hand, values });
             }
             for (bound, past) in bounds.iter_mut().zip(&past) {
-                if *past > KEPT {
+                if *past > LIMIT_TOLERANCE_RAD {
                     let [low, high] = bound.limits;
                     let margin = (1.5 * past).min(0.25 * (high - low));
                     bound.limits = [low + margin, high - margin];
@@ -453,6 +470,7 @@ impl<'a> Search<'a> {
         Err(Missed::Elsewhere)
     }
 
+    /// Returns the values of the objectives [`GOALS`].
     fn values(&self, tables: &[PathTable]) -> [f64; GOALS.len()] {
         let (stations, weights) = (&self.stations, &self.weights);
         [
@@ -462,7 +480,8 @@ impl<'a> Search<'a> {
         ]
     }
 
-    /// The ways that keep the orientation of the last link, at any angle or a given one, those of the least rates first.
+    /// Returns paths of constant orientation of the last link, at any angle or a given one, those of the least rates
+    /// first.
     fn oriented(&self, layers: &Layers<'_>, angle: Option<f64>) -> Vec<Way> {
         let (asked, places) = (self.asked, &self.stations.places);
         let drive = asked.hand.0;
@@ -473,7 +492,7 @@ impl<'a> Search<'a> {
             }
             None => {
                 let all = &layers.all[0].poses;
-                all.iter().step_by(all.len().div_ceil(ORIENTATIONS)).copied().collect()
+                all.iter().step_by(all.len().div_ceil(MAX_ORIENTATION_STARTS)).copied().collect()
             }
         };
         let held = |q: &PerDrive| Held { hand: Some((drive, q[drive])), ..self.held() };
@@ -482,7 +501,9 @@ impl<'a> Search<'a> {
             let Some(path) = followed(&held(&q), &q, places) else { continue };
             let cost = path.windows(2).map(|w| w[1].minus(&w[0])).map(|step| step.dot(&step)).sum();
             let is_free = held(&q).freedoms() > 0;
-            if is_free || path.iter().all(|q| self.bounds.iter().all(|bound| bound.past(q) <= AT_LIMIT)) {
+            if is_free
+                || path.iter().all(|q| self.bounds.iter().all(|bound| bound.past(q) <= FINAL_LIMIT_TOLERANCE_RAD))
+            {
                 found.push((cost, path));
             }
         }
@@ -490,23 +511,23 @@ impl<'a> Search<'a> {
         let ways = found.into_iter().filter_map(|(_, path)| {
             self.refined(&held(&path[0]), 0, &path, false).ok().filter(|way| self.is_kept(way))
         });
-        let mut ways: Vec<Way> = ways.take(2 * MAX_MADE_FINE).collect();
+        let mut ways: Vec<Way> = ways.take(2 * MAX_REFINED).collect();
         ways.sort_by(|x, y| x.values[0].total_cmp(&y.values[0]));
         ways
     }
 
-    /// Whether limits are kept at all stations, as nearly as a rough path keeps them.
+    /// Returns whether limits are kept at all stations, within the tolerance of a rough path.
     fn is_kept(&self, way: &Way) -> bool {
         way.q.iter().all(|q| self.bounds.iter().all(|bound| bound.past(q) <= 1e-3))
     }
 }
 
-/// Poses along places, each the one beside the one before.
+/// Continues a pose along places; `None` if it jumps.
 fn followed(held: &Held<'_>, start: &PerDrive, places: &[Vector]) -> Option<Vec<PerDrive>> {
     let mut path: Vec<PerDrive> = vec![*start];
     for p in &places[1..] {
         let last = path[path.len() - 1];
-        // As it went on so far.
+        // Linear extrapolation.
         let guess = match path.len() {
             1 => last,
             many => last.plus(1.0, &last.minus(&path[many - 2])),
@@ -516,17 +537,17 @@ fn followed(held: &Held<'_>, start: &PerDrive, places: &[Vector]) -> Option<Vec<
     Some(path)
 }
 
-/// The way with the least of a goal.
+/// Returns the index of the path with the least value of an objective.
 fn least(ways: &[Way], goal: usize) -> Option<usize> {
     (0..ways.len()).min_by(|x, y| ways[*x].values[goal].total_cmp(&ways[*y].values[goal]))
 }
 
-/// By how much two paths differ at most, rad.
+/// Returns the maximum difference between two paths, rad.
 fn apart(p: &[PerDrive], q: &[PerDrive]) -> f64 {
     p.iter().zip(q).map(|(p, q)| p.minus(q).max_abs()).fold(0.0, f64::max)
 }
 
-/// By how much the end of a path differs from its start, rad.
+/// Returns the difference between the end of a path and its start, rad.
 fn gap(q: &[PerDrive]) -> f64 {
     q[q.len() - 1].minus(&q[0]).max_abs()
 }

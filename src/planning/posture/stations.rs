@@ -1,43 +1,43 @@
-//! [`Stations`]: the places along the curves of a task at which poses are sought.
+//! [`Stations`]: points along the curves of a task at which poses are computed.
 
 use crate::mechanics::planar::Vector;
 use crate::planning::curves::{Curve, CurvePoint};
 use crate::planning::timing::{Profile, TimeLaw};
 
-/// On each of several curves there are at least so many spaces as on a whole path, a share.
+/// Minimum number of intervals of a curve, as a fraction of the number for the whole path.
 const MIN_CURVE_SHARE: f64 = 1.0 / 3.0;
-/// Of these at least so many between two joints of a curve, a share.
+/// Minimum number of intervals between two joints of a curve, as a fraction of the number for the whole path.
 const MIN_PIECE_SHARE: f64 = 1.0 / 16.0;
-/// Curves with more joints than this have fewer.
+/// A curve with more joints than this needs only one interval between two joints.
 const MANY_JOINTS: usize = 100;
-/// Gauss's places and weights in a space of length 1.
+/// Points and weights of Gaussian quadrature on an interval of length 1.
 pub(super) const GAUSS: [[f64; 2]; 3] =
     [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
 /// A curve from rest to rest.
 #[derive(Clone, Debug)]
 pub(super) struct Leg {
-    /// Its first station among all; the last one is the first of the next leg.
+    /// Index of its first station among all; its last one is the first of the next leg.
     pub first: usize,
     /// s of each station on this curve alone, 0 to 1.
     pub s: Vec<f64>,
-    /// The curve there, by this s.
+    /// Points and derivatives of the curve there, by this s.
     pub points: Vec<CurvePoint>,
-    /// Places between the stations, where the path is looked at as well: s and the curve there.
+    /// Midpoints between the stations, where the path is checked as well: s and the point of the curve, m.
     pub between: Vec<(f64, Vector)>,
-    /// Its length as a share of all.
+    /// Its length as a fraction of the total.
     pub share: f64,
-    /// When it is where, in a time of `share`.
+    /// Its time law over a duration of `share`.
     pub profile: Profile,
 }
 
 impl Leg {
-    /// The place of its last station among all.
+    /// Returns the index of its last station among all.
     pub fn last(&self) -> usize {
         self.first + self.s.len() - 1
     }
 
-    /// Instants at which its spaces are looked at: the space, s, ṡ, s̈ and the time that each counts for.
+    /// Returns quadrature points over time: index of the interval, s, ṡ, s̈ and the weight in time.
     pub fn instants(&self) -> Vec<(usize, [f64; 4])> {
         let ends: Vec<f64> = self.s.iter().map(|s| self.profile.when(*s)).collect();
         let last = ends.len() - 2;
@@ -57,23 +57,23 @@ impl Leg {
 #[derive(Clone, Debug)]
 pub(super) struct Stations {
     pub legs: Vec<Leg>,
-    /// Where the end effector is, m.
+    /// Position of the end effector at each station, m.
     pub places: Vec<Vector>,
 }
 
 impl Stations {
-    /// Of curves that are passed by a law each, from rest to rest, or evenly where there is none; with about so many
-    /// spaces on the whole way.
+    /// Places stations on curves with about `spaces` intervals in total. Each curve is passed from rest to rest by the
+    /// law, or at constant speed if there is none.
     pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
         let shares = shares(curves);
         let grid = |(curve, share): (&Curve, &f64)| {
             let own = (spaces as f64 * share.max(MIN_CURVE_SHARE)).ceil();
             let joints: Vec<f64> = curve.joints().collect();
-            let least = if joints.len() > MANY_JOINTS { 1 } else { (MIN_PIECE_SHARE * spaces as f64) as usize };
+            let min_count = if joints.len() > MANY_JOINTS { 1 } else { (MIN_PIECE_SHARE * spaces as f64) as usize };
             let mut s: Vec<f64> = Vec::new();
             for ends in joints.windows(2) {
                 let run = ends[1] - ends[0];
-                let count = ((own * run).ceil() as usize).max(least);
+                let count = ((own * run).ceil() as usize).max(min_count);
                 s.extend((0..count).map(|i| ends[0] + run * i as f64 / count as f64));
             }
             s.push(1.0);
@@ -82,7 +82,8 @@ impl Stations {
         Self::at(curves, law, curves.iter().zip(&shares).map(grid).collect())
     }
 
-    /// The same with the spaces that are marked parted in four, and those beside them in two; marks by leg and space.
+    /// Returns stations with the marked intervals divided in four and their neighbours in two. Marks are by leg and
+    /// interval.
     pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
         let grid = |(leg, marked): (&Leg, &Vec<bool>)| {
             let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);
@@ -118,7 +119,7 @@ impl Stations {
         Self { legs, places }
     }
 
-    /// The share of the whole way up to a station.
+    /// Returns the fraction of the whole length up to a station.
     pub fn done(&self, station: usize) -> f64 {
         let part = |leg: &Leg| match station {
             i if i >= leg.last() => leg.share,
@@ -129,33 +130,34 @@ impl Stations {
     }
 }
 
-/// The length of each curve as a share of all.
+/// Returns the length of each curve as a fraction of the total.
 fn shares(curves: &[Curve]) -> Vec<f64> {
     let total: f64 = curves.iter().map(Curve::length).sum();
     let share = |curve: &Curve| if total > 0.0 { curve.length() / total } else { 1.0 / curves.len() as f64 };
     curves.iter().map(share).collect()
 }
 
-/// Weights with which values at up to five places give the value and three derivatives at another one (Fornberg 1988).
+/// Returns finite-difference weights: from values at up to five places to the value and three derivatives at another
+/// one (Fornberg 1988).
 pub(super) fn weights(places: &[f64], at: f64) -> [[f64; 5]; 4] {
     let mut w = [[0.0; 5]; 4];
     let mut c1 = 1.0;
     let mut c4 = places[0] - at;
     w[0][0] = 1.0;
     for i in 1..places.len() {
-        let most = i.min(3);
+        let order = i.min(3);
         let (mut c2, c5) = (1.0, c4);
         c4 = places[i] - at;
         for j in 0..i {
             let c3 = places[i] - places[j];
             c2 *= c3;
             if j == i - 1 {
-                for k in (1..=most).rev() {
+                for k in (1..=order).rev() {
                     w[k][i] = c1 * (k as f64 * w[k - 1][i - 1] - c5 * w[k][i - 1]) / c2;
                 }
                 w[0][i] = -c1 * c5 * w[0][i - 1] / c2;
             }
-            for k in (1..=most).rev() {
+            for k in (1..=order).rev() {
                 w[k][j] = (c4 * w[k][j] - k as f64 * w[k - 1][j]) / c3;
             }
             w[0][j] = c4 * w[0][j] / c3;

@@ -1,8 +1,8 @@
-//! The fastest motion on a path, from rest to rest, that the drives can do.
+//! The fastest motion on a path from rest to rest within the limits of the drives.
 //!
-//! On a straight joint line, with constant diagonal mass matrix and nothing to hold up, every limit is one on s̈, ṡ or
-//! s⃛ and the optimum is known in closed form; elsewhere it is a time-optimal path parameterisation, and with limits on
-//! jerk a feasible motion near it.
+//! On a straight joint line with constant diagonal mass matrix and no static load, every limit bounds ṡ, s̈ or s⃛, and
+//! the optimum has a closed form. Otherwise the motion is a time-optimal path parameterisation, and with limits on jerk
+//! a feasible motion near it.
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
@@ -18,15 +18,16 @@ use crate::planning::timing::smooth;
 use crate::planning::timing::topp::{Grid, MENDED_FROM, NoSpeed, Sweep, UNLIMITED};
 use crate::planning::timing::usage::TimeShares;
 
-/// Spaces of the grid on a curve to begin with, unless the caller gives another number.
+/// Initial number of intervals of the grid on a curve, unless the caller gives stations.
 pub const SPACES: usize = 600;
 
-/// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid begins with
-/// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the
-/// motion is slowed down by what limits are passed by between its stations, so that it keeps them everywhere.
+/// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
+/// grid begins with [`stations`] of [`SPACES`] and the path's own places. It is refined where limited quantities change
+/// much. Finally the motion is slowed down by as much as limits are exceeded between stations, so that it keeps them
+/// everywhere.
 ///
 /// # Errors
-/// If nothing limits the motion, or the limits leave none.
+/// If no limit acts on the motion, or no motion keeps the limits.
 pub fn fastest(
     path: &Path,
     model: &Inertia,
@@ -37,8 +38,7 @@ pub fn fastest(
     planned(path, model, around, limits, smooth, None)
 }
 
-/// Stations s = u² (3 − 2 u), u even: as a motion at constant |s̈| would pass at even times, so that they are finest at
-/// the ends, where it is slow.
+/// Returns stations s = u² (3 − 2 u) at even u. They are densest at the ends, where a motion from rest to rest is slow.
 pub fn stations(spaces: usize) -> Vec<f64> {
     let at = |i: usize| {
         let u = i as f64 / spaces as f64;
@@ -47,8 +47,8 @@ pub fn stations(spaces: usize) -> Vec<f64> {
     (0..=spaces).map(at).collect()
 }
 
-/// [`fastest`] on a grid of stations that rise from 0 to 1, as it is: limits other than those on jerk are kept at the
-/// stations, and between them to second order in their spacing.
+/// Finds the fastest motion as [`fastest`] on a fixed grid of stations that rise from 0 to 1. Limits other than those
+/// on jerk are kept at the stations, and between them to second order in their spacing.
 ///
 /// # Errors
 /// As [`fastest`], and if the stations do not rise from 0 to 1.
@@ -116,13 +116,13 @@ fn planned(
     Ok(Fastest { profile, ..found })
 }
 
-/// The fastest motion on a grid that is made finer where what is limited changes much and where limits are passed
-/// between stations, with a glance at each of its phases.
+/// Finds the fastest motion on a grid that is refined where limited quantities change much and where limits are
+/// exceeded between stations. Also returns samples of each phase.
 fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<Timed, TimeError>, Option<Vec<Glance>>) {
     let stretches = |at: &Progress| constraints.stretches(path, at);
     let jumps = jumps(path);
     let (mut grid, mut found) = grid.fastest_refined(path, constraints);
-    let mut mendings = 0..MENDINGS;
+    let mut refinements = 0..MAX_REFINEMENTS;
     loop {
         let timed = match curved(path, &grid, found, constraints) {
             Ok(timed) => timed,
@@ -136,17 +136,17 @@ fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<T
         };
         let past: Vec<f64> = glances.iter().map(closer).collect();
         let is_kept = past.iter().all(|past| *past <= enough);
-        if is_kept || past.len() + 1 != grid.s.len() || mendings.next().is_none() {
+        if is_kept || past.len() + 1 != grid.s.len() || refinements.next().is_none() {
             return (grid, Ok(timed), Some(glances));
         }
         (grid, found) = grid.mended(path, constraints, &past);
     }
 }
 
-/// A glance at each phase. What is limited is known at the stations, but for those where it may jump.
+/// Samples each phase. Limited quantities are known at the stations, except where they may jump.
 fn glanced(profile: &Profile, grid: &Grid, jumps: &[f64], stretches: impl Fn(&Progress) -> Stretches) -> Vec<Glance> {
     let may_jump = |s: f64| {
-        jumps[jumps.partition_point(|jump| *jump < s - AT_PLACE)..].first().is_some_and(|j| *j <= s + AT_PLACE)
+        jumps[jumps.partition_point(|jump| *jump < s - S_TOLERANCE)..].first().is_some_and(|j| *j <= s + S_TOLERANCE)
     };
     let has_stations = profile.phases().count() + 1 == grid.s.len();
     let glance = |(i, phase): (usize, (Progress, f64))| {
@@ -160,7 +160,7 @@ fn glanced(profile: &Profile, grid: &Grid, jumps: &[f64], stretches: impl Fn(&Pr
     profile.phases().enumerate().map(glance).collect()
 }
 
-/// Where q′ or q″ may jump, s in order: nowhere in a table, which keeps both at its nodes.
+/// Returns the rising s at which q′ or q″ may jump: none for a table, in which both are continuous.
 fn jumps(path: &Path) -> Vec<f64> {
     match path {
         Path::Table(_) => Vec::new(),
@@ -168,13 +168,13 @@ fn jumps(path: &Path) -> Vec<f64> {
     }
 }
 
-/// So near to a place, s, is at it.
-const AT_PLACE: f64 = 1e-9;
+/// Differences of s below this are treated as zero.
+const S_TOLERANCE: f64 = 1e-9;
 
-/// How often the grid is made finer where limits are passed between its stations.
-const MENDINGS: usize = 6;
+/// Maximum number of refinements of the grid where limits are exceeded between stations.
+const MAX_REFINEMENTS: usize = 6;
 
-/// [`stations`] and the places of a path, which take the place of stations close by.
+/// Returns [`stations`] merged with the places of a path, which replace stations close by.
 fn dense(path: &Path) -> Vec<f64> {
     let (own, even) = (path.places(), stations(SPACES));
     let mut all = Vec::with_capacity(own.len() + even.len());
@@ -193,17 +193,19 @@ fn dense(path: &Path) -> Vec<f64> {
     all
 }
 
+/// Returns the motion on a path of no length.
 fn nowhere() -> Fastest {
     Fastest { profile: Profile::none(), gap: None, limiting: Vec::new() }
 }
 
-/// The least of limits on derivatives of s along a straight line, and whose it is.
+/// Returns the least limit on a derivative of s along a straight line, and the drive limit that sets it.
 fn least(step: &PerDrive, quantity: LimitedQuantity, limit: impl Fn(usize) -> f64) -> (f64, DriveLimit) {
     let of = |drive: usize| (limit(drive) / step[drive].abs(), DriveLimit { quantity, drive });
     let moving = (0..step.len()).filter(|k| step[*k] != 0.0).map(of);
     moving.fold((f64::INFINITY, DriveLimit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
 }
 
+/// Returns the fastest motion on a straight joint line in closed form.
 fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> Result<Fastest, TimeError> {
     let speed = least(step, LimitedQuantity::Speed, |k| limits.speed[k]);
     let torque = least(step, LimitedQuantity::Torque, |k| limits.torque[k] / model.diagonal(k));
@@ -230,10 +232,10 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> 
     Ok(Fastest { profile, gap, limiting: shares.sorted() })
 }
 
-/// A timing through stations.
+/// A timing on a grid.
 struct Timed {
     profile: Profile,
-    /// ṡ² at each station, 1/s²; none where nothing moves.
+    /// ṡ² at each station, 1/s²; empty if no drive moves.
     x: Vec<f64>,
 }
 
@@ -245,7 +247,7 @@ fn curved(
 ) -> Result<Timed, TimeError> {
     let stations = &grid.s;
     if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
-        // Nothing moves, or nothing that moves has a limit.
+        // No drive moves, or no drive that moves has a limit.
         let moves = stations.iter().any(|s| path.at(*s).first.max_abs() > 0.0);
         return match (moves, grid.cap.iter().any(|x| x.is_finite() && *x < UNLIMITED)) {
             (false, _) => Ok(Timed { profile: Profile::none(), x: Vec::new() }),
@@ -261,31 +263,36 @@ fn curved(
     Ok(Timed { profile, x })
 }
 
-/// What stands in the way.
+/// Returns why no motion passes a station.
 fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeError {
     let (NoSpeed::At(i) | NoSpeed::Rest(i)) = blocked;
     let near = [i, (i + 1).min(grid.s.len() - 1)];
     for i in near {
         for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
             if row.g.abs() > 1.0 {
-                let most = constraints.limits().on(limit.quantity)[limit.drive];
-                return TimeError::Static { drive: limit.drive + 1, s: grid.s[i], torque: row.g * most, limit: most };
+                let limit_value = constraints.limits().on(limit.quantity)[limit.drive];
+                return TimeError::Static {
+                    drive: limit.drive + 1,
+                    s: grid.s[i],
+                    torque: row.g * limit_value,
+                    limit: limit_value,
+                };
             }
         }
     }
     TimeError::Stuck { s: grid.s[i] }
 }
 
-/// Which limits lead, for what share of the time.
+/// Returns the active limits with their fractions of the duration, the greatest first.
 fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = TimeShares::default();
     for i in 0..x.len().saturating_sub(1) {
         let way = grid.s[i + 1] - grid.s[i];
         let u = (x[i + 1] - x[i]) / (2.0 * way);
-        let mut most: Option<(f64, DriveLimit)> = None;
+        let mut largest: Option<(f64, DriveLimit)> = None;
         let mut take = |part: f64, limit: DriveLimit| {
-            if most.is_none_or(|(m, _)| part > m) {
-                most = Some((part, limit));
+            if largest.is_none_or(|(m, _)| part > m) {
+                largest = Some((part, limit));
             }
         };
         for i in [i, i + 1] {
@@ -295,11 +302,11 @@ fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Ve
         }
         let fastest = if x[i] / grid.cap[i] > x[i + 1] / grid.cap[i + 1] { i } else { i + 1 };
         let part = (x[fastest] / grid.cap[fastest]).sqrt();
-        if most.is_none_or(|(m, _)| part > m) {
+        if largest.is_none_or(|(m, _)| part > m) {
             let drive = constraints.fastest_drive(&path.at(grid.s[fastest]));
-            most = Some((part, DriveLimit { quantity: LimitedQuantity::Speed, drive }));
+            largest = Some((part, DriveLimit { quantity: LimitedQuantity::Speed, drive }));
         }
-        if let Some((_, limit)) = most {
+        if let Some((_, limit)) = largest {
             shares.add(limit, 2.0 * way / (x[i].sqrt() + x[i + 1].sqrt()));
         }
     }

@@ -1,4 +1,4 @@
-//! By how much a motion must be slowed down to keep its limits everywhere, not only at the nodes of its plan.
+//! Slowing a motion down so that it keeps its limits everywhere, not only at the nodes of its plan.
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
@@ -8,37 +8,39 @@ use crate::planning::timing::limits::Limits;
 use crate::planning::timing::profile::{Profile, after};
 use crate::planning::timing::usage::Demand;
 
-/// Parts of a phase that is looked at closely.
-const CLOSE_PARTS: usize = 16;
-/// How far from its ends, as a share of a phase: where a path's derivatives jump, rounding would decide which side is
-/// looked at.
+/// Number of intervals of a phase that is sampled finely.
+const FINE_INTERVALS: usize = 16;
+/// Distance of samples from the ends of a phase, as a fraction of it: at a jump of a path's derivatives, rounding would
+/// decide which side is evaluated.
 const END_MARGIN_SHARE: f64 = 1e-6;
-/// What rounding may need.
+/// Relative margin against rounding.
 const ROUNDING: f64 = 1e-9;
-/// A motion may be slower than it has to be by this share of its time.
+/// Maximum relative excess of the slowdown over the necessary one.
 const NEGLIGIBLE: f64 = 1e-7;
 
-/// Several quantities that are each smooth within a phase, seen at three instants of it. The greatest of them is not
-/// smooth where one takes over from another, so each is looked at by itself.
+/// Three samples within a phase of several quantities that are each smooth there. Their maximum is not smooth where one
+/// takes over from another, so each is assessed separately.
 pub(super) struct Glance {
     phase: (Progress, f64),
-    /// The greatest value at the three instants.
+    /// Maximum over the three samples.
     pub(super) seen: f64,
-    /// What a closer look may find at most: the tops of the parabolas through three values, and a quarter of the spread.
+    /// Upper estimate of the maximum in the phase: the vertex of the parabola through the three values plus a quarter
+    /// of their spread.
     pub(super) bound: f64,
-    /// Which quantity gives the bound, its three values, and the bound of the others.
+    /// Index of the quantity that gives the bound, and its three values.
     likeliest: (usize, [f64; 3]),
+    /// Upper estimate for the other quantities.
     others: f64,
 }
 
 impl Glance {
-    /// At both ends of a phase and in its middle.
+    /// Samples a phase at both ends and in its middle.
     pub(super) fn of<const N: usize>(phase: (Progress, f64), of: impl Fn(&Progress) -> [f64; N]) -> Self {
         let [from, to] = [0.0, 1.0].map(|u| within(&phase, u, &of));
         Self::between(phase, [&from, &to], of)
     }
 
-    /// The same where the quantities at both ends are known.
+    /// Samples a phase in its middle; the quantities at both ends are given.
     pub(super) fn between<const N: usize>(
         phase: (Progress, f64),
         [from, to]: [&[f64; N]; 2],
@@ -64,9 +66,10 @@ impl Glance {
         glance
     }
 
-    /// The greatest value that is found in the phase, and what it is at most: the same, or less than is `enough`.
+    /// Samples the phase more finely. Returns the maximum that is found and an upper estimate, which is at most
+    /// `enough` or equal to the maximum.
     pub(super) fn closer<const N: usize>(&self, enough: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; 2] {
-        // By how much the parabola misses two more values is more than those through all five miss.
+        // The error of the parabola at two more samples bounds the error of the parabolas through all five.
         let (k, [a, b, c]) = self.likeliest;
         let [p, q] = [0.25, 0.75].map(|u| within(&self.phase, u, &of)[k]);
         let off = (p - 0.125 * (3.0 * a + 6.0 * b - c)).abs().max((q - 0.125 * (3.0 * c + 6.0 * b - a)).abs());
@@ -75,20 +78,20 @@ impl Glance {
         if bound <= enough {
             return [top, bound];
         }
-        let near: [[f64; N]; CLOSE_PARTS + 1] =
-            std::array::from_fn(|i| within(&self.phase, i as f64 / CLOSE_PARTS as f64, &of));
+        let near: [[f64; N]; FINE_INTERVALS + 1] =
+            std::array::from_fn(|i| within(&self.phase, i as f64 / FINE_INTERVALS as f64, &of));
         let tops = |w: &[[f64; N]]| (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]])).fold(0.0, f64::max);
         let top = near.windows(3).map(tops).fold(self.seen, f64::max);
         [top, top]
     }
 }
 
-/// The quantities at a part of a phase.
+/// Returns the quantities at the fraction u of a phase.
 fn within<const N: usize>((from, time): &(Progress, f64), u: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; N] {
     of(&after(from, u.clamp(END_MARGIN_SHARE, 1.0 - END_MARGIN_SHARE) * time))
 }
 
-/// The greatest of all quantities over all phases.
+/// Returns the maximum of all quantities over all phases.
 pub(super) fn greatest<const N: usize>(
     phases: impl Iterator<Item = (Progress, f64)>,
     of: impl Fn(&Progress) -> [f64; N],
@@ -96,52 +99,54 @@ pub(super) fn greatest<const N: usize>(
     greatest_of(phases.map(|phase| Glance::of(phase, &of)).collect(), of)
 }
 
-/// The same of phases that have been glanced at, or a negligible bit more: those in which it may be are looked at
-/// closely, the likeliest first.
+/// Returns the maximum of all quantities over sampled phases, or a negligible excess. It samples finely the phases that
+/// may contain the maximum, the likeliest first.
 pub(super) fn greatest_of<const N: usize>(mut glances: Vec<Glance>, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
-    let mut most = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
-    let mut at_most = most;
-    glances.retain(|glance| glance.bound > most);
+    let mut found_max = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
+    let mut upper = found_max;
+    glances.retain(|glance| glance.bound > found_max);
     glances.sort_unstable_by(|x, y| y.bound.total_cmp(&x.bound));
     for glance in glances {
-        let enough = most * (1.0 + NEGLIGIBLE);
+        let enough = found_max * (1.0 + NEGLIGIBLE);
         if glance.bound <= enough {
-            at_most = at_most.max(glance.bound);
+            upper = upper.max(glance.bound);
             break;
         }
         let [found, bound] = glance.closer(enough, &of);
-        (most, at_most) = (most.max(found), at_most.max(bound));
+        (found_max, upper) = (found_max.max(found), upper.max(bound));
     }
-    most.max(at_most)
+    found_max.max(upper)
 }
 
-/// The top of the parabola through three values at even distances, if it lies between them; else the greatest of them.
+/// Returns the maximum of the parabola through three even samples if it lies between them, else the maximum of the
+/// samples.
 fn crest([a, b, c]: [f64; 3]) -> f64 {
     let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
-    // Farther out it is none of this phase.
+    // A vertex further out is not in this phase.
     if bend < 0.0 && slope.abs() <= -bend { b - 0.5 * slope * slope / bend } else { a.max(b).max(c) }
 }
 
-/// A profile slowed down by a factor on time with which every limit is kept. `None` if no time is enough.
+/// Returns a profile slowed down by a factor on time, so that every limit is kept. Returns `None` if the factor is
+/// infinite.
 pub(super) fn kept(profile: &Profile, factor: f64) -> Option<Profile> {
-    // Rounding is not worth another profile.
+    // An excess at rounding level needs no slower profile.
     let needed = factor > 1.0 + ROUNDING;
     factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + ROUNDING)) } else { profile.clone() })
 }
 
-/// At least so many parts of a motion are looked at.
+/// Minimum number of parts in which a motion is sampled.
 const MIN_PARTS: usize = 2000;
 
 impl Motion {
-    /// The motion as slow as the limits of the drives on torque, speed and acceleration want it. `None` if no time is
-    /// enough.
+    /// Returns the motion slowed down to the limits of the drives on torque, speed and acceleration. Returns `None` if
+    /// no duration is sufficient.
     ///
-    /// Its timing is to be by phases, as those of the fastest motions are.
+    /// Its profile must consist of phases, as those of the fastest motions do.
     #[must_use]
     pub fn slowed(&self, model: &Inertia, around: &Surroundings, limits: &Limits) -> Option<Self> {
         let limits = Limits { jerk: Limits::none(limits.jerk.len()).jerk, ..*limits };
         let count = self.profile.phases().count().max(1);
-        // An even number, so that what changes in the middle of a phase changes between two parts.
+        // An even number, so that a change in the middle of a phase falls between two parts.
         let parts = 2 * MIN_PARTS.div_ceil(2 * count);
         let cut = |(from, time): (Progress, f64)| {
             let time = time / parts as f64;

@@ -1,8 +1,8 @@
-//! Time laws: how far along its path a motion is, and how fast.
+//! Time laws: position along a path and its derivatives as functions of time.
 
 use crate::settings::word::words;
 
-/// The share s of a path that is done, with its derivatives.
+/// Position s on a path with its derivatives by time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// 0 at the start, 1 at the end.
@@ -11,32 +11,32 @@ pub struct Progress {
     pub rate: f64,
     /// s̈, 1/s².
     pub acceleration: f64,
-    /// s⃛, 1/s³; steps of s̈ have none.
+    /// s⃛, 1/s³; jumps of s̈ are not included.
     pub jerk: f64,
 }
 
 impl Progress {
-    /// Standing still at s.
+    /// Returns rest at s.
     #[inline]
     pub fn still(s: f64) -> Self {
         Self { s, rate: 0.0, acceleration: 0.0, jerk: 0.0 }
     }
 }
 
-/// What a law does in a given time T.
+/// Definition of a law over a given duration T.
 struct Law {
-    /// Whether the machine's limits set T, and not the task.
+    /// Whether the machine's limits set T, not the task.
     is_fastest: bool,
-    /// The greatest |s̈|, times T².
+    /// Maximum |s̈| times T².
     peak: f64,
-    /// The shares of T at which s̈ jumps or bends.
+    /// Fractions of T at which s̈ or its slope jumps.
     kinks: &'static [f64],
-    /// s, and its first three derivatives by u = t/T, for u from 0 to 1.
+    /// Returns s and its first three derivatives by u = t/T, for u from 0 to 1.
     at: fn(f64) -> [f64; 4],
 }
 
 words! {
-    /// From rest to rest over a time T. Peaks of s̈ are times 1/T², those of s⃛ times 1/T³.
+    /// Time laws from rest to rest over a duration T. Peaks of s̈ are in units of 1/T², those of s⃛ in units of 1/T³.
     pub enum TimeLaw: Law {
         /// s = 10 u³ − 15 u⁴ + 6 u⁵, u = t/T; the peak is 10/√3.
         Quintic = "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²" => Law {
@@ -76,15 +76,15 @@ words! {
                 if u < 1.0 / 3.0 { [2.25 * u * u, 4.5 * u, 4.5, 0.0] } else { [1.5 * u - 0.25, 1.5, 0.0, 0.0] }
             }),
         };
-        /// In a given T: half of it at s̈ = 4, half at −4, which is the least peak that any law has.
+        /// For a given T: half of it at s̈ = 4, half at −4, the least peak of all laws.
         Fastest = "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow" => Law {
             is_fastest: true,
             peak: 4.0,
             kinks: &[0.0, 0.5, 1.0],
             at: |u| mirrored(u, |u| [2.0 * u * u, 4.0 * u, 4.0, 0.0]),
         };
-        /// In a given T: s⃛ is 32, −32, 32 for a quarter, a half, a quarter of it, which is the least peak that any law
-        /// has; acceleration peaks at 8.
+        /// For a given T: s⃛ is 32, −32, 32 for a quarter, a half, a quarter of it, the least peak of all laws; the
+        /// peak of acceleration is 8.
         FastestSmooth = "fastest-smooth", "Fastest, smooth", "The same with limits on jerk" => Law {
             is_fastest: true,
             peak: 8.0,
@@ -93,7 +93,7 @@ words! {
                 if u < 0.25 {
                     return [16.0 / 3.0 * u * u * u, 16.0 * u * u, 32.0 * u, 32.0];
                 }
-                // About the middle, where s = 1/2, ṡ = 2 and s̈ = 0.
+                // Expansion about the middle, where s = 1/2, ṡ = 2 and s̈ = 0.
                 let v = u - 0.5;
                 [0.5 + v * (2.0 - 16.0 / 3.0 * v * v), 2.0 - 16.0 * v * v, -32.0 * v, -32.0]
             }),
@@ -101,32 +101,33 @@ words! {
     }
 }
 
-/// √3 and √5: roots are no constants of the language.
+/// √3; the square root is not a constant expression.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
+/// √5.
 const SQRT_5: f64 = 2.236_067_977_499_79;
 
 impl TimeLaw {
-    /// Whether the machine's limits set T, and not the task.
+    /// Returns whether the machine's limits set T, not the task.
     pub fn is_fastest(self) -> bool {
         self.data().is_fastest
     }
 
-    /// Whether s̈ neither jumps nor bends on the way.
+    /// Returns whether s̈ and its slope are continuous inside the motion.
     pub fn is_smooth(self) -> bool {
         self.kinks().len() == 2
     }
 
-    /// The greatest |s̈|, times T².
+    /// Returns the maximum |s̈| times T².
     pub fn peak(self) -> f64 {
         self.data().peak
     }
 
-    /// The shares of T at which s̈ jumps or bends.
+    /// Returns the fractions of T at which s̈ or its slope jumps.
     pub fn kinks(self) -> &'static [f64] {
         self.data().kinks
     }
 
-    /// Progress at time t, s, of a motion that takes T, s; still before its start and from its end on.
+    /// Returns the progress at time t, s, of a motion of `duration`, s; at rest before its start and from its end on.
     #[inline]
     pub fn at(self, t: f64, duration: f64) -> Progress {
         if t < 0.0 {
@@ -141,7 +142,7 @@ impl TimeLaw {
     }
 }
 
-/// A law whose second half is its first half, run backwards.
+/// Evaluates a law whose second half is its first half reversed.
 #[inline]
 fn mirrored(u: f64, half: impl Fn(f64) -> [f64; 4]) -> [f64; 4] {
     if u < 0.5 {

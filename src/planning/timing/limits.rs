@@ -1,17 +1,17 @@
-//! What the drives can do, and what that leaves of ṡ and s̈ on a path.
+//! Limits of the drives, and the constraints on ṡ and s̈ that they give on a path.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q′, q″ | dq/ds, d²q/ds² | rad |
 //! | x, u | ṡ², s̈ | 1/s² |
-//! | a, c, g | a limited quantity, as a part of its limit, is a u + c x + g | s², s², 1 |
+//! | a, c, g | a limited quantity, divided by its limit, is a u + c x + g | s², s², 1 |
 //!
-//! All are of the motors' own angles, which for motors on the base are those of the drives.
+//! All quantities are those of the motors' own angles; for motors on the base these are the drive angles.
 //!
 //! # Source
-//! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is of
-//! second degree in the rates.
+//! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is
+//! quadratic in the rates.
 
 use std::fmt;
 
@@ -22,7 +22,7 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
 
-/// What of a drive is limited.
+/// A limited quantity of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitedQuantity {
     /// τ_k, N m.
@@ -36,16 +36,16 @@ pub enum LimitedQuantity {
 }
 
 impl LimitedQuantity {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 4] = [Self::Torque, Self::Speed, Self::Acceleration, Self::Jerk];
 }
 
 /// A limit of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriveLimit {
-    /// What is limited.
+    /// The limited quantity.
     pub quantity: LimitedQuantity,
-    /// Of which drive, counted from 0.
+    /// Index of the drive, counted from 0.
     pub drive: usize,
 }
 
@@ -61,27 +61,27 @@ impl fmt::Display for DriveLimit {
     }
 }
 
-/// The greatest magnitudes for each drive, either way; infinite where there is no limit.
+/// Maximum magnitudes for each drive in either direction; infinite if there is no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// |τ_k|, N m.
+    /// Maximum |τ_k|, N m.
     pub torque: PerDrive,
-    /// |q̇_k|, rad/s.
+    /// Maximum |q̇_k|, rad/s.
     pub speed: PerDrive,
-    /// |q̈_k|, rad/s².
+    /// Maximum |q̈_k|, rad/s².
     pub acceleration: PerDrive,
-    /// |q⃛_k|, rad/s³.
+    /// Maximum |q⃛_k|, rad/s³.
     pub jerk: PerDrive,
 }
 
 impl Limits {
-    /// No limits on n drives.
+    /// Returns infinite limits for n drives.
     pub fn none(n: usize) -> Self {
         let free = PerDrive::from_fn(n.min(MAX_DRIVES), |_| f64::INFINITY);
         Self { torque: free, speed: free, acceleration: free, jerk: free }
     }
 
-    /// Those of a machine's drives.
+    /// Returns the limits of a machine's drives.
     pub fn of(machine: &Machine) -> Self {
         let drives = &machine.spec().drives;
         let each = |f: fn(&crate::mechanics::machine::Drive) -> Option<f64>| {
@@ -95,7 +95,7 @@ impl Limits {
         }
     }
 
-    /// The limits on one quantity.
+    /// Returns the limits on one quantity.
     pub fn on(&self, quantity: LimitedQuantity) -> &PerDrive {
         match quantity {
             LimitedQuantity::Torque => &self.torque,
@@ -106,19 +106,19 @@ impl Limits {
     }
 }
 
-/// One two-sided constraint at a place of a path: |a u + c x + g| ≤ 1.
+/// A two-sided constraint at a point of a path: |a u + c x + g| ≤ 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ConstraintRow {
-    /// Of u = s̈, s².
+    /// Coefficient of u = s̈, s².
     pub a: f64,
-    /// Of x = ṡ², s².
+    /// Coefficient of x = ṡ², s².
     pub c: f64,
-    /// What is there at rest.
+    /// Value at rest.
     pub g: f64,
 }
 
 impl ConstraintRow {
-    /// The quantity as a part of its limit.
+    /// Returns the quantity divided by its limit.
     #[inline]
     pub fn value(&self, u: f64, x: f64) -> f64 {
         self.a * u + self.c * x + self.g
@@ -126,28 +126,28 @@ impl ConstraintRow {
 }
 
 impl ConstraintRow {
-    /// The factor on time with which the limit is just kept: all but what is there at rest falls with its square.
-    /// Infinite where no time is enough.
+    /// Returns the factor on time with which the limit is just kept: all terms but g fall with its square. The factor
+    /// is infinite if no duration is sufficient.
     #[inline]
     pub(super) fn stretch(&self, u: f64, x: f64) -> f64 {
         let moving = self.a * u + self.c * x;
-        // Room on the side to which the motion pushes.
-        let room = 1.0 - if moving < 0.0 { -self.g } else { self.g };
-        match (moving == 0.0, room > 0.0) {
+        // Distance of g to the limit in the direction of the motion's term.
+        let margin = 1.0 - if moving < 0.0 { -self.g } else { self.g };
+        match (moving == 0.0, margin > 0.0) {
             (true, _) => 0.0,
-            (false, true) => (moving.abs() / room).sqrt(),
+            (false, true) => (moving.abs() / margin).sqrt(),
             (false, false) => f64::INFINITY,
         }
     }
 }
 
-/// The most rows there can be: torque and acceleration of every drive.
+/// Maximum number of rows: torque and acceleration of every drive.
 pub const MAX_ROWS: usize = 2 * MAX_DRIVES;
 
-/// A factor on time for each row and each speed; 0 where there is none.
+/// A factor on time for each row and each speed; 0 for unused entries.
 pub(super) type Stretches = [f64; MAX_ROWS + MAX_DRIVES];
 
-/// The factors on time with which a place that is passed so just keeps its rows and speeds.
+/// Returns the factors on time with which a point that is passed with given progress just keeps its rows and speeds.
 #[inline]
 pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &Progress) -> Stretches {
     let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
@@ -164,15 +164,15 @@ pub struct Constraints<'a> {
     model: &'a Inertia,
     around: Surroundings,
     limits: &'a Limits,
-    /// Where torque is D_k q̈_k in every pose: 1/limit of q̈_k from both.
+    /// If torque is D_k q̈_k in every pose: 1/limit of q̈_k from the limits of torque and acceleration.
     constant: Option<PerDrive>,
     rows: Vec<DriveLimit>,
     /// Drives with a limit on speed.
-    quick: Vec<usize>,
+    speed_limited: Vec<usize>,
 }
 
 impl<'a> Constraints<'a> {
-    /// Of a model; limits that are infinite make no row.
+    /// Builds the constraints of a model; infinite limits give no row.
     pub fn new(model: &'a Inertia, around: &Surroundings, limits: &'a Limits) -> Self {
         let n = model.drives();
         let weightless = around.gravity.norm_sqr() == 0.0 || model.is_force_balanced();
@@ -182,7 +182,7 @@ impl<'a> Constraints<'a> {
         let of = |quantity| move |drive| DriveLimit { quantity, drive };
         let (torque, acceleration) = (LimitedQuantity::Torque, LimitedQuantity::Acceleration);
         let rows = if constant {
-            // Both limit q̈_k; the lower one is enough.
+            // Both limits bound q̈_k; only the lower one is needed.
             let lower = |k| if by_torque(k) <= limits.acceleration[k] { torque } else { acceleration };
             let finite = (0..n).filter(|k| by_torque(*k).min(limits.acceleration[*k]).is_finite());
             finite.map(|k| of(lower(k))(k)).collect()
@@ -191,37 +191,37 @@ impl<'a> Constraints<'a> {
             torques.chain((0..n).filter(limited(acceleration)).map(of(acceleration))).collect()
         };
         let constant = constant.then(|| PerDrive::from_fn(n, |k| 1.0 / by_torque(k).min(limits.acceleration[k])));
-        let quick = (0..n).filter(limited(LimitedQuantity::Speed)).collect();
-        Self { model, around: *around, limits, constant, rows, quick }
+        let speed_limited = (0..n).filter(limited(LimitedQuantity::Speed)).collect();
+        Self { model, around: *around, limits, constant, rows, speed_limited }
     }
 
-    /// What each row limits, in the order of `at`.
+    /// Returns the limit of each row, in the order of `at`.
     pub fn rows(&self) -> &[DriveLimit] {
         &self.rows
     }
 
-    /// How many drives have a limit on speed.
+    /// Returns the number of drives with a limit on speed.
     pub(super) fn speeds(&self) -> usize {
-        self.quick.len()
+        self.speed_limited.len()
     }
 
-    /// The limits they come from.
+    /// Returns the limits of the drives.
     pub fn limits(&self) -> &Limits {
         self.limits
     }
 
-    /// Where the motors sit whose limits these are.
+    /// Returns the placement of the motors that have these limits.
     pub fn motors(&self) -> &Motors {
         self.model.motors()
     }
 
-    /// Whether the rows on a straight joint line are the same all along.
+    /// Returns whether the rows are constant along a straight joint line.
     pub fn is_constant(&self) -> bool {
         self.constant.is_some()
     }
 
-    /// The rows at a point of a path, as many as [`rows`](Self::rows), the speeds of drives at ṡ = 1 as parts of their
-    /// limits, as many as [`speeds`](Self::speeds), and the greatest x that speeds allow, 1/s².
+    /// Writes the rows at a point of a path, as many as [`rows`](Self::rows), and the speeds of drives at ṡ = 1 divided
+    /// by their limits, as many as [`speeds`](Self::speeds). Returns the maximum x that speeds allow, 1/s².
     #[inline]
     pub(super) fn at(&self, point: &PathPoint, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64 {
         let PathPoint { q, first, second } = point;
@@ -247,24 +247,28 @@ impl<'a> Constraints<'a> {
                 };
             }
         }
-        if self.quick.is_empty() {
+        if self.speed_limited.is_empty() {
             return f64::INFINITY;
         }
         let first = self.model.motors().turns(first);
-        speeds.iter_mut().zip(&self.quick).for_each(|(speed, k)| *speed = first[*k].abs() / self.limits.speed[*k]);
-        let slow = speeds.iter().copied().fold(0.0, f64::max);
-        1.0 / (slow * slow)
+        speeds
+            .iter_mut()
+            .zip(&self.speed_limited)
+            .for_each(|(speed, k)| *speed = first[*k].abs() / self.limits.speed[*k]);
+        let largest = speeds.iter().copied().fold(0.0, f64::max);
+        1.0 / (largest * largest)
     }
 
-    /// The factors on time with which a place on a path, passed so, just keeps each limit but those on jerk.
+    /// Returns the factors on time with which a point of a path, passed with given progress, just keeps each limit
+    /// except those on jerk.
     pub(super) fn stretches(&self, path: &Path, at: &Progress) -> Stretches {
         let (mut rows, mut speeds) = ([ConstraintRow::default(); MAX_ROWS], [0.0; MAX_DRIVES]);
-        let (rows, speeds) = (&mut rows[..self.rows.len()], &mut speeds[..self.quick.len()]);
+        let (rows, speeds) = (&mut rows[..self.rows.len()], &mut speeds[..self.speed_limited.len()]);
         self.at(&path.at(at.s), rows, speeds);
         stretches(rows, speeds, at)
     }
 
-    /// The drive whose limit on speed is nearest, whatever ṡ.
+    /// Returns the drive that reaches its limit on speed first as ṡ grows.
     pub(super) fn fastest_drive(&self, point: &PathPoint) -> usize {
         let first = self.model.motors().turns(&point.first);
         let part = |k: usize| first[k].abs() / self.limits.speed[k];

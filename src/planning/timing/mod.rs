@@ -1,4 +1,4 @@
-//! When: time laws, limits of the drives, the fastest motion along a path.
+//! Timing: time laws, limits of the drives, the fastest motion along a path.
 
 pub mod fastest;
 mod jerk;

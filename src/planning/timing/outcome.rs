@@ -1,4 +1,4 @@
-//! What a search for the fastest motion comes to.
+//! Result of a search for the fastest motion.
 
 use thiserror::Error;
 
@@ -8,30 +8,30 @@ use super::profile::Profile;
 /// The fastest motion on a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fastest {
-    /// When it is where.
+    /// Timing of the motion.
     pub profile: Profile,
-    /// T/T* − 1, T* the least time without limits on jerk: a bound on what a better motion with them could gain. Only
-    /// where jerk was to be limited, and something besides it limits.
+    /// T/T* − 1, where T* is the least time without limits on jerk: an upper bound of the relative gain of a better
+    /// motion. `None` unless jerk is limited and other limits act as well.
     pub gap: Option<f64>,
-    /// Which limits lead, for what share of T, the greatest share first.
+    /// Limits that are used furthest, with their fractions of T, the greatest first.
     pub limiting: Vec<(DriveLimit, f64)>,
 }
 
-/// Why there is no fastest motion.
+/// Why no fastest motion exists.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TimeError {
-    /// Nothing limits.
+    /// No limit acts on the motion.
     #[error(
         "no limit acts on the motion at s = {s:.3}: want torque, speed or acceleration limits of the drives that move"
     )]
     Unlimited {
-        /// How far along.
+        /// s on the path, 0 to 1.
         s: f64,
     },
     /// Only speeds are limited.
     #[error("only speeds are limited, and the motion would jump to them: want torque or acceleration limits too")]
     SpeedOnly,
-    /// Jerk was to be limited.
+    /// Jerk should be limited, but no drive that moves has a limit on it.
     #[error(
         "no drive that moves has a limit on its jerk: want jerk_limit of a drive, such as drive.1.jerk_limit=900, or the law without it"
     )]
@@ -42,32 +42,32 @@ pub enum TimeError {
          or a path elsewhere"
     )]
     Static {
-        /// Counted from 1.
+        /// Number of the drive, counted from 1.
         drive: usize,
-        /// How far along.
+        /// s on the path, 0 to 1.
         s: f64,
-        /// N m.
+        /// Torque needed at rest, N m.
         torque: f64,
-        /// N m.
+        /// Torque limit, N m.
         limit: f64,
     },
-    /// No rate is right.
+    /// No rate keeps the limits.
     #[error("the limits leave no way past s = {s:.3}: want higher limits, or a path elsewhere")]
     Stuck {
-        /// How far along.
+        /// s on the path, 0 to 1.
         s: f64,
     },
     /// The stations do not rise from 0 to 1.
     #[error("the stations do not rise from 0 to 1: want two or more that do")]
     Stations,
-    /// Unlike numbers of drives.
+    /// Different numbers of drives.
     #[error("a path of {path} drives, a model of {model} and limits of {limits}: want one number of drives")]
     Drives {
-        /// Of the path.
+        /// Number of drives of the path.
         path: usize,
-        /// Of the model.
+        /// Number of drives of the model.
         model: usize,
-        /// Of the limits.
+        /// Number of drives of the limits.
         limits: usize,
     },
 }

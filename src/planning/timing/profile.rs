@@ -1,22 +1,23 @@
-//! Timings s(t): a law over a time, phases of constant jerk, both from rest to rest, or time itself.
+//! Timings s(t): a time law over a duration, phases of constant jerk, both from rest to rest, or s proportional to
+//! time.
 
 use crate::planning::timing::law::{Progress, TimeLaw};
 
-/// When a motion is where on its path: s(t) from 0 to 1 with its derivatives, still before 0 and from T on.
+/// Timing of a motion on its path: s(t) from 0 to 1 with its derivatives, at rest before 0 and from T on.
 ///
-/// Rest before the start and after the end is part of every profile, so its rate may step there only where it is made
-/// to ([`even`](Self::even)).
+/// Rest before the start and after the end is part of every profile. The rate jumps there only for [`even`](Self::even)
+/// and [`running`](Self::running) profiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     duration: f64,
     shape: Shape,
 }
 
-/// The last instant of a running profile belongs to it, give or take this share of T.
+/// Tolerance of both ends of a running profile, as a fraction of T.
 const END_SLACK_SHARE: f64 = 1e-9;
 
-/// Jumps of s̈ up to this share of its peak are too small for a step to end on.
-const SMALL_JUMP: f64 = 1e-3;
+/// Integration steps need not end at jumps of s̈ up to this fraction of its peak.
+const NEGLIGIBLE_JUMP: f64 = 1e-3;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
@@ -26,21 +27,22 @@ enum Shape {
     Sequence(Vec<Leg>),
 }
 
-/// A part of a sequence.
+/// A profile in a sequence.
 #[derive(Clone, Debug, PartialEq)]
 struct Leg {
-    /// When it begins, s.
+    /// Time at which it begins, s.
     start: f64,
-    /// s where it begins, and how far it goes.
+    /// s at its start.
     from: f64,
+    /// Difference of s over it.
     run: f64,
     profile: Profile,
 }
 
-/// Some time at constant s⃛.
+/// A time span of constant s⃛.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// How long, s.
+    /// Duration, s.
     pub time: f64,
     /// s̈ at its start, 1/s².
     pub acceleration: f64,
@@ -58,9 +60,9 @@ struct Start {
 #[derive(Clone, Debug, PartialEq)]
 struct Phases {
     starts: Vec<Start>,
-    /// For each of as many even parts of T as there are phases, the phase in which it begins.
+    /// Lookup table: T has as many equal parts as there are phases; entry i is the phase in which part i begins.
     guide: Vec<u32>,
-    /// Parts of T in a second.
+    /// Parts of T per second.
     pace: f64,
 }
 
@@ -83,7 +85,7 @@ impl Phases {
     fn at(&self, t: f64) -> Progress {
         let last = self.guide.len() - 1;
         let mut i = self.guide[((t * self.pace) as usize).min(last)] as usize;
-        // The guide's part may begin a rounding error late.
+        // A part of the lookup table may begin late by a rounding error.
         while i > 0 && self.starts[i].t > t {
             i -= 1;
         }
@@ -95,7 +97,7 @@ impl Phases {
     }
 }
 
-/// Progress some time later at the same jerk.
+/// Returns the progress after a time t, s, at constant jerk.
 #[inline]
 pub(super) fn after(from: &Progress, t: f64) -> Progress {
     let Progress { s, rate, acceleration, jerk } = *from;
@@ -108,23 +110,23 @@ pub(super) fn after(from: &Progress, t: f64) -> Progress {
 }
 
 impl Profile {
-    /// A law that takes T, s.
+    /// Returns the profile of a law over a duration T, s.
     pub fn of(law: TimeLaw, duration: f64) -> Self {
         Self { duration, shape: Shape::Law(law) }
     }
 
-    /// s = t/T: for paths that hold their timing themselves, and are at rest at both ends.
+    /// Returns s = t/T, for paths that contain their own timing and are at rest at both ends.
     pub fn even(duration: f64) -> Self {
         Self::from_starts(vec![(0.0, Progress { rate: 1.0 / duration, ..Progress::still(0.0) })], duration)
     }
 
-    /// s = t/T, both ends included: for paths that hold their timing themselves and need not be at rest where they
-    /// begin and end. After T the motion stands.
+    /// Returns s = t/T including both ends, for paths that contain their own timing and need not be at rest at their
+    /// ends. After T the motion is at rest.
     pub fn running(duration: f64) -> Self {
         Self { duration, shape: Shape::Running }
     }
 
-    /// Profiles one after another, each with its share of s; shares are put in proportion to their sum.
+    /// Concatenates profiles, each with its share of s; shares are divided by their sum.
     pub fn sequence(legs: Vec<(Self, f64)>) -> Self {
         let total: f64 = legs.iter().map(|(_, share)| share).sum();
         let (mut start, mut from) = (0.0, 0.0);
@@ -138,14 +140,14 @@ impl Profile {
         Self { duration: start, shape: Shape::Sequence(legs) }
     }
 
-    /// At the end at once, of a path that goes nowhere.
+    /// Returns the profile of zero duration, for a path of no length.
     pub fn none() -> Self {
         Self { duration: 0.0, shape: Shape::Law(TimeLaw::Quintic) }
     }
 
-    /// From rest through spans of constant jerk. Those of no time are left out.
+    /// Builds a profile from rest through spans of constant jerk. Spans of zero duration are omitted.
     ///
-    /// That s comes to 1 at rest is up to them.
+    /// The caller must make sure that s ends at 1 at rest.
     pub fn of_spans(spans: &[Span]) -> Self {
         let (mut t, mut s, mut rate) = (0.0, 0.0, 0.0);
         let mut starts = Vec::with_capacity(spans.len());
@@ -158,9 +160,9 @@ impl Profile {
         Self::from_starts(starts, t)
     }
 
-    /// Through stations s that rise from 0 to 1 with given squares of the rate x = ṡ², 1/s², and between them with s̈
-    /// of constant slope in time that rises by as much as is given for each space, 1/s²; none given: constant s̈.
-    /// `None` if two neighbours are both at rest, which no time would join, or the lengths differ.
+    /// Builds a profile through stations s that rise from 0 to 1 with given x = ṡ², 1/s². Between stations s̈ is linear
+    /// in time and changes by `rise`, 1/s²; where `rise` is missing, s̈ is constant. Returns `None` if two neighbours
+    /// are both at rest, so that the time is infinite, or if the lengths differ.
     pub fn through(stations: &[f64], x: &[f64], rise: &[f64]) -> Option<Self> {
         let spaces = stations.len().checked_sub(1).filter(|n| *n > 0 && x.len() == stations.len())?;
         let mut starts = Vec::with_capacity(spaces);
@@ -169,7 +171,7 @@ impl Profile {
         for i in 0..spaces {
             let (way, next) = (stations[i + 1] - stations[i], x[i + 1].sqrt());
             let rise = rise.get(i).copied().unwrap_or(0.0);
-            // The way is mean · time − rise · time² / 12.
+            // The distance is mean · time − rise · time² / 12.
             let mean = 0.5 * (rate + next);
             let time = 2.0 * way / (mean + (mean * mean - rise * way / 3.0).sqrt());
             let from = Progress {
@@ -197,13 +199,13 @@ impl Profile {
         Self { duration, shape: Shape::Phases(Phases::new(starts, duration)) }
     }
 
-    /// T, s.
+    /// Returns the duration T, s.
     #[inline]
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// The law, if it is one.
+    /// Returns the time law, if the profile is one.
     pub fn law(&self) -> Option<TimeLaw> {
         match self.shape {
             Shape::Law(law) => Some(law),
@@ -211,12 +213,12 @@ impl Profile {
         }
     }
 
-    /// Progress t seconds after the start.
+    /// Returns the progress t seconds after the start.
     #[inline]
     pub fn at(&self, t: f64) -> Progress {
         match &self.shape {
             Shape::Law(law) => law.at(t, self.duration),
-            // Steps may add up to a hair beside either end.
+            // The sum of integration steps may miss either end by rounding.
             Shape::Running if t < -END_SLACK_SHARE * self.duration => Progress::still(0.0),
             Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => Progress::still(1.0),
             Shape::Running => {
@@ -242,8 +244,8 @@ impl Profile {
         }
     }
 
-    /// The same timing over another time: rates fall with its first, accelerations with its second, jerks with its
-    /// third power.
+    /// Returns the timing stretched by a factor on time. Rates fall with its first power, accelerations with its
+    /// second, jerks with its third.
     #[must_use]
     pub fn stretched(&self, factor: f64) -> Self {
         let duration = factor * self.duration;
@@ -266,23 +268,23 @@ impl Profile {
         }
     }
 
-    /// Times at which s̈ jumps or bends, both ends among them, s, in order: where a step of a simulation must end.
-    /// Small jumps, as between the stations of a timing that follows a curve, are left out.
+    /// Returns the rising times at which s̈ or its slope jumps, with both ends, s: a simulation step must end there.
+    /// Small jumps, such as between the stations of a timing along a curve, are omitted.
     pub fn kinks(&self) -> Vec<f64> {
         let whole = self.duration;
         match &self.shape {
             Shape::Law(law) => law.kinks().iter().map(|u| u * whole).collect(),
             Shape::Running => vec![-END_SLACK_SHARE * whole, (1.0 + END_SLACK_SHARE) * whole],
             Shape::Phases(Phases { starts, .. }) => {
-                let most = |f: fn(&Progress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
+                let max_of = |f: fn(&Progress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
                 let end = |i: usize| after(&starts[i].at, starts.get(i + 1).map_or(whole, |p| p.t) - starts[i].t);
                 let peak =
-                    (0..starts.len()).map(|i| end(i).acceleration.abs()).fold(most(|p| p.acceleration), f64::max);
-                let top = most(|p| p.rate);
+                    (0..starts.len()).map(|i| end(i).acceleration.abs()).fold(max_of(|p| p.acceleration), f64::max);
+                let top = max_of(|p| p.rate);
                 let bends = |i: &usize| {
                     let (was, is) = (end(i - 1), starts[*i].at);
                     (is.rate - was.rate).abs() > 1e-9 * top
-                        || (is.acceleration - was.acceleration).abs() > SMALL_JUMP * peak
+                        || (is.acceleration - was.acceleration).abs() > NEGLIGIBLE_JUMP * peak
                         || (is.jerk - was.jerk).abs() * whole > peak
                 };
                 let inner = (1..starts.len()).filter(bends).map(|i| starts[i].t);
@@ -294,7 +296,7 @@ impl Profile {
         }
     }
 
-    /// When s is first reached, s.
+    /// Returns the time at which s is first reached, s, by bisection.
     pub fn when(&self, s: f64) -> f64 {
         let (mut low, mut high) = (0.0, self.duration);
         for _ in 0..60 {
@@ -304,8 +306,8 @@ impl Profile {
         high
     }
 
-    /// The phases of constant s⃛, each by how it begins and how long it takes; none of a law, a running profile or a
-    /// sequence.
+    /// Returns the phases of constant s⃛, each with its initial progress and its duration, s. A law, a running profile
+    /// and a sequence have none.
     pub(super) fn phases(&self) -> impl Iterator<Item = (Progress, f64)> + '_ {
         let starts: &[Start] = match &self.shape {
             Shape::Phases(phases) => &phases.starts,
@@ -315,7 +317,7 @@ impl Profile {
         starts.iter().enumerate().map(move |(i, start)| (start.at, end(i) - start.t))
     }
 
-    /// The greatest |s̈|, 1/s²; of a law its own, of a running profile none, of a sequence that of its parts.
+    /// Returns the maximum |s̈|, 1/s²; 0 for a running profile.
     pub fn peak_acceleration(&self) -> f64 {
         match &self.shape {
             Shape::Law(law) => law.peak() / (self.duration * self.duration),
@@ -332,13 +334,14 @@ impl Profile {
         }
     }
 
-    /// Through instants with s, ṡ and s̈ given there: between two of them three phases of equal time, which meet both.
+    /// Builds a profile through instants with given s, ṡ and s̈. Between two instants, three phases of equal duration
+    /// match the values at both.
     pub(super) fn through_jets(jets: &[(f64, Progress)]) -> Self {
         let mut starts = Vec::with_capacity(3 * jets.len());
         for w in jets.windows(2) {
             let ([(t, a), (end, b)], third) = ([w[0], w[1]], (w[1].0 - w[0].0) / 3.0);
             let whole = end - t;
-            // s̈, ṡ and s that the jerks must add.
+            // Changes of s̈, ṡ and s that the jerks must produce.
             let bend = (b.acceleration - a.acceleration) / third;
             let rate = (b.rate - a.rate - a.acceleration * whole) / (third * third);
             let way = b.s - a.s - whole * (a.rate + 0.5 * whole * a.acceleration);

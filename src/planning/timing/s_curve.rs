@@ -2,14 +2,14 @@
 
 use super::profile::Span;
 
-/// The fastest way from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j, all above 0, any of them infinite:
-/// jerk up, constant s̈, jerk down, constant ṡ, and the same backwards; phases that do not occur take no time. `None`
-/// if both s̈ and s⃛ are unlimited.
+/// Returns the fastest motion of s from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j. All bounds must be
+/// above 0 and may be infinite. The phases are positive jerk, constant s̈, negative jerk, constant ṡ, and their mirror
+/// image; unused phases have zero time. Returns `None` if both s̈ and s⃛ are unlimited.
 pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
     if a.is_infinite() && j.is_infinite() {
         return None;
     }
-    // The peak rate if v does not cut it: with constant s̈ between the jerks, or without.
+    // The peak rate without the bound v, with or without constant s̈ between the phases of jerk.
     let with_constant = 2.0 * a * (a / j) * (a / j) <= 1.0;
     let free = if a.is_finite() && with_constant {
         let p = a * (a / j);
@@ -18,10 +18,10 @@ pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
         (0.25 * j).cbrt()
     };
     let peak = v.min(free);
-    // s̈ reaches a, or turns before.
+    // s̈ reaches a, or falls again before.
     let up = if j.is_infinite() { 0.0 } else { (peak / j).sqrt().min(a / j) };
     let constant = if a.is_infinite() { 0.0 } else { (peak / a - up).max(0.0) };
-    // Not cut by v, it does not cruise, whatever rounding says.
+    // There is a phase of constant ṡ only if v bounds the rate, regardless of rounding.
     let cruise = if peak < free { (1.0 / peak - 2.0 * up - constant).max(0.0) } else { 0.0 };
     let top = if j.is_infinite() { a } else { (j * up).min(a) };
     let jerk = if j.is_infinite() { 0.0 } else { j };

@@ -1,81 +1,86 @@
-//! Time-optimal path parameterisation: the greatest rate that limits allow everywhere on a path.
+//! Time-optimal path parameterisation: the maximum rate that limits allow everywhere on a path.
 //!
-//! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over a space Δ of the grid u has
-//! a mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the space. Backwards from rest at the
-//! end, the *controllable* x at each station, from which the end can be reached, are an interval; forwards from rest,
-//! the greatest u that stays within them makes the fastest motion (reachability analysis, Pham & Pham 2018).
+//! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over an interval Δ of the grid u
+//! has a mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the interval. Backwards from rest
+//! at the end, the *controllable* x at each station, from which the end can be reached, form an interval. Forwards from
+//! rest, the maximum u that stays within these gives the fastest motion (reachability analysis, Pham & Pham 2018).
 //!
-//! A first pass takes u as constant over a space, so that a limit is met at one end of it and T is exact to first order
-//! in Δ. A second one lets u rise over the space by as much as the first pass has it rise there: met at both ends, T
-//! exact to second order.
+//! A first pass takes u as constant over an interval. A limit is then met at one end only, and T is accurate to first
+//! order in Δ. A second pass lets u change over the interval by as much as it does in the first pass. The limit is then
+//! met at both ends, and T is accurate to second order.
 
 use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
-/// The greatest x that counts as limited, 1/s².
+/// An x of this or more counts as unlimited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
 
-/// How much of a limit what it limits may change over a space by the path's own doing, before the space is cut.
+/// Maximum change of a limited quantity over an interval due to the path, as a fraction of its limit; above it the
+/// interval is divided.
 const MAX_CHANGE_SHARE: f64 = 0.04;
-/// Into how many parts a space is cut at once, how often, how small, and how many there may be.
-const MOST_PARTS: usize = 8;
-const ROUNDS: usize = 8;
-const LEAST_SPACE: f64 = 1e-9;
-const MOST_SPACES: usize = 60_000;
+/// Maximum number of parts into which an interval is divided at once.
+const MAX_PARTS: usize = 8;
+/// Maximum number of refinements.
+const MAX_REFINEMENTS: usize = 8;
+/// Intervals of this length of s or less are not divided.
+const MIN_INTERVAL: f64 = 1e-9;
+/// Maximum number of intervals.
+const MAX_INTERVALS: usize = 60_000;
 
-/// Into how many parts a space is cut in which a limit is passed.
-const MENDING_PARTS: usize = 4;
-/// From how much on, as a share of time.
+/// Number of parts into which an interval is divided in which a limit is exceeded.
+const PARTS_IF_EXCEEDED: usize = 4;
+/// Relative excess of the factor on time from which an interval is divided.
 pub(super) const MENDED_FROM: f64 = 1e-4;
 
 /// The constraints of a path at every station; at least two.
 pub(super) struct Grid {
     pub(super) s: Vec<f64>,
-    /// Rows in one.
+    /// Number of rows per station.
     pub(super) m: usize,
     pub(super) rows: Vec<ConstraintRow>,
-    /// Speeds in one, and all of them.
+    /// Number of speeds per station.
     per: usize,
+    /// Speeds of all stations at ṡ = 1, divided by their limits.
     speeds: Vec<f64>,
-    /// The greatest x that speeds allow.
+    /// Maximum x that speeds allow, 1/s².
     pub(super) cap: Vec<f64>,
-    /// 1/√ of it.
+    /// 1/√cap, s.
     slow: Vec<f64>,
 }
 
-/// Where the sweeps end without a motion.
+/// Station at which the sweeps fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum NoSpeed {
     /// No x is controllable at this station.
     At(usize),
-    /// The start, at rest, is not; or nothing moves from here.
+    /// The start is not controllable at rest, or the motion stops at this station.
     Rest(usize),
 }
 
 impl Grid {
     pub(super) fn new(path: &Path, constraints: &Constraints, s: Vec<f64>) -> Self {
-        let mut grid = Self::with_room([constraints.rows().len(), constraints.speeds()], s.len());
+        let mut grid = Self::with_capacity([constraints.rows().len(), constraints.speeds()], s.len());
         s.iter().for_each(|s| grid.push(path, constraints, *s));
         Self { s, ..grid }
     }
 
-    /// No stations yet, but room for some with so many rows and speeds each.
-    fn with_room([m, per]: [usize; 2], stations: usize) -> Self {
-        let room = Vec::with_capacity;
+    /// Returns an empty grid with capacity for `stations` of m rows and `per` speeds each.
+    fn with_capacity([m, per]: [usize; 2], stations: usize) -> Self {
+        let empty = Vec::with_capacity;
         let rows = Vec::with_capacity(m * stations);
         Self {
-            s: room(stations),
+            s: empty(stations),
             m,
             rows,
             per,
-            speeds: room(per * stations),
-            cap: room(stations),
-            slow: room(stations),
+            speeds: empty(per * stations),
+            cap: empty(stations),
+            slow: empty(stations),
         }
     }
 
-    /// Rows of one more station, which s does not hold yet.
+    /// Appends the rows of one more station, without adding it to `s`.
     fn push(&mut self, path: &Path, constraints: &Constraints, s: f64) {
         let (row, speed) = (self.rows.len(), self.speeds.len());
         self.rows.resize(row + self.m, ConstraintRow::default());
@@ -85,10 +90,10 @@ impl Grid {
         self.slow.push(cap.sqrt().recip());
     }
 
-    /// The same with each space cut into as many even parts as asked.
-    fn cut(&self, path: &Path, constraints: &Constraints, parts: &[usize]) -> Self {
+    /// Returns the grid with each interval divided into a given number of equal parts.
+    fn divided(&self, path: &Path, constraints: &Constraints, parts: &[usize]) -> Self {
         let total = 1 + parts.iter().sum::<usize>();
-        let mut fine = Self::with_room([self.m, self.per], total);
+        let mut fine = Self::with_capacity([self.m, self.per], total);
         for i in 0..self.s.len() {
             fine.s.push(self.s[i]);
             fine.rows.extend_from_slice(self.rows_at(i));
@@ -105,43 +110,43 @@ impl Grid {
         fine
     }
 
-    /// The fastest motion on a grid that is made finer wherever what is limited changes much within a space.
+    /// Finds the fastest motion on a grid that is refined wherever a limited quantity changes much within an interval.
     pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, NoSpeed>) {
         let mut level = self.level();
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_REFINEMENTS {
             let Ok(x) = &level else { break };
             let (parts, most) = self.parts(x);
-            if most == 1 || parts.iter().sum::<usize>() > MOST_SPACES {
+            if most == 1 || parts.iter().sum::<usize>() > MAX_INTERVALS {
                 break;
             }
-            self = self.cut(path, constraints, &parts);
+            self = self.divided(path, constraints, &parts);
             level = self.level();
         }
         let found = level.map(|x| self.risen(x));
         (self, found)
     }
 
-    /// The same motion on a grid that is made finer where its profile passes a limit between two stations: `past` is by
-    /// what factor on time, for each space.
+    /// Finds the fastest motion on a grid that is refined where a profile exceeds a limit between two stations. `past`
+    /// is the factor on time that each interval needs.
     pub(super) fn mended(self, path: &Path, constraints: &Constraints, past: &[f64]) -> (Self, Result<Sweep, NoSpeed>) {
         let parts: Vec<usize> = (0..past.len())
             .map(|i| {
-                let wide = self.s[i + 1] - self.s[i] > LEAST_SPACE;
-                if past[i] > 1.0 + MENDED_FROM && wide { MENDING_PARTS } else { 1 }
+                let wide = self.s[i + 1] - self.s[i] > MIN_INTERVAL;
+                if past[i] > 1.0 + MENDED_FROM && wide { PARTS_IF_EXCEEDED } else { 1 }
             })
             .collect();
-        let grid = self.cut(path, constraints, &parts);
+        let grid = self.divided(path, constraints, &parts);
         let found = grid.fastest();
         (grid, found)
     }
 
-    /// Into how many parts each space should be cut, and the most of them.
+    /// Returns the number of parts into which each interval is to be divided, and the maximum of these.
     fn parts(&self, x: &[f64]) -> (Vec<usize>, usize) {
         let of = |i: usize| {
             let way = self.s[i + 1] - self.s[i];
             let u = (x[i + 1] - x[i]) / (2.0 * way);
             let (here, there) = (self.rows_at(i), self.rows_at(i + 1));
-            // By how much a quantity changes over the space, as a part of its limit, but for what x itself makes of it.
+            // Change of a quantity over the interval, as a fraction of its limit, without the change due to x.
             let high = x[i].max(x[i + 1]);
             let change = |(a, b): (&ConstraintRow, &ConstraintRow)| {
                 ((b.a - a.a) * u).abs() + ((b.c - a.c) * high).abs() + (b.g - a.g).abs()
@@ -149,7 +154,7 @@ impl Grid {
             let rows = here.iter().zip(there).map(change).fold(0.0, f64::max);
             let speed = (high / self.cap[i]).sqrt() - (high / self.cap[i + 1]).sqrt();
             let parts = (rows.max(speed.abs()) / MAX_CHANGE_SHARE).ceil();
-            if way > LEAST_SPACE { (parts as usize).clamp(1, MOST_PARTS) } else { 1 }
+            if way > MIN_INTERVAL { (parts as usize).clamp(1, MAX_PARTS) } else { 1 }
         };
         let parts: Vec<usize> = (0..x.len() - 1).map(of).collect();
         let most = parts.iter().copied().max().unwrap_or(1);
@@ -164,35 +169,36 @@ impl Grid {
         &self.speeds[i * self.per..(i + 1) * self.per]
     }
 
-    /// The factors on time with which a station that is passed so just keeps each limit but those on jerk.
+    /// Returns the factors on time with which a station, passed with given progress, just keeps each limit except those
+    /// on jerk.
     pub(super) fn stretches(&self, i: usize, at: &Progress) -> Stretches {
         stretches(self.rows_at(i), self.speeds_at(i), at)
     }
 
-    /// The fastest motion from rest to rest.
+    /// Finds the fastest motion from rest to rest.
     pub(super) fn fastest(&self) -> Result<Sweep, NoSpeed> {
         Ok(self.risen(self.level()?))
     }
 
-    /// The first pass: x at every station with u constant over each space.
+    /// First pass: returns x at every station with u constant over each interval.
     fn level(&self) -> Result<Vec<f64>, NoSpeed> {
         self.sweep(&vec![0.0; self.s.len().saturating_sub(1)])
     }
 
-    /// The second pass, from the x of the first one.
+    /// Second pass: returns x and the rises of u, from the x of the first pass.
     fn risen(&self, level: Vec<f64>) -> Sweep {
         let rise = self.rises(&level);
         match self.sweep(&rise) {
             Ok(x) => {
-                // As much as the new x can bear.
-                let rise = (0..rise.len()).map(|i| self.bearable(&x, i, rise[i])).collect();
+                // Limit the rises to those with which the new x stays positive.
+                let rise = (0..rise.len()).map(|i| self.clamped(&x, i, rise[i])).collect();
                 Sweep { x, rise }
             }
             Err(_) => Sweep { rise: vec![0.0; rise.len()], x: level },
         }
     }
 
-    /// Two sweeps over the grid: x at every station of the fastest motion with given rises of u.
+    /// Sweeps the grid backwards and forwards; returns x at every station of the fastest motion with given rises of u.
     fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, NoSpeed> {
         let n = self.s.len();
         let mut x = vec![0.0; n];
@@ -219,8 +225,8 @@ impl Grid {
         Ok(x)
     }
 
-    /// By how much u rises over each space, from its neighbours: the lesser of both slopes, none where they differ in
-    /// sign, as where u switches.
+    /// Estimates the rise of u over each interval from its neighbours: the smaller of both slopes, or zero if they
+    /// differ in sign, as where u switches.
     fn rises(&self, x: &[f64]) -> Vec<f64> {
         let spaces = x.len() - 1;
         let u = |i: usize| (x[i + 1] - x[i]) / (2.0 * (self.s[i + 1] - self.s[i]));
@@ -232,25 +238,25 @@ impl Grid {
             let (before, after) = (slope(i), slope(i + 1));
             let lesser = if before.abs() < after.abs() { before } else { after };
             let both = if before * after > 0.0 { lesser * (self.s[i + 1] - self.s[i]) } else { 0.0 };
-            self.bearable(x, i, both)
+            self.clamped(x, i, both)
         };
         (0..spaces).map(rise).collect()
     }
 
-    /// A rise of u over a space that leaves x above 0 there.
-    fn bearable(&self, x: &[f64], i: usize, rise: f64) -> f64 {
-        let most = 0.5 * x[i].min(x[i + 1]) / (self.s[i + 1] - self.s[i]);
-        rise.clamp(-most, most)
+    /// Clamps a rise of u over an interval so that x stays above 0 there.
+    fn clamped(&self, x: &[f64], i: usize, rise: f64) -> f64 {
+        let bound = 0.5 * x[i].min(x[i + 1]) / (self.s[i + 1] - self.s[i]);
+        rise.clamp(-bound, bound)
     }
 }
 
-/// x at every station, and the rise of u over every space.
+/// x at every station, and the rise of u over every interval.
 pub(super) struct Sweep {
     pub(super) x: Vec<f64>,
     pub(super) rise: Vec<f64>,
 }
 
-/// u lies between low + slope x and high + slope x.
+/// A constraint low + slope x ≤ u ≤ high + slope x.
 #[derive(Clone, Copy, Default)]
 struct Strip {
     low: f64,
@@ -258,16 +264,17 @@ struct Strip {
     slope: f64,
 }
 
-/// Strips of one space: the rows of both its ends, one more for each, the interval to arrive in, and the middle.
+/// Maximum number of strips of one interval: the rows of both its ends, the interval to arrive in, the middle, and
+/// spares.
 const MAX_STRIPS: usize = 2 * MAX_ROWS + 4;
-/// Each step of a search leaves at least one pair of lines behind; far fewer are ever met.
-const MAX_SEARCH: usize = 4 * MAX_STRIPS;
-/// A row in which u counts less than this beside another bounds x alone.
-const NO_PART: f64 = 1e-13;
-/// How far, relatively, bounds may cross by rounding.
-const CROSSED: f64 = 1e-12;
+/// Maximum number of iterations of a search; each discards at least one pair of lines.
+const MAX_ITERATIONS: usize = 4 * MAX_STRIPS;
+/// A coefficient of u below this fraction of the largest is treated as zero: the row then bounds x alone.
+const COEFFICIENT_TOLERANCE: f64 = 1e-13;
+/// Relative amount by which bounds may cross by rounding.
+const CROSSING_TOLERANCE: f64 = 1e-12;
 
-/// The pairs (u, x) that keep every row over one space: a convex polygon, whose extreme x are wanted.
+/// The convex polygon of the pairs (u, x) that keep every row over one interval of the grid.
 struct Space {
     strips: [Strip; MAX_STRIPS],
     len: usize,
@@ -288,10 +295,11 @@ impl Space {
         let near = here.iter().map(|r| ConstraintRow { g: r.g - 0.5 * rise * r.a, ..*r });
         let far = there.iter().map(|r| ConstraintRow { a: r.a + twice * r.c, c: r.c, g: r.g + 0.5 * rise * r.a });
         let all = || near.clone().chain(far.clone());
-        let floor = NO_PART * all().fold(0.0, |m: f64, r| m.max(r.a.abs()));
+        let floor = COEFFICIENT_TOLERANCE * all().fold(0.0, |m: f64, r| m.max(r.a.abs()));
         self.strips[0] = Strip { low: arrive[0] / twice, high: arrive[1] / twice, slope: -1.0 / twice };
         self.len = 1;
-        // The bound by speeds, 1/(q′)², is curved: kept in the middle of the space too, where q′ is nearly the mean.
+        // The bound by speeds, 1/(q′)², is not linear in s: it is imposed in the middle of the interval too, where q′
+        // is nearly the mean.
         let slow = 0.5 * (grid.slow[i] + grid.slow[i + 1]);
         let middle = 1.0 / (slow * slow);
         if middle < UNLIMITED {
@@ -315,7 +323,7 @@ impl Space {
         }
     }
 
-    /// The lines that bound u at x: from below and from above, each as its value and its slope.
+    /// Returns the lines that bound u at x from below and from above, each with its value and its strip.
     #[inline]
     fn bounds(&self, x: f64) -> [(f64, &Strip); 2] {
         let mut low = (f64::NEG_INFINITY, &self.strips[0]);
@@ -332,27 +340,27 @@ impl Space {
         [low, high]
     }
 
-    /// The greatest x.
+    /// Returns the maximum x of the polygon; `None` if it is empty.
     fn greatest(&self) -> Option<f64> {
         self.search(self.x[1], 1.0)
     }
 
-    /// The least x.
+    /// Returns the minimum x of the polygon; `None` if it is empty.
     fn least(&self) -> Option<f64> {
         self.search(self.x[0], -1.0)
     }
 
-    /// Newton's method on the convex gap between the bounds, from outside inwards: every step ends where two lines
-    /// meet, and none passes the polygon.
+    /// Finds an extreme x by Newton's method on the convex gap between the bounds, from outside inwards. Every step
+    /// ends where two lines meet, and none overshoots the polygon.
     #[inline]
     fn search(&self, start: f64, outwards: f64) -> Option<f64> {
         let mut x = start;
-        for _ in 0..MAX_SEARCH {
+        for _ in 0..MAX_ITERATIONS {
             if !(self.x[0]..=self.x[1]).contains(&x) {
                 return None;
             }
             let [(l, low), (h, high)] = self.bounds(x);
-            if l - h <= CROSSED * (l.abs() + h.abs()) {
+            if l - h <= CROSSING_TOLERANCE * (l.abs() + h.abs()) {
                 return Some(x);
             }
             let slope = low.slope - high.slope;
@@ -369,11 +377,11 @@ impl Space {
         Some(x)
     }
 
-    /// The greatest u at a controllable x.
+    /// Returns the maximum u at a controllable x.
     #[inline]
     fn fastest_at(&self, x: f64) -> f64 {
         let [(low, _), (high, _)] = self.bounds(x);
-        // They cross by rounding only.
+        // The bounds can cross by rounding only.
         if low > high { 0.5 * (low + high) } else { high }
     }
 }

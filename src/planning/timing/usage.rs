@@ -1,4 +1,4 @@
-//! How far a motion uses its drives: what it asks of them at each instant, beside their limits.
+//! Utilisation of the drives' limits by a motion.
 
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
 use crate::mechanics::machine::Inertia;
@@ -8,28 +8,29 @@ use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 
-/// A limit counts as active when this much of it, or more, is used.
+/// A limit counts as active when at least this fraction of it is used.
 pub const ACTIVE: f64 = 1.0 - 1e-3;
 
-/// How far a motion uses its limits.
+/// Utilisation of the limits by a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Usage {
-    /// Share of T at which some limit is used to within [`ACTIVE`] or beyond.
+    /// Fraction of T during which some limit is active, see [`ACTIVE`].
     pub active: f64,
-    /// The greatest part of a limit that is ever used: 1 is the limit, more is a violation.
+    /// Maximum utilisation of a limit: 1 is the limit, more is a violation.
     pub most: f64,
-    /// When, s.
+    /// Time of the maximum, s.
     pub when: f64,
-    /// Of which limit; none where there are no limits.
+    /// Limit of the maximum; `None` without limits.
     pub limit: Option<DriveLimit>,
-    /// Which limit is used furthest, for what share of T, the greatest share first.
+    /// Limits that are used furthest, with their fractions of T, the greatest first.
     pub leading: Vec<(DriveLimit, f64)>,
 }
 
 impl Usage {
-    /// Of a motion of a model in its surroundings, at as many instants, evenly in the middles of as many parts of T.
+    /// Computes the utilisation of a motion of a model in its surroundings at the midpoints of `samples` equal parts of
+    /// T.
     ///
-    /// Torques come from the inverse dynamics (4) along the motion, not from what planned it.
+    /// Torques come from the inverse dynamics (4) along the motion, independently of its planning.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, samples: usize) -> Self {
         let mut usage = Self { active: 0.0, most: 0.0, when: 0.0, limit: None, leading: Vec::new() };
         let mut shares = TimeShares::default();
@@ -48,7 +49,7 @@ impl Usage {
     }
 }
 
-/// Time, or shares of it, for each limit.
+/// Time, or fraction of it, for each limit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TimeShares([PerLimit; 4]);
 
@@ -60,7 +61,7 @@ impl TimeShares {
         self.0[limit.quantity as usize][limit.drive] += share;
     }
 
-    /// Those above 0, of a whole, the greatest first.
+    /// Returns the entries above 0 as fractions of their sum, the greatest first.
     pub(super) fn sorted(&self) -> Vec<(DriveLimit, f64)> {
         let whole: f64 = self.0.iter().flatten().sum();
         let each = LimitedQuantity::ALL.into_iter().flat_map(|quantity| {
@@ -73,20 +74,23 @@ impl TimeShares {
     }
 }
 
-/// What an instant of a motion asks of the drives.
+/// Torques and motion of the motors at an instant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Demand {
     /// Torque to hold still, N m.
     holding: PerDrive,
     /// Torque of the motion, N m.
     moving: PerDrive,
+    /// rad/s.
     speed: PerDrive,
+    /// rad/s².
     acceleration: PerDrive,
+    /// rad/s³; zero without limits on jerk.
     jerk: PerDrive,
 }
 
 impl Demand {
-    /// Jerk is evaluated only where it is limited.
+    /// Computes the demand at an instant. Jerk is evaluated only if it is limited.
     pub(super) fn of(path: &Path, model: &Inertia, around: &Surroundings, limits: &Limits, at: &Progress) -> Self {
         let point = path.at(at.s);
         let reference = point.timed(at);
@@ -107,19 +111,19 @@ impl Demand {
         Self { holding, moving, speed, acceleration, jerk }
     }
 
-    /// The limit that is used furthest and the part of it that is used; `None` without limits.
+    /// Returns the maximum utilisation and its limit; `None` without limits.
     pub(super) fn furthest(&self, limits: &Limits) -> Option<(f64, DriveLimit)> {
         let mut furthest: Option<(f64, DriveLimit)> = None;
         for quantity in LimitedQuantity::ALL {
-            let asked = match quantity {
+            let used = match quantity {
                 LimitedQuantity::Torque => self.holding.plus(1.0, &self.moving),
                 LimitedQuantity::Speed => self.speed,
                 LimitedQuantity::Acceleration => self.acceleration,
                 LimitedQuantity::Jerk => self.jerk,
             };
-            for (drive, (asked, limit)) in asked.iter().zip(limits.on(quantity).iter()).enumerate() {
-                let part = asked.abs() / limit;
-                if limit.is_finite() && furthest.is_none_or(|(most, _)| part > most) {
+            for (drive, (used, limit)) in used.iter().zip(limits.on(quantity).iter()).enumerate() {
+                let part = used.abs() / limit;
+                if limit.is_finite() && furthest.is_none_or(|(largest, _)| part > largest) {
                     furthest = Some((part, DriveLimit { quantity, drive }));
                 }
             }
@@ -127,19 +131,19 @@ impl Demand {
         furthest
     }
 
-    /// The factors on time with which the instant just keeps each limit: rates fall with their first, accelerations and
-    /// the torque of motion with their second, jerks with their third power. Infinite where no time is enough, because
-    /// holding still already takes all of a torque.
+    /// Returns the factors on time with which the instant just keeps each limit. Rates fall with the first power of a
+    /// factor, accelerations and the torque of motion with the second, jerks with the third. A factor is infinite if
+    /// holding still already takes the whole torque.
     pub(super) fn stretches(&self, limits: &Limits) -> [f64; 4 * MAX_DRIVES] {
         let mut factors = [0.0; 4 * MAX_DRIVES];
         for (k, of) in factors.chunks_exact_mut(4).enumerate().take(self.speed.len()) {
             let (hold, moving, limit) = (self.holding[k], self.moving[k], limits.torque[k]);
-            // Room on the side to which the motion pushes.
-            let room = limit - hold * moving.signum();
+            // Distance of the holding torque to the limit in the direction of the moving torque.
+            let margin = limit - hold * moving.signum();
             let torque = if moving == 0.0 {
                 0.0
-            } else if room > 0.0 {
-                (moving.abs() / room).sqrt()
+            } else if margin > 0.0 {
+                (moving.abs() / margin).sqrt()
             } else {
                 f64::INFINITY
             };

@@ -1,4 +1,4 @@
-//! [`Base`]: what the machine stands on.
+//! [`Base`]: settings of the base of the machine.
 
 use super::Wheel;
 use crate::settings::keyed::keyed;
@@ -6,34 +6,34 @@ use crate::settings::range::Range;
 use crate::settings::word::words;
 
 keyed! {
-    /// What the machine stands on.
+    /// The base of the machine.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Base at "base" {
         /// How the base is held: it cannot move, it stands on springs and dampers, or it floats as a spacecraft does.
         kind: BaseKind = "fixed", saved: always;
         /// Mass m_b of the base.
-        mass: f64 = "40", range: Range::new(1e-9, 1e6, "kg"), when: MOVES => Base::moves;
+        mass: f64 = "40", range: Range::new(1e-9, 1e6, "kg"), when: WHEN_MOVING => Base::moves;
         /// Inertia I_b of the base about its own centre of mass.
-        inertia: f64 = "3", range: Range::new(1e-9, 1e6, "kg m²"), when: MOVES => Base::moves;
+        inertia: f64 = "3", range: Range::new(1e-9, 1e6, "kg m²"), when: WHEN_MOVING => Base::moves;
         /// Centre of mass ρ of the base, seen from the base pin along the base's own axes.
-        com: [f64; 2] = "0,0", range: Range::either_way(1e3, "m"), when: MOVES => Base::moves;
+        com: [f64; 2] = "0,0", range: Range::either_way(1e3, "m"), when: WHEN_MOVING => Base::moves;
         /// Springs under the base: along x and y, and against turning.
         stiffness: [f64; 3] = "20000,20000,2000", range: Range::new(0.0, 1e9, "N/m, N m/rad"),
-            when: COMPLIANT => |base| base.kind == BaseKind::Compliant;
+            when: WHEN_COMPLIANT => |base| base.kind == BaseKind::Compliant;
         /// Dampers under the base: along x and y, and against turning.
         damping: [f64; 3] = "200,200,10", range: Range::new(0.0, 1e9, "N s/m, N m s"),
-            when: COMPLIANT => |base| base.kind == BaseKind::Compliant;
+            when: WHEN_COMPLIANT => |base| base.kind == BaseKind::Compliant;
         tables:
-        /// A reaction wheel in it.
+        /// A reaction wheel in the base.
         wheel: Option<Wheel>;
     }
 }
 
-const MOVES: &str = "base.kind = free or compliant: a fixed base does not move";
-const COMPLIANT: &str = "base.kind = compliant";
+const WHEN_MOVING: &str = "base.kind = free or compliant: a fixed base does not move";
+const WHEN_COMPLIANT: &str = "base.kind = compliant";
 
 words! {
-    /// How the base is held.
+    /// Kind of support of the base.
     pub enum BaseKind {
         Fixed = "fixed", "fixed", "It cannot move";
         Compliant = "compliant", "compliant", "On springs and dampers, preloaded so that the start is an equilibrium";
@@ -42,7 +42,7 @@ words! {
 }
 
 impl Base {
-    /// Whether it can move.
+    /// Returns whether the base can move.
     pub fn moves(&self) -> bool {
         self.kind != BaseKind::Fixed
     }

@@ -1,4 +1,4 @@
-//! [`PlantDifferences`]: what differs in the machine that moves.
+//! [`PlantDifferences`]: differences of the plant from the model of control.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::settings::range::{Check, Range};
 const AS_MODEL: &str = "as the model has it";
 
 keyed! {
-    /// What differs in the machine that moves.
+    /// Differences of the plant from the model of control.
     #[derive(Clone, Debug, PartialEq)]
     pub struct PlantDifferences at "plant" {
         /// Whether motors give no more than the drives' torque limits, whatever control asks for.
@@ -22,24 +22,24 @@ keyed! {
         /// A constant force F at the end effector, along the axes of the base as they are at the start.
         force: [f64; 2] = "0,0", range: Range::either_way(1e6, "N");
         tables:
-        /// A payload that the model lacks; it adds to the machine's own.
+        /// A payload that the model does not contain, in addition to the machine's own.
         payload: Load;
         /// Friction.
         friction: Friction;
-        /// Named lengths that differ, m: bars that share one stay equal, so that parallelograms stay closed.
+        /// True values of named lengths, m: bars that share one stay equal, so that parallelograms stay closed.
         length: BTreeMap<String, f64>;
-        /// Links that differ.
+        /// Links with true values that differ from the model.
         link: BTreeMap<String, LinkDifference>;
     }
 }
 
-/// The keys of named lengths that differ.
+/// Keys of the true values of named lengths.
 pub const LENGTH_KEYS: &[Key] =
     &[Key::number("plant.length.*", LENGTH, Key::NONE, "True length of all bars that share a named length.")
         .instead(AS_MODEL)];
 
 keyed! {
-    /// What differs in a link: its true values, where they are not the model's.
+    /// True values of a link that differ from the model's.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct LinkDifference at "plant.link.*" {
         /// True mass of a link.
@@ -54,10 +54,10 @@ keyed! {
 }
 
 impl PlantDifferences {
-    /// The machine that moves, without the payload that comes and goes.
+    /// Returns the plant's machine, without the temporary payload.
     ///
     /// # Errors
-    /// If what differs leaves no valid machine, or names what the machine does not have.
+    /// If the differences give no valid machine, or name a length or link that the machine does not have.
     pub fn machine(&self, model: &Machine) -> Result<Machine, MachineError> {
         let lengths = self.length.iter().map(|(name, value)| (format!("length.{name}"), value.to_string()));
         let links = self.link.iter().flat_map(|(name, d)| {
@@ -73,7 +73,7 @@ impl PlantDifferences {
         }
     }
 
-    /// What no range says: how its numbers fit together, and the drives of a machine with `n` of them.
+    /// Returns the checks that depend on several settings or on the number `n` of drives.
     pub(crate) fn fits(&self, n: usize) -> Vec<Check> {
         let (load, friction) = (&self.payload, &self.friction);
         let later = |until| {

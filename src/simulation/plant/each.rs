@@ -11,9 +11,9 @@ use crate::settings::range::Check;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want one number for all drives, or a list with one for each")]
 pub enum Each {
-    /// The same for all.
+    /// One number for all drives.
     All(f64),
-    /// In the order of the drives.
+    /// One number for each drive, in order.
     Own(PerDrive),
 }
 
@@ -34,7 +34,7 @@ impl Held for Each {
 }
 
 impl Each {
-    /// The value of every one of `n` drives; a list that is too short goes on with its last.
+    /// Returns the values of `n` drives; a list that is too short is extended with its last value.
     pub fn of(&self, n: usize) -> PerDrive {
         PerDrive::from_fn(n, |k| match self {
             Self::All(x) => *x,
@@ -42,7 +42,7 @@ impl Each {
         })
     }
 
-    /// All values that stand there.
+    /// Returns all given values.
     pub fn values(&self) -> Vec<f64> {
         match self {
             Self::All(x) => vec![*x],
@@ -50,14 +50,14 @@ impl Each {
         }
     }
 
-    /// A check that fails if it is a list, but not one number for each of `n` drives.
+    /// Returns a failed check if this is a list of another length than `n`.
     pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<Check> {
         let count = self.values().len();
         let fits = matches!(self, Self::All(_)) || count == n;
         (!fits).then(|| Check::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
     }
 
-    /// The same with the value of drive `k` of `n` changed.
+    /// Returns a copy with the value of drive `k` of `n` changed.
     #[must_use]
     pub fn with(&self, n: usize, k: usize, value: f64) -> Self {
         let mut list = self.of(n);
@@ -70,7 +70,7 @@ impl Each {
         }
     }
 
-    /// As it would stand in a file.
+    /// Returns the value as in a file.
     pub fn to_value(self) -> toml::Value {
         match self {
             Self::All(x) => x.into(),

@@ -1,14 +1,14 @@
-//! Friction of bearings and pins: viscous, and Coulomb's with true sticking.
+//! Friction of bearings and pins: viscous, and Coulomb friction with exact sticking.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | v | rate of sliding: q̇_k − θ̇ in the bearing of drive k, or q̇_k − q̇_on; q̇_l − q̇_k in a pin | rad/s |
+//! | v | sliding rate: q̇_k − θ̇ in the bearing of drive k, or q̇_k − q̇_on; q̇_l − q̇_k in a pin | rad/s |
 //! | f | friction torque against it: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
 //!
-//! Friction is internal to its pair: what it takes from one side it gives to the other. Coulomb friction is not
-//! smoothed: a contact either slides one way or is stuck, and a stuck one takes just the torque that keeps it so
-//! ([`Contacts::hold`]). So nothing creeps or chatters at rest, and the step size does not matter.
+//! Friction acts between two parts with equal and opposite torques. Coulomb friction is not smoothed: a contact either
+//! slides in one direction or is stuck. A stuck contact transmits exactly the torque that keeps it stuck
+//! ([`Contacts::hold`]). So there is no creep or chatter at rest, independently of the step size.
 
 use super::each::Each;
 use super::load::MAX_PAYLOAD;
@@ -17,45 +17,47 @@ use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::keyed::keyed;
 use crate::settings::range::Range;
 
-const TORQUE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
-const VISCOUS: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
+const TORQUE_RANGE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
+const VISCOUS_RANGE: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
 
 keyed! {
-    /// Friction as a file states it. In the bearing of a drive it is between the drive and what its stator sits on.
+    /// Settings of friction. In the bearing of a drive, friction acts between the drive and the part that carries its
+    /// stator.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Friction at "plant.friction" {
         /// Viscous friction in the bearings of the drives: a torque against the rate relative to the base.
-        viscous: Each = "0", range: VISCOUS;
+        viscous: Each = "0", range: VISCOUS_RANGE;
         /// Coulomb friction in the bearings of the drives; a drive at rest sticks until more than this pulls.
-        coulomb: Each = "0", range: TORQUE;
+        coulomb: Each = "0", range: TORQUE_RANGE;
         /// Viscous friction in every pin, against the rate between its two links.
-        pin_viscous: f64 = "0", range: VISCOUS;
+        pin_viscous: f64 = "0", range: VISCOUS_RANGE;
         /// Coulomb friction in every pin; a pin at rest sticks.
-        pin_coulomb: f64 = "0", range: TORQUE;
+        pin_coulomb: f64 = "0", range: TORQUE_RANGE;
     }
 }
 
-/// The most pairs of drives and bases that can rub: eight drives on the base, and each on each.
+/// Maximum number of contacts: eight drives on the base, and every pair of drives.
 pub const MAX_CONTACTS: usize = MAX_DRIVES + MAX_DRIVES * (MAX_DRIVES - 1) / 2;
 
-/// Two directions that rub on each other.
+/// A contact with friction between two rotational coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Contact {
-    /// v = q̇_plus − q̇_minus; `minus` is beyond the drives for a base that does not turn.
+    /// Index of the coordinate with positive sign in v = q̇_plus − q̇_minus.
     plus: usize,
+    /// Index of the other coordinate; out of range for a fixed base.
     minus: usize,
-    /// N m s.
+    /// Viscous coefficient c, N m s.
     viscous: f64,
-    /// N m.
+    /// Coulomb torque τ_C, N m.
     coulomb: f64,
-    /// Pins that share it, all alike; 0 for a bearing.
+    /// Number of pins that it represents; 0 for a bearing.
     pins: f64,
 }
 
-/// What a contact does: 0 stuck, ±1 sliding that way.
+/// Slip direction of each contact: 0 stuck, ±1 sliding.
 pub type SlipDirections = [i8; MAX_CONTACTS];
 
-/// Every contact of a machine that has friction: the bearings first.
+/// All contacts of a machine with friction: the bearings first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contacts {
     list: Vec<Contact>,
@@ -63,10 +65,10 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// Slower than this a contact does not slide, rad/s.
+    /// A contact with a sliding rate below this does not slide, rad/s.
     pub(crate) const STILL: f64 = 1e-12;
 
-    /// What every contact does in a state of motion.
+    /// Returns the slip directions of all contacts for given rates, rad/s.
     pub(crate) fn slips(&self, qd: &[f64]) -> SlipDirections {
         let mut slip = [0; MAX_CONTACTS];
         for i in (0..self.len()).filter(|i| self.sticks(*i)) {
@@ -76,7 +78,8 @@ impl Contacts {
         slip
     }
 
-    /// Those of a machine; `base` is the index of the base among what turns, if it does.
+    /// Returns the contacts of a machine; `base` is the index of the base among the rotational coordinates, if it
+    /// moves.
     pub fn of(machine: &Machine, friction: &Friction, base: Option<usize>) -> Self {
         let n = machine.drives();
         let minus = base.unwrap_or(usize::MAX);
@@ -97,50 +100,49 @@ impl Contacts {
         Self { list, bearings }
     }
 
-    /// Whether nothing rubs.
+    /// Returns whether there is no friction.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// How many there are.
+    /// Returns the number of contacts.
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// Rate of sliding of a contact, rad/s.
+    /// Returns the sliding rate of a contact, rad/s.
     #[inline]
     pub fn sliding(&self, i: usize, qd: &[f64]) -> f64 {
         let c = &self.list[i];
         qd[c.plus] - qd.get(c.minus).copied().unwrap_or(0.0)
     }
 
-    /// What the two sides of a contact resist a torque between them with, kg m², given what each turning part resists
-    /// alone.
+    /// Returns the reduced inertia of a contact, kg m²; `alone` gives the inertia of each rotational coordinate.
     pub fn resists(&self, i: usize, alone: impl Fn(usize) -> f64) -> f64 {
         let c = &self.list[i];
         let (a, b) = (alone(c.plus), if c.minus < MAX_DRIVES { alone(c.minus) } else { f64::INFINITY });
         1.0 / (1.0 / a + 1.0 / b)
     }
 
-    /// Whether a contact can stick.
+    /// Returns whether a contact can stick.
     pub fn sticks(&self, i: usize) -> bool {
         self.list[i].coulomb > 0.0
     }
 
-    /// Whether any can stick.
+    /// Returns whether any contact can stick.
     pub fn stick(&self) -> bool {
         self.list.iter().any(|contact| contact.coulomb > 0.0)
     }
 
-    /// τ_C of a contact, N m.
+    /// Returns τ_C of a contact, N m.
     pub fn coulomb(&self, i: usize) -> f64 {
         self.list[i].coulomb
     }
 
-    /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from;
-    /// `stuck_torque` holds the torques of stuck contacts. Pins between the same two drives turn alike, so each has an
-    /// equal part.
+    /// Returns the friction torque of one pin between links that follow drives `from` and `to`, N m, against q̇_to −
+    /// q̇_from. `stuck_torque` holds the torques of stuck contacts, N m. Pins between the same two drives share the
+    /// torque equally.
     pub fn couple(
         &self,
         from: usize,
@@ -157,7 +159,7 @@ impl Contacts {
         if c.plus == to { against / c.pins } else { -against / c.pins }
     }
 
-    /// Adds the torque `f` against sliding of a contact to generalised forces.
+    /// Adds the torque `f`, N m, against the sliding of a contact to generalised forces.
     #[inline]
     pub(super) fn apply(&self, i: usize, f: f64, force: &mut [f64]) {
         let c = &self.list[i];
@@ -167,8 +169,8 @@ impl Contacts {
         }
     }
 
-    /// Friction of all that slides, added to generalised forces, N m; the power it takes, W. Bearings also in
-    /// `bearing`, drive by drive.
+    /// Adds the friction of sliding contacts to generalised forces, N m, and that of bearings also to `bearing`, by
+    /// drive. Returns the dissipated power, W.
     #[inline]
     pub fn slide(&self, slip: &SlipDirections, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
         let mut lost = 0.0;
@@ -184,11 +186,11 @@ impl Contacts {
         lost
     }
 
-    /// The torques of stuck contacts, that nothing stuck may move: each |f| ≤ τ_C with v̇ = 0, or at its bound against
-    /// v̇. `solve` gives accelerations for generalised forces, `free` those without these torques. Adds to `force`;
-    /// `stuck_torque` holds the torques, before as a first guess, after as found; gives the power they take, W, which
-    /// is none unless a contact has begun to slide since the step did. The number of sweeps is bounded; one is exact
-    /// where contacts do not act on each other.
+    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `force`. Each satisfies
+    /// |f| ≤ τ_C with v̇ = 0, or is at its bound against v̇. `solve` returns accelerations for generalised forces; `free` are
+    /// the accelerations without these torques. `stuck_torque` contains a first guess before and the result after.
+    /// Returns the dissipated power, W, which is zero unless a contact has begun to slide since the step began. The
+    /// number of sweeps is bounded; one is exact if contacts do not interact.
     pub fn hold(
         &self,
         slip: &SlipDirections,
@@ -198,14 +200,14 @@ impl Contacts {
         bearing: &mut [f64],
         stuck_torque: &mut [f64; MAX_CONTACTS],
     ) -> f64 {
-        const SWEEPS: usize = 2000;
+        const MAX_SWEEPS: usize = 2000;
         let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && slip[*i] == 0;
         if !(0..self.list.len()).any(|i| stuck(&i)) {
             return 0.0;
         }
         let mut qdd = [0.0; MAX_DRIVES];
         qdd[..free.len()].copy_from_slice(free);
-        // From what held a moment ago.
+        // Start from the previous torques.
         for (i, contact) in self.list.iter().enumerate() {
             stuck_torque[i] = if stuck(&i) { stuck_torque[i].clamp(-contact.coulomb, contact.coulomb) } else { 0.0 };
             if stuck_torque[i] != 0.0 {
@@ -214,7 +216,7 @@ impl Contacts {
                 qdd.iter_mut().zip(&solve(&unit)).for_each(|(a, r)| *a += r);
             }
         }
-        for _ in 0..SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for i in (0..self.list.len()).filter(stuck) {
                 let mut unit = [0.0; MAX_DRIVES];
@@ -244,7 +246,7 @@ impl Contacts {
     }
 }
 
-/// The drives that the two sides of every pin follow.
+/// Returns the two drives that the sides of every pin follow.
 fn pins(machine: &Machine) -> Vec<(usize, usize)> {
     let drive = |j: usize| machine.resolved_links()[j].drive;
     let attachments = machine.resolved_links().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));

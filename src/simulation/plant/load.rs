@@ -1,19 +1,19 @@
-//! [`Load`]: a payload that comes and goes.
+//! [`Load`]: a temporary payload.
 
 use crate::mechanics::machine::{Machine, MachineError, Payload};
 use crate::settings::key::Key;
 use crate::settings::keyed::keyed;
 use crate::settings::range::Range;
 
-/// The heaviest unknown payload, kg; also the bound on its inertia, kg m², and on friction.
+/// Maximum mass of the temporary payload, kg; also the bound of its inertia, kg m², and of friction.
 pub const MAX_PAYLOAD: f64 = 1e4;
 
-const TIME: Range = Range::new(0.0, 1e6, "s");
-const PLACE: Range = Range::either_way(1e3, "m");
-const THERE: &str = "plant.payload.mass or plant.payload.inertia above 0";
+const TIME_RANGE: Range = Range::new(0.0, 1e6, "s");
+const PLACE_RANGE: Range = Range::either_way(1e3, "m");
+const WHEN_PAYLOAD: &str = "plant.payload.mass or plant.payload.inertia above 0";
 
 keyed! {
-    /// A payload that the model lacks, and when it is held.
+    /// A payload that the model does not contain, and the time in which it is held.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Load at "plant.payload" {
         /// Mass of a payload that control does not know of; it adds to the machine's own and unbalances it.
@@ -21,37 +21,38 @@ keyed! {
         /// Inertia of the payload about its own centre of mass.
         inertia: f64 = "0", range: Range::new(0.0, MAX_PAYLOAD, "kg m²");
         /// Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.
-        offset: [f64; 2] = "0,0", range: PLACE, when: THERE => Load::is_some;
+        offset: [f64; 2] = "0,0", range: PLACE_RANGE, when: WHEN_PAYLOAD => Load::is_some;
         /// Height of the payload's centre of mass along the drives' axis.
-        axial: f64 = "0", range: PLACE, when: THERE => Load::is_some;
-        // No rate changes then.
+        axial: f64 = "0", range: PLACE_RANGE, when: WHEN_PAYLOAD => Load::is_some;
+        // Rates do not change at pick-up.
         /// When the payload is picked up, by a hand that moves with it.
-        from: f64 = "0", range: TIME, when: THERE => Load::is_some;
+        from: f64 = "0", range: TIME_RANGE, when: WHEN_PAYLOAD => Load::is_some;
         /// When the payload is let go.
-        until: Option<f64> = Key::NONE, range: TIME, instead: "it is held to the end", when: THERE => Load::is_some;
+        until: Option<f64> = Key::NONE, range: TIME_RANGE, instead: "it is held to the end",
+            when: WHEN_PAYLOAD => Load::is_some;
     }
 }
 
 impl Load {
-    /// Whether there is any.
+    /// Returns whether there is a payload.
     pub fn is_some(&self) -> bool {
         self.mass > 0.0 || self.inertia > 0.0
     }
 
-    /// Whether it is held at a time, s; `slack` is half a step.
+    /// Returns whether the payload is held at a time, s; `slack` is half a step, s.
     pub fn is_held(&self, time: f64, slack: f64) -> bool {
         self.is_some() && time >= self.from - slack && self.until.is_none_or(|until| time < until - slack)
     }
 
-    /// The same as a payload of a machine.
+    /// Returns it as a payload of a machine.
     pub fn payload(&self) -> Payload {
         Payload { mass: self.mass, inertia: self.inertia, offset: self.offset, axial: self.axial }
     }
 
-    /// The machine that holds it, together with what it held before.
+    /// Returns a machine with this payload added to its own.
     ///
     /// # Errors
-    /// If that is no valid machine.
+    /// If the result is not a valid machine.
     pub fn held_by(&self, machine: &Machine) -> Result<Machine, MachineError> {
         let mut spec = machine.spec().clone();
         spec.payload = spec.payload.and(self.payload());

@@ -1,8 +1,7 @@
-//! The plant: how the machine that moves differs from the one that control believes in, and what it stands on.
+//! The plant: its differences from the model of control, and its base.
 //!
-//! A [`PlantDifferences`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there:
-//! plain data, as files and edits state it. A [`MovingBody`] is what all of it comes to: constants of everything that
-//! moves.
+//! [`PlantDifferences`], [`Base`] and [`Wheel`] (a reaction wheel) are plain data, as in files and edits. A
+//! [`MovingBody`] contains the constants of all moving parts that follow from them.
 
 mod base;
 mod differences;

@@ -1,21 +1,21 @@
-//! [`MovingBody`]: everything that moves, collapsed into constants, and its equations of motion.
+//! [`MovingBody`]: constants of all moving parts, and their equations of motion.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | n, N | drives; what turns: N = n on a fixed base, n + 1 on one that moves, the last being θ | |
-//! | M_t | mass of all that moves, m_b + M | kg |
-//! | R, P | centre of mass of all that moves, its momentum M_t Ṙ | m, kg m/s |
+//! | n, N | number of drives; of rotational coordinates: N = n on a fixed base, n + 1 on a moving one, θ last | |
+//! | M_t | mass of all moving parts, m_b + M | kg |
+//! | R, P | centre of mass of all moving parts, their momentum M_t Ṙ | m, kg m/s |
 //! | p_B | position of B, R − Σ g_k e_k / M_t | m |
 //! | C'_kl | couplings about R: C_kl − ḡ_k g_l / M_t | kg m² |
 //! | π_k | momenta H q̇, with C' on a base that moves | kg m²/s |
-//! | L | angular momentum about R, Σ π_k; stands in the place of π_θ | kg m²/s |
+//! | L | angular momentum about R, Σ π_k; stored in place of π_θ | kg m²/s |
 //!
 //! # Method
-//! A base is one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation leaves the equations when
-//! everything is referred to R: the kinetic energy is |P|²/2M_t + ½ q̇ᵀ H' q̇ with H' made of C', so
-//! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
-//! has no lever about R.
+//! A base is treated as one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation drops out of the
+//! equations if everything is referred to R: the kinetic energy is |P|²/2M_t + ½ q̇ᵀ H' q̇ with H' formed from C'. So
+//! π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L: on a free base both are constant to the last digit.
+//! Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
 use crate::mechanics::dynamics::{BaseWrench, Surroundings, assemble, times};
@@ -24,50 +24,52 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, 
 
 const I: Vector = Vector::new(0.0, 1.0);
 
-/// What holds a base that moves.
+/// Support of a moving base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Support {
+    /// N/m along x and y, N m/rad.
     stiffness: [f64; 3],
+    /// N s/m along x and y, N m s/rad.
     pub(super) damping: [f64; 3],
-    /// What it gives at the start pose, N, N m.
+    /// Force and moment at the start pose, N, N m.
     preload: (Vector, f64),
 }
 
-/// Everything that moves.
+/// All moving parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingBody {
-    /// The manipulator with what it holds.
+    /// The manipulator with its payload.
     pub(super) arm: Inertia,
-    /// All that turns: about B on a fixed base, about R on one that moves.
+    /// All rotating parts: about B on a fixed base, about R on a moving one.
     pub(super) whole: Inertia,
     pub(super) moves: bool,
-    /// Whether nothing holds the base, so that weight is not carried.
+    /// Whether the base is free, so that weight is not carried.
     falls: bool,
     /// M_t, kg.
     pub(super) mass: f64,
-    /// B seen from R.
+    /// Position of B relative to R, as a chain, m.
     pub(super) anchor: [Vector; MAX_DRIVES],
-    /// The end effector seen from B on a fixed base, from R on one that moves.
+    /// Position of the end effector as a chain, m: relative to B on a fixed base, to R on a moving one.
     pub(super) tip: [Vector; MAX_DRIVES],
     pub(super) support: Support,
     pub(super) contacts: Contacts,
     pub(super) around: Surroundings,
-    /// Base mass times ρ, and base mass: for its own momentum.
+    /// Mass of the base, kg, and mass times ρ, kg m.
     base: (f64, Vector),
 }
 
 impl MovingBody {
-    /// Constants of a machine with what it holds, on its base; `start` is the pose of rest that a compliant base is
-    /// preloaded for.
+    /// Builds the constants of a machine with its payload on its base; `start` is the pose of rest for which a
+    /// compliant base is preloaded.
     ///
     /// # Errors
-    /// If a base that moves is one too many to turn.
+    /// If a moving base exceeds the maximum number of rotational coordinates.
     pub fn of(machine: &Machine, friction: &Friction, base: &Base, start: &DriveAngles) -> Result<Self, MachineError> {
         let n = machine.drives();
         let mut arm = Inertia::of(machine);
         let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
         let real = |chain: &[f64; MAX_DRIVES]| chain.map(|w| Vector::new(w, 0.0));
-        let nothing = [Vector::default(); MAX_DRIVES];
+        let zero = [Vector::default(); MAX_DRIVES];
         if !base.moves() {
             let contacts = Contacts::of(machine, friction, None);
             let tip = real(&arm.end_effector);
@@ -79,7 +81,7 @@ impl MovingBody {
                 moves: false,
                 falls: false,
                 mass,
-                anchor: nothing,
+                anchor: zero,
                 tip,
                 support,
                 contacts,
@@ -95,7 +97,7 @@ impl MovingBody {
         let rho = Vector::new(base.com[0], base.com[1]);
         let mut whole = arm.clone();
         whole.drives = n + 1;
-        let mut of_base = nothing;
+        let mut of_base = zero;
         of_base[n] = rho;
         whole.add(base.mass, base.inertia, n, &of_base);
         let g = whole.g;
@@ -123,14 +125,14 @@ impl MovingBody {
         Ok(Self { arm, whole, moves: true, falls, mass, anchor, tip, support, contacts, around, base })
     }
 
-    /// The same with another force at the end effector, N.
+    /// Returns the body with another force at the end effector, N.
     #[must_use]
     pub fn pushed(mut self, force: Vector) -> Self {
         self.around.force = force;
         self
     }
 
-    /// The same, preloaded as another.
+    /// Returns the body with the preload of another.
     #[must_use]
     pub fn preloaded_as(mut self, other: &Self) -> Self {
         if self.moves && other.moves {
@@ -139,32 +141,32 @@ impl MovingBody {
         self
     }
 
-    /// The manipulator with what it holds.
+    /// Returns the manipulator with its payload.
     pub fn arm(&self) -> &Inertia {
         &self.arm
     }
 
-    /// Gravity and the force at the end effector.
+    /// Returns gravity and the force at the end effector.
     pub fn around(&self) -> &Surroundings {
         &self.around
     }
 
-    /// The contacts with friction.
+    /// Returns the contacts with friction.
     pub fn contacts(&self) -> &Contacts {
         &self.contacts
     }
 
-    /// Whether the base moves.
+    /// Returns whether the base moves.
     pub fn moves(&self) -> bool {
         self.moves
     }
 
-    /// How many directions turn: the drives, and a base that moves.
+    /// Returns the number N of rotational coordinates: the drives, and a moving base.
     pub(crate) fn turning(&self) -> usize {
         self.whole.drives
     }
 
-    /// The state of given angles and rates of the drives, pose and rates of the base.
+    /// Returns the state for given angles and rates of the drives, and pose and rates of the base.
     pub fn state(&self, q: &DriveAngles, qd: &PerDrive, base: Pose2, velocity: Vector, turning: f64) -> State {
         let n = q.len();
         let turns = |drives: &[f64], last: f64| {
@@ -185,7 +187,7 @@ impl MovingBody {
         State { q, momenta, place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
     }
 
-    /// A point given as a sum of unit vectors, and its rate.
+    /// Returns the position of a chain's point, m, and its velocity, m/s.
     #[inline(always)]
     fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive) -> (Vector, Vector) {
         (0..self.whole.drives).fold(Default::default(), |(p, v), k| {
@@ -194,8 +196,8 @@ impl MovingBody {
         })
     }
 
-    /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not
-    /// carried: what it and the fall leave of each other is motion.
+    /// Returns the wrench of the manipulator on its base, static and dynamic part. On a free base weight is not
+    /// carried: it belongs to the dynamic part, where free fall cancels it.
     pub fn transmitted(&self, x: &Slope) -> BaseWrench {
         let mut wrench = x.wrench;
         if self.falls {
@@ -209,7 +211,7 @@ impl MovingBody {
         wrench
     }
 
-    /// Potential energy of weight and springs, J.
+    /// Returns the potential energy of weight and springs, J.
     pub fn potential(&self, x: &Slope) -> f64 {
         let n = self.arm.drives;
         let weight = |g: Vector| -dot(self.around.gravity, g);
@@ -223,7 +225,8 @@ impl MovingBody {
             + 0.5 * (kx * p.re * p.re + ky * p.im * p.im + kt * angle * angle)
     }
 
-    /// Momentum of all that moves, kg m/s, and its angular momentum about the origin, kg m²/s, from rates.
+    /// Returns the momentum of all moving parts, kg m/s, and their angular momentum about the origin, kg m²/s, from
+    /// rates.
     pub fn momentum(&self, x: &Slope) -> (Vector, f64) {
         let (p, h) = self.arm_momentum(x);
         if !self.moves {
@@ -237,7 +240,8 @@ impl MovingBody {
         (p + own, h + turning)
     }
 
-    /// The same of the manipulator with what it holds.
+    /// Returns the momentum, kg m/s, and the angular momentum about the origin, kg m²/s, of the manipulator with its
+    /// payload.
     pub fn arm_momentum(&self, x: &Slope) -> (Vector, f64) {
         let n = self.arm.drives;
         let qd = x.qd.first(n);
@@ -250,15 +254,15 @@ impl MovingBody {
         (p, h + cross(x.base.at, p) + cross(lever, x.base_velocity))
     }
 
-    /// I_b + m_b |ρ|², kg m².
+    /// Returns I_b + m_b |ρ|², kg m².
     fn base_spin(&self) -> f64 {
         let n = self.arm.drives;
         let g = -self.anchor[n] * self.mass;
         self.whole.c[n][n].re + self.whole.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
     }
 
-    /// The torques that would give the drives these accelerations relative to a base that moves, rad/s², in this state
-    /// of motion: what a controller that knows everything computes; zero beyond the drives.
+    /// Returns the torques that give the drives commanded accelerations relative to a moving base, rad/s², in a given
+    /// state of motion (inverse dynamics). Entries beyond the drives are zero.
     #[inline]
     pub(crate) fn torque_for<const N: usize>(
         &self,
@@ -270,7 +274,7 @@ impl MovingBody {
     ) -> [f64; N] {
         let (h, v) = assemble(&self.whole, e, rate);
         let outer = self.outer::<N, true>(e, self.held(base, velocity, rate[N - 1]));
-        // Torques between drives and base cancel, so the base turns by what outer forces leave.
+        // Torques between drives and base cancel, so the sum of all equations gives the acceleration of the base.
         let sum = |x: &[f64; N]| x.iter().sum::<f64>();
         let all: f64 = (0..N).map(|k| (0..N).map(|l| h[l][k]).sum::<f64>()).sum();
         let turn = (sum(&outer) - sum(&times(&h, commanded)) - sum(&v)) / all;
@@ -280,8 +284,8 @@ impl MovingBody {
         torque
     }
 
-    /// Generalised forces of weight, of the force at the end effector and of the support, N m, the moment on the base
-    /// last. Weight has no lever about what a base that moves is referred to.
+    /// Returns the generalised forces of weight, of the force at the end effector and of the support, N m; the last
+    /// entry is the moment on a moving base. Weight has no lever about R, to which a moving base is referred.
     #[inline(always)]
     pub(super) fn outer<const N: usize, const MOVES: bool>(
         &self,
@@ -299,7 +303,7 @@ impl MovingBody {
         outer
     }
 
-    /// Force and moment of the support on a base that moves, N, N m.
+    /// Returns the force and moment of the support on a moving base, N, N m.
     #[inline(always)]
     pub(super) fn held(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
         let Support { stiffness: k, damping: c, preload: (force, moment) } = &self.support;
@@ -310,14 +314,14 @@ impl MovingBody {
 }
 
 impl MovingBody {
-    /// Rates of a state, rad/s.
+    /// Returns the rates of a state, rad/s.
     pub fn rates(&self, state: &State) -> PerDrive {
         let e = DriveAngles(state.q).units();
         let (h, _) = crate::mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
         h.solve(&self.own_momenta(state))
     }
 
-    /// π_k, with that of the base in its place, kg m²/s.
+    /// Returns π_k, including that of the base in place of L, kg m²/s.
     fn own_momenta(&self, state: &State) -> PerDrive {
         let mut momenta = state.momenta;
         if self.moves {
@@ -327,14 +331,14 @@ impl MovingBody {
         momenta
     }
 
-    /// About what a contact's two sides resist a torque between them with, kg m².
+    /// Returns the approximate reduced inertia of a contact, kg m².
     pub fn resists(&self, i: usize) -> f64 {
         self.contacts.resists(i, |k| self.whole.c[k][k].re + self.whole.spin[k])
     }
 
-    /// A state in which what is stuck stands still to the last digit: what is left of its motion is taken out by
-    /// torques between the two sides, which change no momentum of the whole. That is rounding, and the error of a step;
-    /// it is booked nowhere, so that audits see it if it is more.
+    /// Returns a state in which stuck contacts have exactly zero sliding rate. Internal impulses between the two sides
+    /// remove the residual rate; they do not change the total momentum. The residual is rounding and integration error.
+    /// Its energy is not booked, so that the audits show it if it is larger.
     #[must_use]
     pub fn stuck(&self, mut state: State, slip: &SlipDirections) -> State {
         let still = |i: &usize| self.contacts.sticks(*i) && slip[*i] == 0;
@@ -345,7 +349,7 @@ impl MovingBody {
         let e = DriveAngles(state.q).units();
         let (h, _) = crate::mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
         for _ in 0..8 {
-            let mut most: f64 = 0.0;
+            let mut fastest: f64 = 0.0;
             for i in (0..self.contacts.len()).filter(still) {
                 let v = self.contacts.sliding(i, &h.solve(&self.own_momenta(&state)));
                 let mut unit = PerDrive::zeros(self.whole.drives);
@@ -354,9 +358,9 @@ impl MovingBody {
                 for k in 0..n {
                     state.momenta[k] += unit[k] * v / give;
                 }
-                most = most.max(v.abs());
+                fastest = fastest.max(v.abs());
             }
-            if most < 1e-16 {
+            if fastest < 1e-16 {
                 break;
             }
         }

@@ -1,14 +1,14 @@
-//! [`Stage`]: what a state leads to, at the machine's own size. Steps are made of these: padding to [`MAX_DRIVES`] and
-//! copying would cost more than the arithmetic.
+//! [`Stage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration steps
+//! consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
-//! Everything that appears twice is made once: the unit vectors and the mass matrix serve rates, torques, accelerations
-//! and base wrench; whether the base moves is settled when this is compiled.
+//! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. Whether
+//! the base moves is a compile-time parameter.
 
 use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
 use crate::mechanics::dynamics::{BaseWrench, Factors, angular_rate, assemble, by_drives, first, times, wrench_with};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
 
-/// What of a [`State`] the equations of motion depend on.
+/// The part of a [`State`] on which the equations of motion depend.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Point<const N: usize> {
     pub q: [f64; N],
@@ -27,22 +27,25 @@ pub(crate) struct Rates<const N: usize> {
     pub place: Vector,
     pub momentum: Vector,
     pub wheel: f64,
-    /// W.
+    /// Power, W.
     pub work: f64,
-    /// W.
+    /// Lost power, W.
     pub lost: f64,
     /// Dynamic f_B, N, and its moment about the origin, N m.
     pub impulse: (Vector, f64),
 }
 
-/// What motors and wheel do: torques, zero beyond the drives, N m; the wheel, and its rotor, kg m².
+/// Commands of motors and wheel.
 pub(crate) struct Command<const N: usize> {
+    /// Motor torques, zero beyond the drives, N m.
     pub torque: [f64; N],
+    /// State of the wheel.
     pub spin: WheelState,
+    /// Inertia of the wheel's rotor, kg m².
     pub rotor: f64,
 }
 
-/// As [`Slope`].
+/// The quantities of a [`Slope`], with arrays of size `N`.
 pub(crate) struct Stage<const N: usize> {
     pub e: [Vector; N],
     pub acceleration: [f64; N],
@@ -64,7 +67,7 @@ impl<const N: usize> Point<N> {
         Self { q: *state.q.array(), momenta: *state.momenta.array(), place, momentum, wheel }
     }
 
-    /// A time `h` after a state along a slope, s, on a base that `MOVES` or not.
+    /// Returns the point at `h` seconds after a state along given rates, on a base that `MOVES` or not.
     #[inline(always)]
     pub fn along<const MOVES: bool>(from: &State, x: &Rates<N>, h: f64) -> Self {
         let (q, momenta) = (from.q.array::<N>(), from.momenta.array::<N>());
@@ -93,7 +96,8 @@ impl<const N: usize> Rates<N> {
         }
     }
 
-    /// Classical fourth-order Runge–Kutta: a time `h` later by slopes at the start, twice half-way, and at the end, s.
+    /// Makes a classical fourth-order Runge–Kutta step of `h` seconds from the rates at the start, twice half-way, and
+    /// at the end.
     #[inline(always)]
     pub fn stepped<const MOVES: bool>(from: &State, k: [&Self; 4], h: f64) -> State {
         let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
@@ -121,13 +125,13 @@ fn impulse(wrench: &BaseWrench, at: Vector) -> (Vector, f64) {
     (force, wrench.dynamic.moment + cross(at, force))
 }
 
-/// i v.
+/// Returns i v.
 #[inline(always)]
 fn turned(v: Vector) -> Vector {
     Vector::new(-v.im, v.re)
 }
 
-/// What rates make of the momenta, and the forces that they want: velocity terms.
+/// Returns the velocity terms of the momentum rates, ∂T/∂q, and those of the accelerations, V(q, q̇).
 #[inline(always)]
 fn velocity_terms<const N: usize>(im: &[[f64; N]; N], rate: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut gain, mut v) = ([0.0; N], [0.0; N]);
@@ -143,16 +147,16 @@ fn velocity_terms<const N: usize>(im: &[[f64; N]; N], rate: &[f64; N]) -> ([f64;
     (gain, v)
 }
 
-/// How a base is carried along; nothing of one that stands.
+/// Motion of the base; zero if the base is fixed.
 struct Afloat<const N: usize> {
     base: Pose2,
-    /// Of B, m/s.
+    /// Velocity of B, m/s.
     velocity: Vector,
-    /// rad/s.
+    /// Rate of the base, rad/s.
     turning: f64,
-    /// Of the common centre of mass, m/s.
+    /// Velocity of the common centre of mass, m/s.
     drift: Vector,
-    /// What each angle adds from the common centre of mass to B, m.
+    /// Terms of the position of B relative to the common centre of mass, m.
     anchor: [Vector; N],
 }
 
@@ -165,7 +169,7 @@ impl<const N: usize> Default for Afloat<N> {
 }
 
 impl<const N: usize> Stage<N> {
-    /// Padded, as it is kept.
+    /// Returns the stage as a slope, padded to the maximum size.
     #[inline(always)]
     pub fn slope(&self, drives: usize) -> Slope {
         let mut e = [Vector::default(); MAX_DRIVES];
@@ -194,13 +198,13 @@ impl<const N: usize> Stage<N> {
 }
 
 impl MovingBody {
-    /// A state without torques.
+    /// Returns the slope of a state without torques.
     pub fn still(&self, state: &State) -> Slope {
         by_drives!(self.whole.drives, self.moves, still_of(self, state))
     }
 
-    /// Rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control` is asked for
-    /// the torques, given unit vectors and rates of all that turns, and pose and velocity of B.
+    /// Computes rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control`
+    /// returns the torques for unit vectors and rates of all rotational coordinates, and pose and velocity of B.
     #[inline]
     pub(crate) fn stage<const N: usize, const MOVES: bool>(
         &self,
@@ -226,7 +230,7 @@ impl MovingBody {
         };
         let Command { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
-        // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
+        // Generalised forces: outer forces, whose sum changes L, and torques between the drives and the base.
         let tip = |k: usize| if MOVES { self.tip[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
         let (mut hold, mut moment) = Default::default();
         if MOVES {
@@ -257,13 +261,14 @@ impl MovingBody {
         }
         let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
         let mut momenta_rate: [f64; N] = std::array::from_fn(|k| gain[k] + force[k]);
-        // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
+        // The wrench follows from the accelerations, not from the torques, so that a zero is a result, not an
+        // assumption.
         let mut base_acceleration = Vector::default();
         let wrench = if MOVES {
             momenta_rate[N - 1] = external;
             let pull: Vector = (0..N).map(|k| anchor[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
             base_acceleration = momentum_rate / self.mass + pull;
-            // The constants of the arm are zero where the base has its place.
+            // The constants of the arm are zero at the index of the base.
             let (h, v) = assemble(&self.arm, &e, &rate);
             let mut wrench = self.wrench((&h, &v), &e, &rate, &acceleration);
             let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
@@ -300,7 +305,7 @@ impl MovingBody {
         }
     }
 
-    /// The mass matrix, and the part of the couplings that rates act through.
+    /// Returns the mass matrix and the imaginary parts of the couplings, which give the velocity terms.
     #[inline(always)]
     fn couplings<const N: usize>(&self, e: &[Vector; N]) -> ([[f64; N]; N], [[f64; N]; N]) {
         let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
@@ -317,7 +322,7 @@ impl MovingBody {
         (h, im)
     }
 
-    /// How a base that moves is carried along.
+    /// Returns the motion of a moving base.
     #[inline(always)]
     fn afloat<const N: usize>(&self, at: &Point<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
         let drift = at.momentum / self.mass;
@@ -333,7 +338,7 @@ impl MovingBody {
         }
     }
 
-    /// What the arm does to the base, about B at rest, by its mass matrix and velocity terms.
+    /// Returns the wrench of the arm on the base, about B at rest, from its mass matrix and velocity terms.
     #[inline(always)]
     fn wrench<const N: usize>(
         &self,
@@ -347,7 +352,8 @@ impl MovingBody {
         wrench_with(&self.arm, e, rate, acceleration, &self.around, change)
     }
 
-    /// Motors in joints act back on the links that carry them, and not on the base; what that changes of their power, W.
+    /// Applies the reactions of motors in joints to the links that carry them instead of the base. Returns the change
+    /// of motor power, W.
     #[inline(never)]
     fn react<const N: usize, const MOVES: bool>(
         &self,
@@ -363,7 +369,7 @@ impl MovingBody {
                 force[on] -= torque;
                 power -= torque * (rate[on] - turning);
                 if MOVES {
-                    // It is taken from the base below, as of all that sits there.
+                    // The caller subtracts all torques from the base; this compensates for a motor that is not on it.
                     force[N - 1] += torque;
                 }
             }
@@ -371,8 +377,8 @@ impl MovingBody {
         power
     }
 
-    /// Adds friction to generalised forces, and that of the bearings to `friction`; the power it takes, W. `v` are the
-    /// velocity terms.
+    /// Adds friction to generalised forces, and that of the bearings to `friction`. `v` are the velocity terms. Returns
+    /// the dissipated power, W.
     #[inline(never)]
     fn rub<const N: usize>(
         &self,

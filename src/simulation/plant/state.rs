@@ -1,15 +1,15 @@
-//! [`State`]: positions and momenta of everything that moves, and its [`Slope`]: how it changes.
+//! [`State`]: positions and momenta of all moving parts, and its time derivative [`Slope`].
 
 use super::WheelState;
 use crate::mechanics::dynamics::BaseWrench;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 
-/// Positions and momenta of everything that moves.
+/// Positions and momenta of all moving parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Absolute angles of the drives and, last, of a base that moves, rad.
+    /// Absolute angles of the drives and, last, of a moving base, rad.
     pub q: PerDrive,
-    /// π_k; for a base that moves, last, L.
+    /// π_k, kg m²/s; on a moving base the last entry is L.
     pub momenta: PerDrive,
     /// R, m.
     pub place: Vector,
@@ -21,14 +21,14 @@ pub struct State {
     pub work: f64,
     /// Energy lost in friction and dampers, J.
     pub lost: f64,
-    /// ∫ dynamic f_B dt, N s, and the moment of it all about the origin, N m s.
+    /// ∫ dynamic f_B dt, N s, and the time integral of the dynamic moment about the origin, N m s.
     pub impulse: (Vector, f64),
 }
 
-/// How a state changes, with the torques and forces that make it change.
+/// Time derivative of a state, with its torques and forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
-    /// e(q_k), of a base that moves last.
+    /// Unit vectors e(q_k); that of a moving base is last.
     pub e: Units,
     /// q̇, rad/s.
     pub qd: PerDrive,
@@ -36,9 +36,9 @@ pub struct Slope {
     pub qdd: PerDrive,
     /// Motor torques, N m.
     pub torque: PerDrive,
-    /// Friction of the bearings against them, N m.
+    /// Friction of the bearings against the motor torques, N m.
     pub friction: PerDrive,
-    /// Of the wheel.
+    /// State of the wheel.
     pub spin: WheelState,
     /// p_B and θ.
     pub base: Pose2,
@@ -46,13 +46,13 @@ pub struct Slope {
     pub base_velocity: Vector,
     /// p̈_B, m/s².
     pub base_acceleration: Vector,
-    /// What the manipulator transmits.
+    /// Wrench of the manipulator on its base.
     pub wrench: BaseWrench,
-    /// Kinetic energy of all that moves, J.
+    /// Kinetic energy of all moving parts, J.
     pub kinetic: f64,
-    /// Work done a second, W.
+    /// Power of motors, wheel and outer force, W.
     pub power: f64,
-    /// Energy lost a second, W.
+    /// Power lost in friction and dampers, W.
     pub loss: f64,
     pub(super) momenta_rate: PerDrive,
     pub(super) place_rate: Vector,
@@ -61,14 +61,14 @@ pub struct Slope {
 }
 
 impl State {
-    /// This state with the wheel rate, the work, the losses and the impulse of another.
+    /// Returns this state with the wheel rate, the work, the losses and the impulse of another.
     #[must_use]
     pub fn with_sums_of(self, other: &Self) -> Self {
         let Self { wheel, work, lost, impulse, .. } = *other;
         Self { wheel, work, lost, impulse, ..self }
     }
 
-    /// The drives' angles without the base, rad.
+    /// Returns the drive angles without the base, rad.
     #[inline]
     pub fn drives(&self, n: usize) -> DriveAngles {
         DriveAngles(self.q.first(n))

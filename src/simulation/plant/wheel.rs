@@ -1,4 +1,4 @@
-//! [`Wheel`]: a reaction wheel in the base that takes up the moment of the manipulator while it can.
+//! [`Wheel`]: a reaction wheel in the base that compensates the moment of the manipulator within its limits.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -6,21 +6,20 @@
 //! | τ_w | torque of the wheel's motor on the wheel; −τ_w on the base | N m |
 //! | Ω | rate of the wheel, absolute | rad/s |
 //!
-//! The wheel is told the sum of the motors' torques, which the base feels as −Σ τ_k, and turns τ_w = −Σ τ_k. It
-//! saturates where τ_w or Ω would pass their limits; then the base feels the rest.
+//! The wheel's controller knows the sum of the motors' torques, which act on the base as −Σ τ_k, and commands τ_w = −Σ
+//! τ_k. The wheel saturates where τ_w or Ω would exceed their limits; the remaining moment acts on the base.
 //!
-//! # At the top rate
-//! Ω never passes its limit, not even within a step: in each step of h seconds the wheel gives no more than
-//! J (Ω_top − Ω)/h either way, which brings it to the limit by the step's end and leaves it there. So the step in which
-//! the limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing
-//! outwards.
+//! # At the maximum rate
+//! Ω never exceeds its limit, not even within a step: in each step of h seconds the torque is at most J (Ω_top − Ω)/h
+//! in either direction, which brings the wheel to the limit at the end of the step. So the step in which the limit is
+//! reached has the right impulse, and later steps give no torque beyond the limit.
 
 use crate::settings::key::Key;
 use crate::settings::keyed::keyed;
 use crate::settings::range::Range;
 
 keyed! {
-    /// A reaction wheel.
+    /// Settings of a reaction wheel.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Wheel at "base.wheel" {
         /// Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is given.
@@ -33,28 +32,29 @@ keyed! {
     }
 }
 
-/// What a wheel does at an instant.
+/// State of a wheel at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelState {
     /// Ω, rad/s.
     pub rate: f64,
     /// τ_w, N m.
     pub torque: f64,
-    /// Whether it could not give what was wanted.
+    /// Whether the torque is less than wanted.
     pub saturated: bool,
 }
 
 impl Wheel {
-    /// The least and the greatest torque, N m, that it can give through a step of a length, s, which begins at a rate,
-    /// rad/s: asked once a step, so that within one nothing jumps.
+    /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. It is
+    /// computed once per step, so that the limits do not jump within it.
     pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
-        let most = self.torque_limit.unwrap_or(f64::INFINITY);
+        let limit = self.torque_limit.unwrap_or(f64::INFINITY);
         let top = self.speed_limit.unwrap_or(f64::INFINITY);
         let to = |end: f64| self.inertia * (end - rate) / step;
-        [to(-top).clamp(-most, 0.0), to(top).clamp(0.0, most)]
+        [to(-top).clamp(-limit, 0.0), to(top).clamp(0.0, limit)]
     }
 
-    /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
+    /// Returns the state of the wheel for a wanted torque, N m, at a rate, rad/s, with the torque limited to `room`, N
+    /// m.
     #[inline]
     pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
         // In a run that diverges the torque becomes NaN, so that the run counts as failed.

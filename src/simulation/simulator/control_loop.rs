@@ -1,18 +1,17 @@
-//! [`ControlLoop`]: control as it runs, all the time or sampled: encoders, delay, torque limits, and the wheel.
+//! [`ControlLoop`]: continuous or sampled control with encoders, delay, torque limits and reaction wheel.
 //!
-//! # What is measured
-//! | quantity | how |
+//! # Measurements
+//! | quantity | method |
 //! |---|---|
 //! | q_k − θ | by encoders, rounded to a count, at the instants of sampling |
 //! | q̇_k − θ̇ | from the last two readings of the encoders; until there are two, the rate of the reference |
 //! | p_B, θ and their rates | by other instruments (gyroscopes, a star tracker), exactly, at the same instants |
 //!
-//! All that control knows of the machine comes from these: also e(q) and q̇, at which it evaluates its model.
+//! Control uses only these measurements, also for e(q) and q̇ at which it evaluates its model.
 //!
 //! # Before the first torque
-//! A torque comes into effect `delay` after its reading. Until the first does, the motors do what they did while the
-//! machine stood there: they hold the pose against what the model knows of weight. In motion, when control is changed
-//! on the way, they keep the last torque.
+//! A torque takes effect `delay` after its reading. Until the first one does, the motors hold the pose against the
+//! weight of the model. If control is changed in motion, the motors keep the last torque.
 
 use std::collections::VecDeque;
 
@@ -21,40 +20,42 @@ use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
 use crate::simulation::plant::{Command, Point, Wheel, WheelState};
 
-/// Control as it runs.
+/// Control during a run.
 #[derive(Clone, Debug)]
 pub struct ControlLoop {
     controller: Controller,
     limits: Option<PerDrive>,
     wheel: Option<Wheel>,
-    /// The least and the greatest torque of the wheel in this step, N m.
-    wheel_room: [f64; 2],
-    /// s.
+    /// Minimum and maximum torque of the wheel in this step, N m.
+    wheel_range: [f64; 2],
+    /// Step, s.
     step: f64,
     sampling: Option<Sampling>,
 }
 
-/// Control that is computed now and then.
+/// State of sampled control.
 #[derive(Clone, Debug)]
 struct Sampling {
-    /// Steps between samples.
+    /// Number of steps between samples.
     period: u64,
-    /// Steps from a reading to its torque.
+    /// Number of steps from a reading to its torque.
     delay: u64,
-    /// One count of the encoders, rad; 0: exact.
+    /// Resolution of the encoders, rad; 0 if exact.
     count: f64,
-    /// s.
+    /// Step, s.
     step: f64,
-    /// The newest reading with its step, and the one before: a step may be looked at again after an edit.
+    /// Newest reading with its step. After an edit a step may be read again.
     last: Option<(u64, DriveAngles)>,
+    /// Reading before it, at an earlier step.
     before: Option<(u64, DriveAngles)>,
-    /// Torques to come and the steps at which they do.
+    /// Torques that are not yet in effect, with the steps at which they will be.
     pending: VecDeque<(u64, PerDrive)>,
+    /// Torque in effect, N m.
     held: Option<PerDrive>,
 }
 
 impl ControlLoop {
-    /// A controller at `step` s; motors give no more than `limits`, N m.
+    /// Builds the control loop for steps of `step` s; `limits` bound the motor torques, N m.
     pub fn new(
         controller: Controller,
         control: &Control,
@@ -75,19 +76,19 @@ impl ControlLoop {
                 held: None,
             }
         });
-        Self { controller, limits, wheel, wheel_room: [0.0; 2], step, sampling }
+        Self { controller, limits, wheel, wheel_range: [0.0; 2], step, sampling }
     }
 
-    /// Once a step: sees how much the wheel can still take up, and reads and computes, if it samples and its time has
-    /// come.
+    /// Begins a step: computes the torque range of the wheel and, at a sampling instant, takes a reading and computes
+    /// the torques.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
-        self.wheel_room = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
+        self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
         let Some(sampling) = &mut self.sampling else { return };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
             if sampling.count > 0.0 {
                 let (n, count) = (reading.q.len(), sampling.count);
-                // An encoder sits on its motor.
+                // Encoders measure the motors' own angles.
                 let motors = self.controller.arm().motors();
                 let turned = motors.turns(&reading.q.0);
                 seen.q = DriveAngles(PerDrive::from_fn(n, |k| (turned[k] / count).round() * count));
@@ -119,8 +120,8 @@ impl ControlLoop {
         }
     }
 
-    /// Goes on at a step where another was, with what that has under way and the torque that the motors give; what it
-    /// has from before its own start is forgotten.
+    /// Continues another control loop at a step: takes over its readings and pending torques and the present motor
+    /// torque, N m. Its own readings are discarded.
     pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive) {
         self.controller.preload_as(&other.controller);
         self.forget();
@@ -128,23 +129,23 @@ impl ControlLoop {
         now.held = Some(*torque);
         if let Some(before) = &other.sampling {
             (now.last, now.before, now.held) = (before.last, before.before, before.held);
-            // With a shorter delay nothing older may arrive after what is newer.
+            // With a shorter delay, an older torque must not take effect after a newer one.
             let due = step + now.delay;
             now.pending.extend(before.pending.iter().filter(|(at, _)| *at <= due));
         }
     }
 
-    /// Whether a motor gives all it has.
+    /// Returns whether a motor is at its torque limit.
     pub fn is_full(&self, torque: &PerDrive) -> bool {
         self.limits.is_some_and(|limits| torque.iter().zip(limits.iter()).any(|(t, limit)| t.abs() >= *limit))
     }
 
-    /// Whether nothing is decided once a step, so that the slope at the end of one is that at the start of the next.
+    /// Returns whether control is continuous, so that the slope at the end of a step is that at the start of the next.
     pub fn is_steady(&self) -> bool {
         self.sampling.is_none() && self.wheel.is_none()
     }
 
-    /// Forgets readings and torques under way: the machine is put somewhere else.
+    /// Discards readings and pending torques, because the machine is moved without motion.
     pub fn forget(&mut self) {
         if let Some(sampling) = &mut self.sampling {
             (sampling.last, sampling.before, sampling.held) = (None, None, None);
@@ -152,13 +153,13 @@ impl ControlLoop {
         }
     }
 
-    /// The rotor of the wheel, kg m²; 0 for none.
+    /// Returns the inertia of the wheel, kg m²; 0 without a wheel.
     pub fn rotor(&self) -> f64 {
         self.wheel.map_or(0.0, |wheel| wheel.inertia)
     }
 
-    /// What motors and wheel do at this instant, from angles and rates that are known exactly, at the machine's own
-    /// size, on a base that `MOVES` or not.
+    /// Returns the commands of motors and wheel at this instant for exact angles and rates, with compile-time size `N`,
+    /// on a base that `MOVES` or not.
     #[inline(always)]
     pub(super) fn command<const N: usize, const MOVES: bool>(
         &self,
@@ -185,15 +186,16 @@ impl ControlLoop {
         }
         let spin = match &self.wheel {
             Some(wheel) => {
-                let feels = self.on_base::<N, MOVES>(&torque, reference);
-                wheel.give(-feels, at.wheel, self.wheel_room)
+                let moment = self.on_base::<N, MOVES>(&torque, reference);
+                wheel.give(-moment, at.wheel, self.wheel_range)
             }
             None => WheelState::default(),
         };
         Command { torque, spin, rotor: self.rotor() }
     }
 
-    /// What the motors' stators take from the base, N m, with what gears make of the accelerations that are wanted.
+    /// Returns the moment that the base exerts on the motors' stators, N m, including gears at the reference
+    /// accelerations.
     #[inline(always)]
     fn on_base<const N: usize, const MOVES: bool>(&self, torque: &[f64; N], reference: &Reference) -> f64 {
         let n = if MOVES { N - 1 } else { N };

@@ -1,4 +1,4 @@
-//! What leads a machine, and what a simulation of it is made of.
+//! The source of the reference, and the setup of a simulation.
 
 use std::sync::Arc;
 
@@ -8,15 +8,15 @@ use crate::planning::{Motion, Reference};
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences};
 
-/// What leads the machine.
+/// Source of the reference.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "each simulation has one, and reads it in every step")]
 pub enum Guide {
-    /// A planned motion that began at a time, s.
+    /// A planned motion.
     Motion {
         /// The plan; copies of a run share it.
         motion: Arc<Motion>,
-        /// s.
+        /// Time at which it began, s.
         start: f64,
     },
     /// The pointer and the slider.
@@ -24,7 +24,7 @@ pub enum Guide {
 }
 
 impl Guide {
-    /// The reference at a time, s.
+    /// Returns the reference at a time, s.
     pub(super) fn at(&self, time: f64) -> Reference {
         match self {
             Self::Motion { motion, start } => motion.at(time - start),
@@ -33,16 +33,16 @@ impl Guide {
     }
 }
 
-/// What a simulation is made of.
+/// Setup of a simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'a> {
-    /// The machine that control believes in.
+    /// The machine as control models it.
     pub model: &'a Machine,
-    /// What differs in the machine that moves.
+    /// Differences of the plant from the model.
     pub plant: &'a PlantDifferences,
-    /// What it stands on.
+    /// The base of the machine.
     pub base: &'a Base,
-    /// How the motors are controlled.
+    /// Settings of control.
     pub control: &'a Control,
     /// Fixed step, s.
     pub step: f64,

@@ -1,4 +1,4 @@
-//! [`Simulation`]: a run in progress, its present instant, and what is true then.
+//! [`Simulation`]: a run in progress and its present instant.
 
 use crate::mechanics::dynamics::{self, Surroundings, by_drives};
 use crate::mechanics::joint_forces::{Inside, PinLoads};
@@ -19,16 +19,16 @@ use super::step_control::{StepControl, StepState};
 /// A run in progress.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// Without the payload that comes and goes, and with it.
+    /// The moving bodies without and with the temporary payload.
     pub(super) bodies: Box<[MovingBody; 2]>,
     pub(super) load: Load,
     pub(super) loaded: bool,
     pub(super) control_loop: ControlLoop,
-    /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
+    /// m_j a_jk of each link, `drives` entries per link, kg m: without and with the payload.
     pub(super) link_moments: [Vec<Vector>; 2],
-    /// What pins carry, likewise.
+    /// Pin loads without and with the payload.
     pub(super) inside: [PinLoads; 2],
-    /// Differences of the points that each closure joins.
+    /// Difference of the two points of each loop closure, as a chain.
     pub(super) closures: Vec<[f64; MAX_DRIVES]>,
     pub(super) lambda: PerDrive,
     pub(super) map: Option<PlaneMap>,
@@ -43,15 +43,15 @@ pub struct Simulation {
     pub(super) stuck_torque: [f64; MAX_CONTACTS],
     pub(super) now: Slope,
     pub(super) reference: Reference,
-    /// What energy and momenta less their sources were at the start.
+    /// Energy and momenta less their sources at the start.
     baseline: Baseline,
     pub(super) peaks: Peaks,
     pub(super) totals: Totals,
-    /// How finely steps are taken, and with which errors.
+    /// Number of substeps, and errors so far.
     pub(super) step_control: StepControl,
 }
 
-/// What audits start from.
+/// Values from which audits measure.
 #[derive(Clone, Copy, Debug, Default)]
 struct Baseline {
     energy: f64,
@@ -70,18 +70,18 @@ impl Baseline {
 }
 
 impl Simulation {
-    /// At the start of its guide, with the guide's rates, on a base at rest at the origin.
+    /// Builds a simulation at the start of its guide, with the guide's rates, on a base at rest at the origin.
     ///
     /// # Errors
-    /// If what differs in the plant leaves no valid machine, or the base is one too many to turn.
+    /// If the plant is not a valid machine, or if a moving base exceeds the maximum number of rotational coordinates.
     pub fn new(setup: &Setup, guide: Guide) -> Result<Self, MachineError> {
         Self::of_machine(setup, setup.plant.machine(setup.model)?, guide)
     }
 
-    /// The same with a machine that moves in place of the one that the plant makes of the model.
+    /// Builds a simulation with a given machine as plant, in place of the one that the setup derives from the model.
     ///
     /// # Errors
-    /// If it cannot hold the plant's payload, or the base is one too many to turn.
+    /// If it cannot hold the plant's payload, or if a moving base exceeds the maximum number of rotational coordinates.
     pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
         let reference = guide.at(0.0);
         let (plant, load) = (setup.plant, setup.plant.payload);
@@ -91,7 +91,7 @@ impl Simulation {
         let body = |m: &Machine| MovingBody::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
         let empty = body(&machine)?;
         let first = load.is_held(0.0, 0.5 * setup.step);
-        // The springs are preloaded for the load that is held at the start.
+        // The springs are preloaded for the payload that is held at the start.
         let with = body(&holding)?;
         let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
         let fixed = Base::default();
@@ -141,64 +141,64 @@ impl Simulation {
         Ok(sim)
     }
 
-    /// Takes the present instant as where audits start.
+    /// Makes the present instant the start of the audits.
     fn begin(&mut self) {
         self.prepare();
         self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
-        self.look();
+        self.evaluate();
         self.baseline = self.sources(self.body(), &self.now);
         self.include();
     }
 
-    /// Energy and momenta of a body less what has come in and gone out: these do not change.
+    /// Returns energy and momenta of a body less their sources: conserved quantities.
     fn sources(&self, body: &MovingBody, x: &Slope) -> Baseline {
         let (p, h) = body.arm_momentum(x);
         let energy = x.kinetic + body.potential(x) - self.state.work + self.state.lost;
         Baseline { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
     }
 
-    /// What moves now.
+    /// Returns the present moving body.
     pub(crate) fn body(&self) -> &MovingBody {
         &self.bodies[usize::from(self.loaded)]
     }
 
-    /// Steps done.
+    /// Returns the number of steps done.
     pub fn step_count(&self) -> u64 {
         self.step
     }
 
-    /// Time since the start, s.
+    /// Returns the time since the start, s.
     pub fn time(&self) -> f64 {
         self.step as f64 * self.dt
     }
 
-    /// The fixed step, s.
+    /// Returns the fixed step, s.
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// What leads it.
+    /// Returns the source of the reference.
     pub fn guide(&self) -> &Guide {
         &self.guide
     }
 
-    /// The reference at the present instant.
+    /// Returns the reference at the present instant.
     pub fn reference(&self) -> &Reference {
         &self.reference
     }
 
-    /// Lets something else lead from now on. The machine keeps its state and control takes up the difference.
+    /// Changes the source of the reference. The machine keeps its state, and control corrects the difference.
     pub fn lead(&mut self, guide: Guide) {
         self.guide = guide;
         self.prepare();
-        self.look();
+        self.evaluate();
         self.include();
     }
 
-    /// Changes what moves and what control believes, in motion: positions and rates stay.
+    /// Changes plant, base and control in motion; positions and rates stay.
     ///
     /// # Errors
-    /// As [`new`](Self::new); then nothing has changed.
+    /// As [`new`](Self::new); then the simulation is unchanged.
     pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
@@ -215,7 +215,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The same positions and rates on the body of now; what audits compare with goes on from here.
+    /// Transfers positions and rates to the present body. The audits continue without a jump.
     fn carry_over(&mut self, before: &Slope, body: &MovingBody) {
         let n = self.drives;
         let off = self.sources(body, before).less(&self.baseline);
@@ -225,12 +225,12 @@ impl Simulation {
         let state = self.body().state(&q, &qd, pose, velocity, turning);
         self.state = state.with_sums_of(&self.state);
         self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
-        self.look();
+        self.evaluate();
         self.baseline = self.sources(self.body(), &self.now).less(&off);
         self.include();
     }
 
-    /// Puts the machine at the reference, at rest or in motion as the reference is, without passing between.
+    /// Moves the machine to the pose and rates of the reference without motion in between.
     pub fn place(&mut self, guide: Guide) {
         self.guide = guide;
         let reference = self.guide.at(self.time());
@@ -245,24 +245,25 @@ impl Simulation {
         self.begin();
     }
 
-    /// Whether nothing will change any more: the guide has arrived and the machine stands still on it.
+    /// Returns whether the run is at its end: the guide has arrived, the machine stands still on it, and no payload is
+    /// due.
     pub fn is_settled(&self) -> bool {
         let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
         let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;
         let coming = self.load.is_some() && self.time() < self.load.until.unwrap_or(self.load.from);
         self.has_arrived() && still && !coming && {
-            // On the reference and about to be pushed off it is not at rest.
+            // A machine on the reference that accelerates away from it is not at rest.
             let pull = self.now.qdd.max_abs();
             pull < 1e-7 || (e.max_abs() < 1e-7 && pull < 1e-3)
         }
     }
 
-    /// q_k − θ, rad.
+    /// Returns q_k − θ, rad.
     pub(super) fn relative(&self, k: usize) -> f64 {
         self.state.q[k] - self.now.base.angle
     }
 
-    /// Whether the guide has come to its end, even if the machine still moves.
+    /// Returns whether the guide has come to its end, even if the machine still moves.
     pub fn has_arrived(&self) -> bool {
         match &self.guide {
             Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
@@ -280,10 +281,10 @@ impl Simulation {
             follower.advance();
         }
         if goes_on && self.control_loop.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
-            // The end of the step has been looked at already.
+            // The end of the step has been evaluated already.
             (self.now, self.reference) = (reached.slope, reached.aim);
         } else {
-            self.look();
+            self.evaluate();
         }
         let held = self.load.is_held(self.time(), 0.5 * self.dt);
         if held != self.loaded {
@@ -296,7 +297,7 @@ impl Simulation {
         }
     }
 
-    /// Where a step begins.
+    /// Returns the state at the beginning of a step.
     pub(super) fn here(&self) -> StepState {
         StepState {
             at: 0.0,
@@ -308,18 +309,18 @@ impl Simulation {
         }
     }
 
-    /// Takes in the present instant: control, slope, wrench of the plant's own motion.
-    fn look(&mut self) {
+    /// Evaluates the present instant: control, slope, wrench of the plant's own motion.
+    fn evaluate(&mut self) {
         self.reference = self.aim_now();
         let size = self.body().turning();
-        by_drives!(size, self.body().moves(), look_of(self));
+        by_drives!(size, self.body().moves(), evaluate_of(self));
         let stuck_torque = self.stuck_torque;
         let mut slip = self.slip;
         self.release(&self.now, &mut slip, &stuck_torque);
         self.slip = slip;
     }
 
-    /// Takes the present instant into peaks and sums.
+    /// Includes the present instant in peaks and totals.
     fn include(&mut self) {
         let x = &self.now;
         let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
@@ -348,13 +349,13 @@ impl Simulation {
         self.totals.include(x, &wrench, now.force, time);
     }
 
-    /// What links move in, in axes that move with the base: its acceleration adds to gravity.
+    /// Returns gravity and outer force in axes that move with the base: its acceleration is subtracted from gravity.
     pub(super) fn field(&self) -> Surroundings {
         let around = *self.body().around();
         Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
     }
 
-    /// What should be zero now.
+    /// Returns the figures that should be zero now; `plane` is b − b_ref, rad.
     fn audited(&self, plane: f64) -> Audit {
         let off = self.sources(self.body(), &self.now).less(&self.baseline);
         let gap = |chain: &[f64; MAX_DRIVES]| crate::mechanics::machine::place_of(chain, &self.now.e).norm();
@@ -368,7 +369,7 @@ impl Simulation {
         }
     }
 
-    /// What pins carry now; a base that moves adds to gravity.
+    /// Returns the present pin forces; the acceleration of a moving base acts as gravity.
     fn inside(&self) -> Inside {
         let (x, n) = (&self.now, self.drives);
         let around = self.field();
@@ -377,7 +378,7 @@ impl Simulation {
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
     }
 
-    /// Everything that is true now.
+    /// Returns all quantities at the present instant.
     pub fn frame(&self) -> Frame {
         let (x, n) = (&self.now, self.drives);
         let arm = self.body().arm();
@@ -434,9 +435,9 @@ impl Simulation {
     }
 }
 
-/// The slope of now. Sampled control reads first: what encoders and tachometers show, exactly.
+/// Computes the present slope. Sampled control first takes a reading of the exact angles and rates.
 #[inline(never)]
-fn look_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
+fn evaluate_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
     let Simulation { bodies, control_loop, reference, state, slip, stuck_torque, loaded, step, .. } = simulation;
     let body = &bodies[usize::from(*loaded)];
     let (at, n) = (Point::<N>::of(state), reference.q.len());
@@ -458,7 +459,7 @@ fn look_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
     simulation.now = stage.slope(n);
 }
 
-/// m_j a_jk of every link and of the machine's own payload, kg m.
+/// Returns m_j a_jk of every link and of the machine's own payload, kg m.
 fn link_moments(machine: &Machine) -> Vec<Vector> {
     let n = machine.drives();
     let payload = (machine.spec().payload.mass, machine.payload_chain());

@@ -1,34 +1,36 @@
-//! What a step is made of, and how finely it is taken.
+//! State within a step, error measures and the number of substeps.
 
 use crate::planning::Reference;
 use crate::simulation::frame::{Peaks, Totals};
 use crate::simulation::plant::{MAX_CONTACTS, SlipDirections, Slope, State};
 
-/// Where a step has come to.
+/// State at an instant within a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepState {
-    /// Since the step began, s.
+    /// Time since the step began, s.
     pub at: f64,
     pub state: State,
     pub slope: Slope,
-    /// What control aims at.
+    /// Reference of control.
     pub aim: Reference,
     pub slip: SlipDirections,
     /// Torques of stuck contacts, N m.
     pub stuck_torque: [f64; MAX_CONTACTS],
 }
 
-/// The part of a step in which the reference is smooth.
+/// A part of a step in which the reference is smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
+    /// Its start, s since the step began.
     pub(super) from: f64,
+    /// Its end, s since the step began.
     pub to: f64,
-    /// Times of the motion that belong to it, s.
+    /// First and last time of the motion in it, s.
     pub(super) window: [f64; 2],
 }
 
-/// How far two answers are apart, or how far they may be: the moment that the base feels, N m, dynamic f_B, N, motor
-/// torques, N m, the end effector, m.
+/// Difference between two numerical solutions, or a scale for it: net moment on the base, N m, dynamic f_B, N, motor
+/// torques, N m, end effector, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Mismatch(pub(super) [f64; 4]);
 
@@ -36,6 +38,7 @@ impl Mismatch {
     /// Larger than any tolerance.
     pub const BEYOND: Self = Self([f64::INFINITY; 4]);
 
+    /// Returns the larger entries of both; NaN counts as larger.
     #[inline]
     pub fn worse(self, other: Self) -> Self {
         Self(std::array::from_fn(
@@ -43,31 +46,31 @@ impl Mismatch {
         ))
     }
 
-    /// The largest share of a measure; what is no number is more than any.
+    /// Returns the maximum ratio of the entries to those of `measure`; infinite if an entry is NaN.
     pub fn share(self, measure: &Self) -> f64 {
         let share = |i: usize| if self.0[i].is_nan() { f64::INFINITY } else { self.0[i] / measure.0[i] };
         (0..4).map(share).fold(0.0, f64::max)
     }
 
-    /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as
-    /// none.
+    /// Returns the scales of errors: the peaks, bounded from below by fractions of torques, inertial forces and arm
+    /// length.
     pub fn measure(peaks: &Peaks, reach: f64) -> Self {
-        let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
-        let scale = |peak: f64, all: f64| peak.max(LEAST_SHARE * all);
-        Self([scale(peaks.moment, torque), scale(peaks.force, pull), torque, TIP * reach.max(LEAST)])
+        let (torque, pull) = (peaks.torque_sum.max(MIN_SCALE), peaks.inertial_pull.max(MIN_SCALE));
+        let scale = |peak: f64, all: f64| peak.max(MIN_SCALE_SHARE * all);
+        Self([scale(peaks.moment, torque), scale(peaks.force, pull), torque, TIP_SCALE_SHARE * reach.max(MIN_SCALE)])
     }
 }
 
-/// Moments and forces below this share of torques and pull are judged as if they were as large.
-pub(super) const LEAST_SHARE: f64 = 1e-4;
+/// Lower bound of the scales of moment and force, as a fraction of torques and inertial forces.
+pub(super) const MIN_SCALE_SHARE: f64 = 1e-4;
 
-/// Errors of the end effector are shares of this part of the arm.
-pub(super) const TIP: f64 = 1e-2;
+/// Scale of end effector errors, as a fraction of the arm length.
+pub(super) const TIP_SCALE_SHARE: f64 = 1e-2;
 
-/// Values below this count as zero: N m, N, m.
-pub(super) const LEAST: f64 = 1e-6;
+/// Lower bound of all scales: N m, N, m.
+pub(super) const MIN_SCALE: f64 = 1e-6;
 
-/// How far things may have strayed from where they should be: the end effector and B, m, and the base, rad.
+/// Accumulated position errors: of the end effector and of B, m, and of the base angle, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stray {
     pub(super) tip: f64,
@@ -75,21 +78,22 @@ pub(super) struct Stray {
     pub(super) angle: f64,
 }
 
-/// What errors have come to so far, and how many substeps steps are taken in.
+/// Errors of a run so far, and the number of substeps of a step.
 #[derive(Clone, Debug)]
 pub(super) struct StepControl {
+    /// Number of substeps of a step.
     pub(super) substeps: u32,
-    /// The most by which two answers have differed.
+    /// Maximum difference between two numerical solutions.
     pub(super) worst: Mismatch,
-    /// What halving has found, added up.
+    /// Sum of the differences that step halving has found.
     pub(super) drift: Stray,
-    /// What the reference asks for, before the run has shown its own peaks.
+    /// Peaks that the reference requires, used before the run has peaks of its own.
     pub(super) expected: Peaks,
-    /// Until when that counts, s.
+    /// Time until which these are used, s.
     pub(super) until: f64,
-    /// When the reference jumps or bends, in times of the motion, s.
+    /// Times of the motion at which the reference or its derivatives jump, s.
     pub(super) kinks: Vec<f64>,
-    /// Where q̈ of the reference changes by less, it only bends, rad/s².
+    /// A jump of q̈ of the reference up to this is ignored, rad/s².
     pub(super) level: f64,
 }
 
@@ -99,28 +103,29 @@ impl StepControl {
         Self { substeps: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
     }
 
-    /// Goes on where another was: errors made before stay.
+    /// Continues another step control with its errors.
     pub fn resume(&mut self, other: &Self) {
         (self.substeps, self.worst, self.drift) = (other.substeps, other.worst, other.drift);
     }
 
-    /// The error of what is shown, as a share of a measure.
+    /// Returns the error of the displayed quantities relative to their scales.
     pub fn error(&self, measure: &Mismatch, totals: &Totals, reach: f64) -> f64 {
         let Stray { tip, shift, angle } = self.drift;
-        let least = LEAST_SHARE * reach.max(LEAST);
-        let drift = (tip / (TIP * reach.max(LEAST)))
+        let least = MIN_SCALE_SHARE * reach.max(MIN_SCALE);
+        let drift = (tip / (TIP_SCALE_SHARE * reach.max(MIN_SCALE)))
             .max(shift / totals.shift.max(least))
-            .max(angle / totals.base_angle.max(LEAST_SHARE));
+            .max(angle / totals.base_angle.max(MIN_SCALE_SHARE));
         let worst = self.worst.share(measure);
         if drift > worst || drift.is_nan() { drift } else { worst }
     }
 }
 
-/// A substep by classical fourth-order Runge–Kutta.
+/// A substep by the classical fourth-order Runge–Kutta method.
 pub(super) struct Substep {
+    /// State at its end.
     pub end: StepState,
-    /// The slopes between and of the last stage, where contacts can stick.
+    /// Slopes of the second, third and fourth stage.
     pub stages: [Slope; 3],
-    /// How far apart the last stage and the end are.
+    /// Difference between the last stage and the end.
     pub off: Mismatch,
 }

@@ -1,18 +1,18 @@
-//! How a step is taken: in segments that end on the kinks of the reference, each in as many substeps as it needs.
+//! Integration of a step: in segments that end at the kinks of the reference, each with as many substeps as it needs.
 //!
 //! # Method
-//! Classical fourth-order Runge–Kutta gives two slopes at the end of a substep: that of its last stage, and that of the
-//! state it comes to, which the next substep begins with anyway. They differ by more than the error of the substep, so
-//! their difference is an estimate of it that costs next to nothing. Where it is more than [`FINE`] of the peaks of
-//! what is shown, the segment is done again in twice as many substeps, until the estimate, or the difference between
-//! two such runs, is small enough, up to [`MOST_SUBSTEPS`]; the next step begins with as many, and goes back when it
-//! can. So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more
-//! steps where they are and none elsewhere; everything else costs what four stages cost.
+//! The classical fourth-order Runge–Kutta method gives two slopes at the end of a substep: that of its last stage, and
+//! that of the final state, with which the next substep begins anyway. Their difference exceeds the error of the
+//! substep and so is an error estimate at almost no cost. If it exceeds [`ERROR_TOLERANCE`] of the peaks of the
+//! displayed quantities, the segment is integrated again with twice as many substeps, up to [`MAX_SUBSTEPS`]. This ends
+//! when the estimate, or the difference between two such integrations, is small enough. The next step begins with the
+//! same number of substeps and reduces it when possible. So stiff gains, springs and friction, and unforeseen kinks
+//! such as those of saturated motors, cost more substeps only where they occur.
 //!
-//! Errors of forces and torques fade as control takes them up; those of where things are may add up. So every
-//! [`HALVED_EVERY`]-th step is done in twice as many substeps besides, and by how far end effector and base then stand
-//! elsewhere is taken to happen at every step. The worse of the two, the worst disagreement and what adds up, is the
-//! figure `step` of the audit. All of it depends on the run alone, so a replay takes the same substeps.
+//! Control corrects errors of forces and torques; position errors may accumulate. So every [`HALVING_PERIOD_STEPS`]-th
+//! step is also integrated with twice as many substeps. The resulting differences of end effector and base are assumed
+//! for every step and summed. The larger of this sum and the worst difference of slopes is the figure `step` of the
+//! audit. All decisions depend on the run alone, so that a replay takes the same substeps.
 
 use super::guide::Guide;
 use super::simulation::Simulation;
@@ -24,22 +24,23 @@ use crate::planning::{Motion, Reference};
 use crate::simulation::frame::Peaks;
 use crate::simulation::plant::{MAX_CONTACTS, MovingBody, Point, Rates, SlipDirections, Slope, Stage};
 
-/// How far two answers may differ, as a share of the peaks of what is shown.
-const FINE: f64 = 2e-5;
-/// The most substeps of a step.
-const MOST_SUBSTEPS: u32 = 64;
-/// How often small errors are measured by halving, in steps.
-const HALVED_EVERY: u64 = 64;
-/// The most segments of a step.
-const MOST_SEGMENTS: usize = 64;
-/// Kinks nearer to an end of a segment than this share of a step are at it, and how far beside them they are looked at.
-const NEAR: f64 = 1e-7;
-const BESIDE: f64 = 1e-8;
-/// A change of q̈ below this share of its peak is a bend, and no jump.
-const BEND: f64 = 1e-6;
+/// Tolerance of the difference between two solutions, as a fraction of the peaks of the displayed quantities.
+const ERROR_TOLERANCE: f64 = 2e-5;
+/// Maximum number of substeps of a step.
+const MAX_SUBSTEPS: u32 = 64;
+/// Number of steps between two error measurements by halving.
+const HALVING_PERIOD_STEPS: u64 = 64;
+/// Maximum number of segments of a step.
+const MAX_SEGMENTS: usize = 64;
+/// A kink nearer to an end of a segment than this fraction of a step counts as at the end.
+const KINK_TOLERANCE: f64 = 1e-7;
+/// Distance from a kink at which the reference beside it is evaluated, as a fraction of a step.
+const KINK_OFFSET: f64 = 1e-8;
+/// A jump of q̈ below this fraction of its peak is ignored.
+const MIN_JUMP_RATIO: f64 = 1e-6;
 
 impl Simulation {
-    /// Takes in a new guide: where it has kinks, and about how much it asks for.
+    /// Prepares for a new guide: stores its kinks and estimates the peaks that it requires.
     pub(super) fn prepare(&mut self) {
         let n = self.drives;
         let (mut expected, mut level) = (Peaks::zero(n), 0.0_f64);
@@ -51,7 +52,7 @@ impl Simulation {
             let (arm, around) = (self.body().arm(), self.body().around());
             for i in 0..=16 {
                 let r = motion.at(f64::from(i) / 16.0 * motion.duration());
-                level = level.max(BEND * r.qdd.max_abs());
+                level = level.max(MIN_JUMP_RATIO * r.qdd.max_abs());
                 let e = r.q.units();
                 let (torque, wrench) = crate::mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
                 let moments = &self.link_moments[usize::from(self.loaded)];
@@ -66,16 +67,16 @@ impl Simulation {
         (self.step_control.expected, self.step_control.level) = (expected, level);
     }
 
-    /// How far the arm reaches at most, m.
+    /// Returns the maximum reach of the arm, m.
     pub(super) fn reach(&self) -> f64 {
         self.body().arm().end_effector.iter().map(|l| l.abs()).sum()
     }
 
-    /// How far two answers may differ now.
+    /// Returns the present scales of errors.
     pub(super) fn measure(&self) -> Mismatch {
         let mut peaks = self.peaks;
         let wanted = &self.step_control.expected;
-        // At first half of what the reference asks for: there are no peaks yet.
+        // At first use half of the required peaks, because the run has no peaks yet.
         if self.time() < self.step_control.until {
             let of = |seen: f64, wanted: f64| seen.max(0.5 * wanted);
             peaks.torque_sum = of(peaks.torque_sum, wanted.torque_sum);
@@ -86,12 +87,12 @@ impl Simulation {
         Mismatch::measure(&peaks, self.reach())
     }
 
-    /// The reference at a time since the step began, s, as the segment has it.
+    /// Returns the reference at a time since the step began, s, continuous within the segment.
     #[inline]
     pub(super) fn aim(&self, at: f64, segment: &Segment) -> Reference {
         match &self.guide {
             Guide::Motion { motion, start } => {
-                // The end of the step is where the next one begins, to the last digit.
+                // The end of the step equals the beginning of the next one exactly.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
                 beside(motion, time - start, segment.window, self.step_control.level)
             }
@@ -99,32 +100,32 @@ impl Simulation {
         }
     }
 
-    /// The reference at the present instant, and after a kink there.
+    /// Returns the reference at the present instant; at a kink, the one after it.
     pub(super) fn aim_now(&self) -> Reference {
         match &self.guide {
             Guide::Motion { motion, start } => {
                 let t = self.time() - start;
-                let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + BESIDE * self.dt);
+                let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + KINK_OFFSET * self.dt);
                 beside(motion, t, [after, f64::INFINITY], self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(0.0),
         }
     }
 
-    /// The last kink at a time of the motion, s, or as near as makes no difference.
+    /// Returns the last kink at a time of the motion, s, within the tolerance.
     fn kink_at(&self, t: f64) -> Option<f64> {
-        let (kinks, near) = (&self.step_control.kinks, NEAR * self.dt);
+        let (kinks, near) = (&self.step_control.kinks, KINK_TOLERANCE * self.dt);
         let next = kinks.partition_point(|kink| *kink <= t + near);
         next.checked_sub(1).map(|i| kinks[i]).filter(|kink| *kink >= t - near)
     }
 
-    /// The segment that begins at a time since the step did, s, and whether it ends on a kink.
+    /// Returns the segment that begins at a time since the step began, s, and whether it ends at a kink.
     fn segment(&self, from: f64) -> (Segment, bool) {
         let (all, none) = ([f64::NEG_INFINITY, f64::INFINITY], (self.dt, false));
         let Guide::Motion { start, .. } = &self.guide else {
             return (Segment { from, to: none.0, window: all }, none.1);
         };
-        let (t0, near, beside) = (self.time() - start, NEAR * self.dt, BESIDE * self.dt);
+        let (t0, near, beside) = (self.time() - start, KINK_TOLERANCE * self.dt, KINK_OFFSET * self.dt);
         let mut window = all;
         if let Some(kink) = self.kink_at(t0 + from) {
             window[0] = kink + beside;
@@ -139,21 +140,21 @@ impl Simulation {
         (Segment { from, to, window }, true)
     }
 
-    /// A whole step, from here to its end; whether the slope there is that with which the next one begins.
+    /// Integrates a whole step. Returns whether the slope at its end is that with which the next step begins.
     pub(super) fn take_step(&mut self, reached: &mut StepState) -> bool {
         let measure = self.measure();
-        let looked_at = stands_for(self.step);
+        let measured = represented_steps(self.step);
         let mut substeps = 1;
-        for count in 1..=MOST_SEGMENTS {
+        for count in 1..=MAX_SEGMENTS {
             let (mut segment, mut kinked) = self.segment(reached.at);
-            if count == MOST_SEGMENTS {
+            if count == MAX_SEGMENTS {
                 (segment.to, segment.window[1], kinked) = (self.dt, f64::INFINITY, true);
             }
             if reached.at > 0.0 {
-                self.look_again(reached, &segment);
+                self.reevaluate(reached, &segment);
             }
             let from = *reached;
-            substeps = substeps.max(self.pass(&from, &segment, &measure, looked_at, reached));
+            substeps = substeps.max(self.integrate_segment(&from, &segment, &measure, measured, reached));
             if segment.to >= self.dt {
                 self.step_control.substeps = substeps.min(4 * self.step_control.substeps);
                 return !kinked;
@@ -162,52 +163,52 @@ impl Simulation {
         false
     }
 
-    /// A segment, to its end; in how many substeps of a step the next one should go on.
-    fn pass(
+    /// Integrates a segment within the tolerance. Returns the number of substeps of a step for the next segment.
+    fn integrate_segment(
         &mut self,
         from: &StepState,
         segment: &Segment,
         measure: &Mismatch,
-        looked_at: Option<f64>,
+        measured: Option<f64>,
         reached: &mut StepState,
     ) -> u32 {
         let share = (segment.to - segment.from) / self.dt;
         let count = |substeps: u32| (f64::from(substeps) * share - 1e-9).ceil().max(1.0) as u32;
         let mut substeps = self.step_control.substeps;
-        let mut off = self.walk(from, segment, count(substeps), reached);
+        let mut off = self.integrate(from, segment, count(substeps), reached);
         let mut error = off;
-        // While motors give all they have, feedback corrects no errors: the tolerance is 50 times tighter.
+        // While motors are saturated, feedback corrects no errors: the tolerance is 50 times tighter.
         let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
-        let fine = if full { 0.02 * FINE } else { FINE };
-        while off.share(measure) > fine && error.share(measure) > fine && substeps < MOST_SUBSTEPS {
+        let fine = if full { 0.02 * ERROR_TOLERANCE } else { ERROR_TOLERANCE };
+        while off.share(measure) > fine && error.share(measure) > fine && substeps < MAX_SUBSTEPS {
             substeps *= 2;
             if count(substeps) == count(substeps / 2) {
                 continue;
             }
             let coarse = reached.slope;
-            off = self.walk(from, segment, count(substeps), reached);
+            off = self.integrate(from, segment, count(substeps), reached);
             error = self.apart(&reached.slope, &coarse);
         }
-        // Of two bounds the smaller.
+        // Use the smaller of the two estimates.
         if off.share(measure) < error.share(measure) {
             error = off;
         }
         self.step_control.worst = self.step_control.worst.worse(error);
-        if let Some(steps) = looked_at {
+        if let Some(steps) = measured {
             let mut finer = *from;
-            self.walk(from, segment, 2 * count(substeps), &mut finer);
+            self.integrate(from, segment, 2 * count(substeps), &mut finer);
             let (a, b) = (&reached.slope, &finer.slope);
             let (each, drift) = (16.0 / 15.0 * steps, &mut self.step_control.drift);
             drift.tip += each * (tip(&self.bodies[0], a) - tip(&self.bodies[0], b)).norm();
             drift.shift += each * (a.base.at - b.base.at).norm();
             drift.angle += each * (a.base.angle - b.base.angle).abs();
         }
-        // Half as many make about eight times the difference.
+        // Half as many substeps give about eight times the difference.
         if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps }
     }
 
-    /// A segment in equal substeps, to its end; the most by which two answers differ.
-    fn walk(&self, from: &StepState, segment: &Segment, substeps: u32, reached: &mut StepState) -> Mismatch {
+    /// Integrates a segment in equal substeps and returns the maximum error estimate.
+    fn integrate(&self, from: &StepState, segment: &Segment, substeps: u32, reached: &mut StepState) -> Mismatch {
         let sticks = self.body().contacts().stick();
         if substeps == 1 && !sticks {
             return self.smooth(from, segment.to, segment, reached);
@@ -229,7 +230,7 @@ impl Simulation {
         worst
     }
 
-    /// How far apart two answers for one instant are.
+    /// Returns the difference between two slopes at one instant.
     pub(super) fn apart(&self, a: &Slope, b: &Slope) -> Mismatch {
         let felt = |x: &Slope| x.wrench.total().moment - x.spin.torque;
         let tip = |x: &Slope| tip(self.body(), x);
@@ -243,14 +244,14 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// One step of classical Runge–Kutta to a time since the step began, s.
+    /// Makes one Runge–Kutta substep to a time since the step began, s.
     pub(super) fn substep(&self, from: &StepState, to: f64, segment: &Segment) -> Substep {
         let (mut end, mut stages) = (*from, [from.slope; 3]);
         let off = self.stepped(from, to, segment, Some(&mut stages), &mut end);
         Substep { end, stages, off }
     }
 
-    /// The same where nothing can stick: how far apart two answers are.
+    /// Makes one substep without contacts that can stick and returns its error estimate.
     fn smooth(&self, from: &StepState, to: f64, segment: &Segment, end: &mut StepState) -> Mismatch {
         self.stepped(from, to, segment, None, end)
     }
@@ -261,14 +262,14 @@ impl Simulation {
         by_drives!(size, self.body().moves(), stepped_of(self, from, to, segment, stages, end))
     }
 
-    /// Takes the slope where a step has come to anew: the reference, or what is stuck, is another.
-    pub(super) fn look_again(&self, here: &mut StepState, segment: &Segment) {
+    /// Evaluates the slope at the present state again, because the reference or the stuck contacts have changed.
+    pub(super) fn reevaluate(&self, here: &mut StepState, segment: &Segment) {
         here.aim = self.aim(here.at, segment);
         let size = self.body().turning();
         here.slope = by_drives!(size, self.body().moves(), slope_of(self, here));
     }
 
-    /// What a point leads to, with a reference.
+    /// Evaluates a stage at a point with a reference.
     fn stage<const N: usize, const MOVES: bool>(
         &self,
         at: &Point<N>,
@@ -282,7 +283,7 @@ impl Simulation {
     }
 }
 
-/// Where slopes of stages are to be kept.
+/// Storage for the slopes of stages, if wanted.
 type Kept<'a> = Option<&'a mut [Slope; 3]>;
 
 #[inline(never)]
@@ -317,7 +318,7 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     between(body, &k4, &last)
 }
 
-/// How far apart two answers for one instant are.
+/// Returns the difference between two stages at one instant.
 #[inline(always)]
 fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mismatch {
     let felt = |x: &Stage<N>| x.wrench.total().moment - x.spin.torque;
@@ -326,7 +327,7 @@ fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mis
     Mismatch([
         (felt(a) - felt(b)).abs(),
         length(a.wrench.dynamic.force - b.wrench.dynamic.force),
-        (0..N).fold(0.0, |most: f64, k| most.max((a.torque[k] - b.torque[k]).abs())),
+        (0..N).fold(0.0, |max: f64, k| max.max((a.torque[k] - b.torque[k]).abs())),
         length(tip(a) - tip(b)),
     ])
 }
@@ -337,24 +338,24 @@ fn slope_of<const N: usize, const MOVES: bool>(simulation: &Simulation, at: &mut
     stage.slope(simulation.drives)
 }
 
-/// Where the end effector is, m.
+/// Returns the position of the end effector, m.
 #[inline]
 fn tip(body: &MovingBody, x: &Slope) -> Vector {
     x.base.at + end_effector(&body.arm().end_effector, &x.e)
 }
 
-/// How many steps the error measured at this one stands for, if it is measured; at first more often, so that short runs
-/// are judged too.
-fn stands_for(step: u64) -> Option<f64> {
+/// Returns the number of steps that an error measured at this step represents; `None` if it is not measured here. Early
+/// steps are measured more often, so that short runs are assessed too.
+fn represented_steps(step: u64) -> Option<f64> {
     match step {
         0 => Some(1.0),
-        1..HALVED_EVERY => step.is_power_of_two().then_some(step as f64),
-        _ => step.is_multiple_of(HALVED_EVERY).then_some(HALVED_EVERY as f64),
+        1..HALVING_PERIOD_STEPS => step.is_power_of_two().then_some(step as f64),
+        _ => step.is_multiple_of(HALVING_PERIOD_STEPS).then_some(HALVING_PERIOD_STEPS as f64),
     }
 }
 
-/// The reference of a motion, as it is within a window of its times, s; where q̈ changes by no more than `level`,
-/// rad/s², to get there, as it is.
+/// Returns the reference of a motion at a time, s, extrapolated from within a window of times. Where q̈ differs by at
+/// most `level`, rad/s², it returns the plain reference.
 #[inline]
 fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);

@@ -1,85 +1,86 @@
-//! Stick and slip: within a step, the instants at which a Coulomb contact stops, reverses or comes loose are found and
-//! stepped to, so that the result does not depend on where steps happen to end.
+//! Stick and slip: substeps end at the instants at which a Coulomb contact stops, reverses or breaks loose, so that the
+//! result does not depend on the step size.
 //!
-//! | event | is where | then |
+//! | event | condition | consequence |
 //! |---|---|---|
 //! | a sliding contact stops | its rate of sliding passes zero | sticks if τ_C can hold it, else slides the other way |
-//! | a stuck contact comes loose | what holds it passes τ_C | it slides |
+//! | a stuck contact breaks loose | its holding torque exceeds τ_C | it slides |
 //!
-//! A substep that holds such an instant is cut there, as often as there are instants; a substep on whose way a
-//! contact turned and turned back is halved until the first of the two is found.
+//! A substep is shortened to end at the first such instant, and this is repeated for each. A substep in which a contact
+//! reverses twice is halved until the first reversal is found.
 
 use super::simulation::Simulation;
 use super::step_control::{Mismatch, Segment, StepState, Substep};
 use crate::simulation::plant::{Contacts, MAX_CONTACTS, SlipDirections, Slope};
 
-/// The most cuts of one substep.
-const MOST: usize = 100;
+/// Maximum number of parts of one substep.
+const MAX_PARTS: usize = 100;
 
-/// What may happen on a substep.
+/// Contact event in a substep.
 enum Event {
-    /// At or before its end a contact stops, or comes loose.
+    /// At or before its end a contact stops or breaks loose.
     Passed(usize),
-    /// On its way something happens and is undone.
+    /// A contact changes and changes back within it.
     Between,
 }
 
-/// How far a substep may go.
+/// Result of the search for an event.
 #[expect(clippy::large_enum_variant, reason = "a step allocates nothing")]
 enum Cut {
-    /// To its end, where the contact that was looked for stops or comes loose.
+    /// A substep at whose end the first contact stops or breaks loose.
     Here(Substep),
-    /// Not so far: something else is sooner, at this time since the step began at the latest, s.
+    /// Another event is earlier: at most at this time since the step began, s.
     Sooner(f64),
 }
 
 impl Simulation {
-    /// How much a stuck contact could hold beyond what it does, N m; below zero it comes loose, by what is missing.
-    fn spare(&self, i: usize, slope: &Slope, stuck_torque: &[f64; MAX_CONTACTS]) -> f64 {
+    /// Returns the torque reserve of a stuck contact, N m; if negative, the contact breaks loose.
+    fn torque_reserve(&self, i: usize, slope: &Slope, stuck_torque: &[f64; MAX_CONTACTS]) -> f64 {
         let contacts = self.body().contacts();
-        let most = contacts.coulomb(i);
+        let limit = contacts.coulomb(i);
         let away = contacts.sliding(i, &slope.qdd) * stuck_torque[i].signum() * self.body().resists(i);
-        // Held to rounding.
-        let away = if away < 1e-9 * most { 0.0 } else { away };
-        most - stuck_torque[i].abs() - away
+        // Zero within rounding.
+        let away = if away < 1e-9 * limit { 0.0 } else { away };
+        limit - stuck_torque[i].abs() - away
     }
 
-    /// Slides contacts that cannot hold.
+    /// Lets stuck contacts slide that cannot hold.
     pub(super) fn release(&self, slope: &Slope, slip: &mut SlipDirections, stuck_torque: &[f64; MAX_CONTACTS]) {
         let contacts = self.body().contacts();
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
-            if slip[i] == 0 && self.spare(i, slope, stuck_torque) < -0.5e-9 * contacts.coulomb(i) {
+            if slip[i] == 0 && self.torque_reserve(i, slope, stuck_torque) < -0.5e-9 * contacts.coulomb(i) {
                 slip[i] = if stuck_torque[i] > 0.0 { 1 } else { -1 };
             }
         }
     }
 
-    /// What is left until a contact's state ends: its rate along the way it slides, rad/s, or what a stuck one could
-    /// still hold, N m; below zero it has ended.
-    fn left(&self, i: usize, slip: &SlipDirections, at: &StepState) -> f64 {
+    /// Returns the margin until a contact's state ends: the sliding rate in its slip direction, rad/s, or the torque
+    /// reserve if stuck, N m. A negative margin means that the state has ended.
+    fn margin(&self, i: usize, slip: &SlipDirections, at: &StepState) -> f64 {
         match slip[i] {
-            0 => self.spare(i, &at.slope, &at.stuck_torque),
+            0 => self.torque_reserve(i, &at.slope, &at.stuck_torque),
             way => f64::from(way) * self.body().contacts().sliding(i, &at.slope.qd),
         }
     }
 
+    /// Returns whether a contact's state has ended.
     fn is_over(&self, i: usize, slip: &SlipDirections, at: &StepState) -> bool {
-        let least = if slip[i] == 0 { -0.5e-9 * self.body().contacts().coulomb(i) } else { 0.0 };
-        self.left(i, slip, at) < least
+        let tolerance = if slip[i] == 0 { -0.5e-9 * self.body().contacts().coulomb(i) } else { 0.0 };
+        self.margin(i, slip, at) < tolerance
     }
 
-    /// Whether it has ended by more than two that end together may differ by.
+    /// Returns whether a contact's state has ended by more than contacts that end simultaneously may differ.
     fn is_long_over(&self, i: usize, slip: &SlipDirections, at: &StepState) -> bool {
-        let least = if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
-        self.left(i, slip, at) < least
+        let tolerance = if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
+        self.margin(i, slip, at) < tolerance
     }
 
-    /// What happens on a substep, if anything: the contact that seems to be first.
+    /// Returns the contact event in a substep, if there is one, with the contact that is estimated to be first.
     fn event(&self, from: &StepState, substep: &Substep) -> Option<Event> {
         let contacts = self.body().contacts();
         let able = || (0..contacts.len()).filter(|i| contacts.sticks(*i));
         let over = able().filter(|i| self.is_over(*i, &from.slip, &substep.end)).map(|i| {
-            let (a, b) = (self.left(i, &from.slip, from).max(0.0), -self.left(i, &from.slip, &substep.end));
+            let (a, b) = (self.margin(i, &from.slip, from).max(0.0), -self.margin(i, &from.slip, &substep.end));
             (i, a / (a + b))
         });
         if let Some((i, _)) = over.min_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -88,7 +89,7 @@ impl Simulation {
         self.turns_back(from, substep).then_some(Event::Between)
     }
 
-    /// Whether a contact stops, or comes loose, on the way of a substep and goes back to what it did.
+    /// Returns whether a contact stops or breaks loose within a substep and returns to its former state.
     fn turns_back(&self, from: &StepState, substep: &Substep) -> bool {
         let contacts = self.body().contacts();
         let h = substep.end.at - from.at;
@@ -105,14 +106,14 @@ impl Simulation {
         })
     }
 
-    /// Goes on to a time since the step began, s, cut where contacts stick or slip; the most by which two answers
-    /// differ.
+    /// Integrates to a time since the step began, s, in parts that end where contacts stick or slip. Returns the
+    /// maximum error estimate.
     pub(super) fn contact(&self, reached: &mut StepState, to: f64, segment: &Segment) -> Mismatch {
         let mut worst = Mismatch::default();
         let mut reach = to - reached.at;
-        for _ in 0..MOST {
-            // The reference may have jumped.
-            self.turn(reached, segment);
+        for _ in 0..MAX_PARTS {
+            // The reference may have jumped: update the contacts.
+            self.update_contacts(reached, segment);
             let end = if reached.at + reach >= to { to } else { reached.at + reach };
             let substep = self.substep(reached, end, segment);
             let substep = match self.event(reached, &substep) {
@@ -122,7 +123,7 @@ impl Simulation {
                     continue;
                 }
                 Some(Event::Between) => substep,
-                Some(Event::Passed(i)) => match self.found(i, reached, substep, segment) {
+                Some(Event::Passed(i)) => match self.first_event(i, reached, substep, segment) {
                     Cut::Here(substep) => substep,
                     Cut::Sooner(at) => {
                         reach = at - reached.at;
@@ -133,24 +134,23 @@ impl Simulation {
             worst = worst.worse(substep.off);
             *reached = substep.end;
             if reached.at >= to {
-                self.turn(reached, segment);
+                self.update_contacts(reached, segment);
                 return worst;
             }
             reach = to - reached.at;
         }
-        // More than can be followed: finer substeps are tried, and if they fail the audits see what is taken out here.
+        // Too many events: the infinite estimate forces finer substeps. If these fail too, the audits show the energy
+        // that is removed here.
         *reached = self.substep(reached, to, segment).end;
         Mismatch::BEYOND
     }
 
-    /// Where the first of all contacts stops or comes loose on a substep on which one does, unless something else is
-    /// sooner.
-    fn found(&self, mut i: usize, from: &StepState, mut substep: Substep, segment: &Segment) -> Cut {
+    /// Finds the first instant at which any contact stops or breaks loose in a substep, starting from contact i.
+    fn first_event(&self, mut i: usize, from: &StepState, mut substep: Substep, segment: &Segment) -> Cut {
         let contacts = self.body().contacts();
-        // Each search ends before the one it began with, so that of contacts that end almost together the first is
-        // found.
+        // Each search ends earlier than the one before, so that the first of almost simultaneous events is found.
         for _ in 0..2 * contacts.len() {
-            substep = self.cut(i, from, substep, segment);
+            substep = self.shortened(i, from, substep, segment);
             let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.sticks(*j));
             let h = substep.end.at - from.at;
             match others.find(|j| self.is_long_over(*j, &from.slip, &substep.end)) {
@@ -162,12 +162,12 @@ impl Simulation {
         Cut::Sooner(from.at + 0.5 * (substep.end.at - from.at))
     }
 
-    /// A substep cut at the instant at which a contact's state ends.
-    fn cut(&self, i: usize, from: &StepState, substep: Substep, segment: &Segment) -> Substep {
+    /// Shortens a substep to the instant at which the state of contact i ends, by bracketing.
+    fn shortened(&self, i: usize, from: &StepState, substep: Substep, segment: &Segment) -> Substep {
         let holds = from.slip[i] == 0;
         let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };
-        let mut low = (from.at, self.left(i, &from.slip, from).max(0.0));
-        let mut high = (substep.end.at, self.left(i, &from.slip, &substep.end));
+        let mut low = (from.at, self.margin(i, &from.slip, from).max(0.0));
+        let mut high = (substep.end.at, self.margin(i, &from.slip, &substep.end));
         let mut best = substep;
         let (near, width) = if holds { (1e-8, 1e-10) } else { (1e-15, 1e-14) };
         let mut side = 0;
@@ -175,22 +175,22 @@ impl Simulation {
             if high.0 - low.0 <= width * self.dt() || high.1.abs() <= near * scale {
                 break;
             }
-            // The Illinois rule; from a start at rest, halving until it has moved.
+            // Illinois variant of regula falsi; bisection from a start at rest, until the contact has moved.
             let straight = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let halving = low.1 <= Contacts::STILL * scale || n % 8 == 7;
             let to = if halving { 0.5 * (low.0 + high.0) } else { straight.clamp(low.0, high.0) };
             let there = self.substep(from, to, segment);
-            let left = self.left(i, &from.slip, &there.end);
+            let margin = self.margin(i, &from.slip, &there.end);
             if self.is_over(i, &from.slip, &there.end) {
                 best = there;
-                high = (to, left);
+                high = (to, margin);
                 low.1 *= if side == -1 { 0.5 } else { 1.0 };
                 side = -1;
             } else {
-                low = (to, left);
+                low = (to, margin);
                 high.1 *= if side == 1 { 0.5 } else { 1.0 };
                 side = 1;
-                if !holds && left <= near {
+                if !holds && margin <= near {
                     best = there;
                     break;
                 }
@@ -199,9 +199,9 @@ impl Simulation {
         best
     }
 
-    /// A contact that does not slide, and would not go the way it is said to slide, is stuck or goes the other way.
-    /// True if there was one.
-    fn settle(&self, reached: &mut StepState, segment: &Segment) -> bool {
+    /// Makes contacts stick whose sliding rate is zero and whose acceleration does not point in the slip direction.
+    /// Contacts that cannot hold then slide the other way. Returns whether there was one.
+    fn stick_stopped(&self, reached: &mut StepState, segment: &Segment) -> bool {
         let contacts = self.body().contacts();
         let mut changed = false;
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
@@ -219,22 +219,22 @@ impl Simulation {
         changed
     }
 
-    /// After a substep: contacts that have stopped stick, and those that cannot hold slide.
-    fn turn(&self, reached: &mut StepState, segment: &Segment) {
-        if !self.settle(reached, segment) {
+    /// Updates the contacts after a substep: those that have stopped stick, and those that cannot hold slide.
+    fn update_contacts(&self, reached: &mut StepState, segment: &Segment) {
+        if !self.stick_stopped(reached, segment) {
             self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
         }
     }
 
-    /// Holds what is stuck, as far as its law allows.
+    /// Stops stuck contacts exactly, evaluates the slope again, and releases contacts that cannot hold.
     fn hold(&self, reached: &mut StepState, segment: &Segment) {
         reached.state = self.body().stuck(reached.state, &reached.slip);
-        self.look_again(reached, segment);
+        self.reevaluate(reached, segment);
         self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
     }
 }
 
-/// Whether the cubic with these values and slopes at 0 and 1 goes below zero between.
+/// Returns whether the cubic with given values and slopes at 0 and 1 is negative in between.
 fn dips([a, b]: [f64; 2], [u, v]: [f64; 2]) -> bool {
     if u >= 0.0 || v <= 0.0 {
         return false;
@@ -242,7 +242,7 @@ fn dips([a, b]: [f64; 2], [u, v]: [f64; 2]) -> bool {
     // a + u x + p x² + r x³
     let (p, r) = (3.0 * (b - a) - 2.0 * u - v, 2.0 * (a - b) + u + v);
     let root = (p * p - 3.0 * r * u).max(0.0).sqrt();
-    // The minimum: 3 r x² + 2 p x + u = 0, rising.
+    // The minimum: the root of 3 r x² + 2 p x + u = 0 with positive curvature.
     let x = -u / (p + root);
     let x = x.clamp(0.0, 1.0);
     a + x * (u + x * (p + x * r)) < 0.0

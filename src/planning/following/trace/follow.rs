@@ -1,4 +1,4 @@
-//! Curves followed, or the reason why not.
+//! Following curves, or the reason why not.
 
 use super::remedy::blocked;
 use super::rule::{Blocked, Halt, Rule, Stop};
@@ -6,11 +6,11 @@ use super::walk::{starts, tables};
 use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::PlaneMap;
 
-/// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the
-/// one that can, nearest to `prefer`.
+/// Follows curves that join end to end on the plane b, rad, and returns a table of nodes for each. Of several poses at
+/// the start it takes the one nearest to `prefer`, rad, from which all curves can be followed.
 ///
 /// # Errors
-/// Where it is stopped and by what, and what would help.
+/// Where the farthest attempt stops, why, and which b or part of the curves is feasible.
 pub fn follow(
     map: &PlaneMap,
     curves: &[Curve],

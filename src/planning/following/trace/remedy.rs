@@ -1,4 +1,4 @@
-//! What would help where a curve cannot be followed: another b, or a part of it.
+//! Remedies for a curve that cannot be followed: another b, or a part of the curve.
 
 use super::rule::{Blocked, Rule, Stop};
 use super::track::Track;
@@ -7,8 +7,8 @@ use crate::mechanics::planar::unit;
 use crate::planning::curves::curve::Curve;
 use crate::planning::reactionless::{BSet, Decimal, PlaneMap};
 
-/// Parts of a curve that is drawn.
-const DRAWN: i32 = 160;
+/// Number of intervals of the curve that is drawn.
+const DRAWN_INTERVALS: i32 = 160;
 
 pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: Stop) -> Blocked {
     let common = common_b(map, curves, 2 * STATIONS + 1);
@@ -24,23 +24,23 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
         shown_b: shown_b.flatten(),
         some_b_reaches_all: !common.is_empty(),
         longest: longest(map, curves, b, rule).map(|[from, to]| match from < s && s < to {
-            // A graze between stations.
+            // The curve touches a boundary between stations, which the coarse walk missed.
             true if s - from >= to - s => [from, s],
             true => [s, to],
             false => [from, to],
         }),
-        curve: (0..=DRAWN).map(|i| at(curves, f64::from(i) / f64::from(DRAWN))).collect(),
+        curve: (0..=DRAWN_INTERVALS).map(|i| at(curves, f64::from(i) / f64::from(DRAWN_INTERVALS))).collect(),
     }
 }
 
-/// The b nearest to a given one at which curves can be followed, among those that reach each point; and the same
-/// rounded to where they still can.
+/// Finds the b nearest to a given one at which curves can be followed, of those that reach each point, rad. The second
+/// value is this b rounded so that the curves can still be followed.
 fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet) -> Option<(f64, Option<Decimal>)> {
     const TRIES: usize = 24;
     let can = |b: f64| is_feasible(map, curves, b, rule);
     let mut tries: Vec<f64> = Vec::new();
     for [low, high] in common.near(b).intervals {
-        // A hair inside, where rounding does not matter.
+        // Slightly inside the interval, where rounding does not matter.
         let inset = (1e-7_f64).min(0.25 * (high - low));
         let (low, high) = (low + inset, high - inset);
         tries.extend((0..=TRIES).map(|i| low + (high - low) * i as f64 / TRIES as f64));
@@ -50,7 +50,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     let found = tries.iter().position(|x| can(*x))?;
     let first = tries[found];
     let mut good = first;
-    // Between it and the nearest one on the same side that does not do.
+    // Bisect between it and the nearest infeasible one on the same side.
     let beside = tries[..found].iter().rev().copied().find(|x| (x - b) * (good - b) >= 0.0);
     if let Some(mut bad) = beside {
         for _ in 0..16 {
@@ -58,7 +58,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
             if can(middle) { good = middle } else { bad = middle }
         }
     }
-    // Between the stations the curve may still leave the workspace by a little: then a little further in.
+    // Between stations the curve may still leave the workspace slightly: then take a b further inside.
     let start = curves.first().map(|curve| curve.at(0.0).p)?;
     let follows = |b: f64| starts(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
     let mut further = [good, first, common.inwards(first, 0.5)].into_iter().chain(tries[found..].iter().copied());
@@ -72,7 +72,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     Some((inner, Decimal::that(inner, 4, follows)))
 }
 
-/// The longest part of curves that can be followed on a plane, as s over all of them.
+/// Finds the longest part of curves that can be followed on a plane, as an interval of s over all of them.
 fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64; 2]> {
     let turn = unit(-map.turn(b));
     let mut best: Option<[f64; 2]> = None;
@@ -81,7 +81,7 @@ fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64;
             best = Some([from, to]);
         }
     };
-    // Runs that are under way: where they began, and their pose at the present station.
+    // Parts that can be followed up to the present station: the s where they began, and the pose at this station.
     let mut runs: Vec<(f64, [f64; 2])> = Vec::new();
     let n = 2 * STATIONS;
     for i in 0..n {
@@ -90,7 +90,7 @@ fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64;
         for pose in map.poses(at(curves, s), b).iter() {
             let known = |r: &(f64, [f64; 2])| (r.1[0] - pose.a[0]).hypot(r.1[1] - pose.a[1]) < 1e-6;
             if !runs.iter().any(known) {
-                // It began between the last station and here.
+                // This part began between the last station and this one.
                 runs.push((begin(map, curves, b, rule, s, pose.a, n), pose.a));
             }
         }
@@ -122,7 +122,7 @@ fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64;
     best
 }
 
-/// How far back from a pose at s a curve can be followed, at most one station.
+/// Returns the least s, at most one station before the given s, back to which a curve can be followed from a pose.
 fn begin(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, a: [f64; 2], n: usize) -> f64 {
     let back = (s - 1.0 / n as f64).max(0.0);
     let (mut good, mut bad) = (s, back);

@@ -1,4 +1,4 @@
-//! What a curve must keep to be followed, and what stops it.
+//! Conditions under which a curve is followed, and reasons why it stops.
 
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
@@ -6,19 +6,19 @@ use thiserror::Error;
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{Decimal, PAIRS, PlaneMap};
 
-/// What ends a sheet.
+/// Why a curve cannot be followed further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// A relative angle at its limit.
     Limit {
         /// Which angle: 0 for a_1, 1 for a_2.
         angle: usize,
-        /// At its greatest value, else at its least.
+        /// Whether at its upper limit, else at its lower.
         upper: bool,
     },
     /// det = 0: two poses meet and vanish.
     Fold,
-    /// Two drives parallel, where pins would bear unbounded forces; only if the path is to keep off it.
+    /// Two drives parallel, where pins would bear unbounded forces; only if the rule forbids it.
     ChangePoint {
         /// The drives, counted from 0.
         drives: [usize; 2],
@@ -34,7 +34,7 @@ pub struct Blocked {
     /// b, rad.
     #[serde(skip)]
     pub b: f64,
-    /// How far along the whole curve, 0 to 1 by length.
+    /// Where it stops on the whole curve, 0 to 1 by length.
     pub s: f64,
     /// The first point that cannot be passed, m.
     #[serde(rename = "point")]
@@ -42,19 +42,20 @@ pub struct Blocked {
     /// What stops it there.
     #[serde(rename = "reason")]
     pub stop: Stop,
-    /// Whether no pose of this plane reaches the curve just beyond: it leaves the workspace, not only the sheet.
+    /// Whether no pose of this plane reaches the curve just beyond, so that it leaves the workspace, not only the
+    /// sheet.
     pub leaves_workspace: bool,
     /// The pose constant nearest to b at which the whole curve can be followed, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_b: Option<f64>,
-    /// The same as it is shown: rounded to where the curve can still be followed.
+    /// `nearest_b` as it is shown: rounded so that the curve can still be followed.
     #[serde(skip)]
     pub shown_b: Option<Decimal>,
-    /// Whether some b reaches each single point of the curve, if not the curve as a whole.
+    /// Whether one b reaches every point of the curve, even if the curve cannot be followed at it.
     #[serde(skip)]
     pub some_b_reaches_all: bool,
-    /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length; one of less than
-    /// 0.6 % may be missed.
+    /// Interval of the longest part that can be followed on this plane, 0 to 1 by length; a part of less than 0.6 % may
+    /// be missed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest: Option<[f64; 2]>,
     /// The whole curve, m, to be drawn.
@@ -109,7 +110,7 @@ impl Blocked {
     }
 }
 
-/// What a followed path must keep to besides its sheet and the limits.
+/// Additional condition on a followed path, besides its sheet and the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rule {
     /// Keeps sin(q_k − q_l) from changing sign for every pair of drives.
@@ -122,11 +123,11 @@ impl Rule {
     }
 }
 
-/// The pair of drives that becomes parallel between two poses, counted from 0.
+/// Returns the pair of drives that becomes parallel between two poses, counted from 0.
 pub(super) fn crossed(map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
     let (x, y) = (map.sines(from), map.sines(to));
     PAIRS.into_iter().zip(x.into_iter().zip(y)).find(|(_, (x, y))| x * y < 0.0).map(|(pair, _)| pair)
 }
 
-/// How far a curve can be followed: to which s, to which pose, and what stops it there.
+/// Where following a curve stops: s, the pose (a_1, a_2), rad, and the reason.
 pub type Halt = (f64, [f64; 2], Stop);

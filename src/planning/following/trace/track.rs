@@ -1,4 +1,4 @@
-//! A curve on a plane, followed step by step: poses with derivatives, and what stops them.
+//! Following a curve on a plane step by step: poses with derivatives, and the reason for a stop.
 
 use super::rule::{Halt, Rule, Stop, crossed};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -8,24 +8,26 @@ use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::inverse::rates;
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
 
-/// The smallest advance along a curve before it counts as stopped.
-const LEAST_STEP: f64 = 1e-11;
+/// Minimum step of s; if even this fails, the curve cannot be followed further.
+const MIN_STEP: f64 = 1e-11;
 
-/// How far the pose may lie from where the tangent leads, rad: farther, the step is halved.
-const MAX_ASTRAY: f64 = 0.02;
+/// Maximum distance of a pose from its tangent prediction, rad, plus a quarter of the step; beyond it the step is
+/// halved.
+const MAX_PREDICTION_ERROR_RAD: f64 = 0.02;
 
-/// The nodes are dense enough when the quintics between them miss by no more than this, rad.
-const MAX_MISS: f64 = 2e-11;
+/// Tolerance of the quintics between nodes, rad: above it an interval is halved.
+const MAX_QUINTIC_ERROR_RAD: f64 = 2e-11;
 
-/// In the least spaces this must do, rad: close by a fold.
-const MAX_MISS_BY_A_FOLD: f64 = 1e-8;
-/// Spaces between nodes on a piece of a curve to begin with.
-const SPACES: usize = 8;
-/// More pieces than this begin with one space each.
+/// Tolerance of the quintics in the shortest intervals, close to a fold, rad.
+const MAX_QUINTIC_ERROR_NEAR_FOLD_RAD: f64 = 1e-8;
+/// Initial number of intervals between nodes on a piece of a curve.
+const INITIAL_INTERVALS: usize = 8;
+/// If a curve has more pieces than this, each begins with one interval.
 const MANY_PIECES: usize = 200;
-/// The least space, as a share of its piece, and the most nodes of a curve, some more for each piece.
-const LEAST_SPACE: f64 = 1e-6;
-const MOST_NODES: usize = 20_000;
+/// Minimum length of an interval, as a fraction of its piece.
+const MIN_INTERVAL: f64 = 1e-6;
+/// Maximum number of nodes of a curve, besides four for each piece.
+const MAX_NODES: usize = 20_000;
 
 /// A curve on a plane.
 #[derive(Clone, Copy)]
@@ -38,7 +40,7 @@ pub(super) struct Track<'a> {
 }
 
 impl Track<'_> {
-    /// From the pose at one s to that at another.
+    /// Follows the curve from the pose at one s to that at another and returns the latter, rad.
     pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
         let (mut s, mut step) = (from, to - from);
         let mut here = self.jet(a, s);
@@ -49,7 +51,7 @@ impl Track<'_> {
                 self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.rule.keeps_side(self.map, a, *x));
             let near = |x: &[f64; 2]| {
                 let step = (x[0] - a[0]).hypot(x[1] - a[1]);
-                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= MAX_ASTRAY + 0.25 * step
+                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= MAX_PREDICTION_ERROR_RAD + 0.25 * step
             };
             match found.filter(near) {
                 Some(x) => {
@@ -58,21 +60,21 @@ impl Track<'_> {
                     (a, s, here) = (x, next, there);
                     step *= 2.0;
                 }
-                None if step > LEAST_STEP => step *= 0.5,
+                None if step > MIN_STEP => step *= 0.5,
                 None => return Err((s, a, self.stop(a, here.first))),
             }
         }
         Ok(a)
     }
 
-    /// (a_1, a_2) with derivatives by s, for the pose at s.
+    /// Returns (a_1, a_2) with derivatives by s, for the pose at s.
     fn jet(&self, a: [f64; 2], s: f64) -> Jet {
         let CurvePoint { first, second, .. } = self.curve.at(s);
         let [first, second] = rates(self.map, a, first * self.turn, second * self.turn);
         Jet { a, first, second }
     }
 
-    /// What lies ahead of a pose that cannot be left along a tangent.
+    /// Returns why a pose cannot be left along a tangent.
     fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> Stop {
         let length = tangent[0].hypot(tangent[1]);
         let ahead = [0, 1].map(|i| a[i] + 1e-5 * tangent[i] / length);
@@ -91,14 +93,14 @@ impl Track<'_> {
         Stop::Fold
     }
 
-    /// Nodes along the curve, each space halved until its quintic does.
+    /// Returns nodes along the curve; intervals are halved until their quintics meet the tolerance.
     pub fn table(&self, start: [f64; 2]) -> Result<PathTable, Halt> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
         let pieces = joints.len() - 1;
-        // Many pieces are short, as those between samples.
-        let spaces = if pieces > MANY_PIECES { 1 } else { SPACES };
+        // Curves of very many pieces, as those through samples, have short ones.
+        let spaces = if pieces > MANY_PIECES { 1 } else { INITIAL_INTERVALS };
         for ends in joints.windows(2) {
             let run = ends[1] - ends[0];
             let station = |i: usize| if i == spaces { ends[1] } else { ends[0] + run * i as f64 / spaces as f64 };
@@ -106,13 +108,15 @@ impl Track<'_> {
             while let Some(&next) = ahead.last() {
                 let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
                 let there = self.jet(self.advance(here.a, s, next)?, next);
-                let miss = self.miss((s, here), (next, there));
-                if miss < MAX_MISS || (next - s < LEAST_SPACE * run && miss < MAX_MISS_BY_A_FOLD) {
+                let error = self.quintic_error((s, here), (next, there));
+                if error < MAX_QUINTIC_ERROR_RAD
+                    || (next - s < MIN_INTERVAL * run && error < MAX_QUINTIC_ERROR_NEAR_FOLD_RAD)
+                {
                     stations.push(next);
                     nodes.push(there);
                     ahead.pop();
-                } else if next - s < LEAST_SPACE * run || nodes.len() > MOST_NODES + 4 * pieces {
-                    // So near to a fold that no nodes are dense enough.
+                } else if next - s < MIN_INTERVAL * run || nodes.len() > MAX_NODES + 4 * pieces {
+                    // Too close to a fold for any node density.
                     return Err((s, here.a, Stop::Fold));
                 } else {
                     ahead.push(0.5 * (s + next));
@@ -125,8 +129,8 @@ impl Track<'_> {
         PathTable::new(stations, lifted).ok_or((0.0, start, Stop::Start))
     }
 
-    /// How far the point halfway between two nodes lies from their quintic, rad.
-    fn miss(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> f64 {
+    /// Returns the error of the quintic halfway between two nodes, rad.
+    fn quintic_error(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> f64 {
         let middle =
             [0, 1].map(|i| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, 0.5));
         match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
@@ -135,9 +139,9 @@ impl Track<'_> {
         }
     }
 
-    /// Between two nodes an angle may turn back beyond its limit.
+    /// Checks that no angle exceeds its limit between two nodes, where it may have an extremum.
     fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), Halt> {
-        const LOOKS: i32 = 16;
+        const PROBES: i32 = 16;
         let limits = self.map.limits();
         for (i, limit) in limits.iter().enumerate() {
             if x.first[i] * y.first[i] >= 0.0 {
@@ -145,10 +149,10 @@ impl Track<'_> {
             }
             let at = |u: f64| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, u);
             let past = |u: f64| (at(u) - limit.max).max(limit.min - at(u));
-            let looks = (1..LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
-            let Some(mut bad) = looks.max_by(|u, v| past(*u).total_cmp(&past(*v))) else { continue };
-            // The peak between the looks, to second order.
-            let d = 1.0 / f64::from(LOOKS);
+            let probes = (1..PROBES).map(|k| f64::from(k) / f64::from(PROBES));
+            let Some(mut bad) = probes.max_by(|u, v| past(*u).total_cmp(&past(*v))) else { continue };
+            // The extremum between the probes, to second order.
+            let d = 1.0 / f64::from(PROBES);
             let [before, here, after] = [past(bad - d), past(bad), past(bad + d)];
             let shift = 0.5 * d * (before - after) / (before - 2.0 * here + after);
             if shift.is_finite() && past(bad + shift) > here {
@@ -157,7 +161,7 @@ impl Track<'_> {
             if past(bad) <= SLACK {
                 continue;
             }
-            // A long space has a poor quintic: only what cannot be followed there counts.
+            // A long interval has an inaccurate quintic: it counts only if the pose there is infeasible.
             if self.map.follow(self.curve.at(s + (t - s) * bad).p, self.b, x.a).is_some() {
                 continue;
             }
@@ -191,7 +195,7 @@ struct Jet {
     second: [f64; 2],
 }
 
-/// The quintic through value and two derivatives at both ends of a space h, at the share u.
+/// Evaluates the quintic through value and two derivatives at both ends of an interval h, at its fraction u.
 fn hermite(from: [f64; 3], to: [f64; 3], h: f64, u: f64) -> f64 {
     let (c1, c2) = (from[1] * h, 0.5 * from[2] * h * h);
     let (v, v1, v2) = (to[0] - from[0] - c1 - c2, to[1] * h - c1 - 2.0 * c2, to[2] * h * h - 2.0 * c2);

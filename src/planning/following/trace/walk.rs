@@ -1,4 +1,4 @@
-//! Curves walked along from a pose, and whether they can be.
+//! Following curves from a pose, and whether they can be followed.
 
 use super::rule::{Halt, Rule};
 use super::track::Track;
@@ -6,13 +6,13 @@ use crate::mechanics::planar::{Vector, unit};
 use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::{BSet, PlaneMap};
 
-/// Stations at which a curve is tried for other b, or for its longest part.
+/// Number of stations at which a curve is checked for other b, or for its longest part.
 pub(super) const STATIONS: usize = 96;
 
-/// Poses on a plane along a curve, from a pose at its start.
+/// Follows a curve on the plane b, rad, from a pose at its start in `stations` steps and returns the last pose, rad.
 ///
 /// # Errors
-/// How far it gets, the last pose, and what stops it.
+/// The s where it stops, the last pose, and the reason.
 pub fn walk(
     map: &PlaneMap,
     curve: &Curve,
@@ -30,7 +30,7 @@ pub fn walk(
     Ok(a)
 }
 
-/// The poses of a point on a plane, those nearest to `prefer` first.
+/// Returns the poses of a point on a plane, those nearest to `prefer` first.
 pub(super) fn starts(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut starts: Vec<[f64; 2]> = map.poses(p, b).iter().map(|x| x.a).collect();
     if let Some(wanted) = prefer {
@@ -59,22 +59,22 @@ pub(super) fn tables(
     Ok(tables)
 }
 
-/// s over all curves, by length, of a place on one of them.
+/// Converts s on curve i to s over all curves, by length.
 pub(super) fn whole(curves: &[Curve], i: usize, s: f64) -> f64 {
     let length = |c: &Curve| c.length();
     let before: f64 = curves[..i].iter().map(length).sum();
     (before + s * curves[i].length()) / curves.iter().map(length).sum::<f64>()
 }
 
-/// The curve and its s, of an s over all of them.
+/// Converts s over all curves to the index of a curve and its s.
 pub fn part(curves: &[Curve], s: f64) -> (usize, f64) {
     let total: f64 = curves.iter().map(Curve::length).sum();
-    let mut left = s * total;
+    let mut rest = s * total;
     for (i, curve) in curves.iter().enumerate() {
-        if left <= curve.length() || i + 1 == curves.len() {
-            return (i, (left / curve.length()).clamp(0.0, 1.0));
+        if rest <= curve.length() || i + 1 == curves.len() {
+            return (i, (rest / curve.length()).clamp(0.0, 1.0));
         }
-        left -= curve.length();
+        rest -= curve.length();
     }
     (0, 0.0)
 }
@@ -84,7 +84,7 @@ pub(super) fn at(curves: &[Curve], s: f64) -> Vector {
     curves[i].at(s).p
 }
 
-/// Whether curves can be followed on a plane from any pose at their start.
+/// Returns whether curves can be followed on a plane from any pose at their start.
 pub fn is_feasible(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> bool {
     let Some(first) = curves.first() else { return true };
     let stations = (STATIONS / curves.len()).max(8);
@@ -93,7 +93,7 @@ pub fn is_feasible(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> bool
         .any(|start| curves.iter().try_fold(start, |a, curve| walk(map, curve, b, a, rule, stations).ok()).is_some())
 }
 
-/// The b that reach every single one of evenly spaced points of the curves.
+/// Returns the b that reach every one of `points` evenly spaced points of the curves.
 pub fn common_b(map: &PlaneMap, curves: &[Curve], points: usize) -> BSet {
     let n = points.max(2) - 1;
     let sets: Option<Vec<BSet>> = (0..=n).map(|i| map.reach(at(curves, i as f64 / n as f64)).ok()).collect();

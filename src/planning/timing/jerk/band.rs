@@ -1,23 +1,23 @@
-//! [`Band`]: a matrix that reaches two places beside its diagonal.
+//! [`Band`]: a symmetric pentadiagonal matrix.
 
-/// A symmetric matrix with two bands beside its diagonal, and its factors L D Lᵀ in the same place.
+/// A symmetric pentadiagonal matrix, or its factors L D Lᵀ in the same storage.
 pub(super) struct Band {
-    /// Of each row the diagonal and the two right of it.
+    /// For each row the diagonal entry and the two entries right of it.
     pub rows: Vec<[f64; 3]>,
 }
 
 impl Band {
-    /// Of so many rows, all 0.
+    /// Returns a zero matrix of n rows.
     pub fn new(n: usize) -> Self {
         Self { rows: vec![[0.0; 3]; n] }
     }
 
-    /// All 0.
+    /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.rows.fill([0.0; 3]);
     }
 
-    /// Adds what three neighbouring rows have in common: above and on the diagonal.
+    /// Adds a symmetric 3×3 block at three neighbouring rows, given by its upper triangle row by row.
     pub fn add(&mut self, first: usize, sum: &[f64; 6]) {
         let [a, b, c] = &mut self.rows[first..first + 3] else { return };
         (0..3).for_each(|k| a[k] += sum[k]);
@@ -25,7 +25,7 @@ impl Band {
         c[0] += sum[5];
     }
 
-    /// Into its factors; `None` if it is not positive definite.
+    /// Replaces the matrix by its factors; `None` if it is not positive definite.
     pub fn factor(&mut self) -> Option<()> {
         for i in 0..self.rows.len() {
             let [d, p, q] = self.rows[i];
@@ -45,7 +45,7 @@ impl Band {
         Some(())
     }
 
-    /// The solution in place of the right side, once it is in its factors.
+    /// Solves the factorised equations in place.
     pub fn solve(&self, x: &mut [f64]) {
         let n = x.len();
         for i in 0..n {

@@ -4,24 +4,24 @@ use super::band::Band;
 use super::program::JerkProgram;
 use super::spline::Timing;
 
-/// Steps of the method at most.
+/// Maximum number of steps.
 const MAX_STEPS: usize = 80;
-/// The share of T that the bound and the motion may be apart at its end.
+/// Tolerance of the complementarity gap and of the change of T, as a fraction of T.
 const MAX_GAP_SHARE: f64 = 2e-4;
-/// Shares of the curvature that jerk allows, for the timing to begin with.
+/// Fractions of the curvature that jerk allows, tried for the initial timing.
 const CURVATURE_SHARES: [f64; 3] = [1.0, 0.1, 0.01];
-/// The least share of what room is worth that a step aims for: less, and steps creep along the limits.
+/// Minimum centring parameter: with less, steps become short along the limits.
 const MIN_CENTRING: f64 = 0.1;
-/// How often a step is halved where a limit curves towards it.
+/// Maximum number of halvings of a step that leaves the feasible set because limits are nonlinear.
 const MAX_HALVINGS: usize = 50;
-/// The share of the way to the nearest limit that a step may go.
+/// Maximum fraction of the distance to the nearest limit that a step may use.
 const STEP_SHARE: f64 = 0.99;
 
 impl JerkProgram {
-    /// The fastest timing; `None` if there is none that moves. `bound` is a θ̇² that no motion surpasses at a θ,
-    /// `before` a timing on other nodes to begin from.
+    /// Finds the fastest timing; `None` if no feasible start is found or a step fails. `bound` returns an upper bound
+    /// of θ̇² at a θ; `before` is a timing on other nodes to start from.
     pub fn solve(mut self, bound: impl Fn(f64) -> f64, before: Option<&Timing>) -> Option<Timing> {
-        let count = self.worth.len();
+        let count = self.multiplier.len();
         let mut best: Option<(f64, Vec<f64>)> = None;
         let last = self.nodes.len() - 1;
         let place = |j: usize| 0.5 * (self.nodes[j.saturating_sub(1)] + self.nodes[j.min(last)]);
@@ -36,38 +36,38 @@ impl JerkProgram {
         }
         let mut c = best?.1;
         let many = (2 * self.sides.len() + count) as f64;
-        if !self.measure(&c, 0.0) {
+        if !self.compute_slacks(&c, 0.0) {
             return None;
         }
         let mut time = self.time(&c);
         for side in &mut self.sides {
-            side.worth = side.room.map(|room| time / many / room);
+            side.multiplier = side.slack.map(|slack| time / many / slack);
         }
-        self.worth.iter_mut().zip(&c).for_each(|(worth, c)| *worth = time / many / c);
+        self.multiplier.iter_mut().zip(&c).for_each(|(multiplier, c)| *multiplier = time / many / c);
         let mut gap = self.gap(&c);
         let mut band = Band::new(count);
         let (mut step, mut next) = (vec![0.0; count], c.clone());
         for _ in 0..MAX_STEPS {
             self.assemble(&c, &mut band);
             band.factor()?;
-            // As if no limit were to push back: how far would that go?
-            self.bent.fill(0.0);
-            self.sides.iter_mut().for_each(|side| side.bent = [0.0; 2]);
-            self.push(&c, 0.0, &mut step);
+            // Predictor: step towards zero complementarity.
+            self.correction.fill(0.0);
+            self.sides.iter_mut().for_each(|side| side.correction = [0.0; 2]);
+            self.right_side(&c, 0.0, &mut step);
             band.solve(&mut step);
-            let (primal, dual) = self.reach(&c, &step, 0.0, 1.0);
-            let left = self.left(&c, &step, primal, dual);
-            let centre = (left / gap).powi(3).clamp(MIN_CENTRING, 1.0) * gap / many;
-            self.bend(&c, &step);
-            self.push(&c, centre, &mut step);
+            let (primal, dual) = self.step_lengths(&c, &step, 0.0, 1.0);
+            let predicted = self.predicted_gap(&c, &step, primal, dual);
+            let centre = (predicted / gap).powi(3).clamp(MIN_CENTRING, 1.0) * gap / many;
+            self.set_corrections(&c, &step);
+            self.right_side(&c, centre, &mut step);
             band.solve(&mut step);
-            let (mut primal, dual) = self.reach(&c, &step, centre, STEP_SHARE);
-            self.revalue(&c, &step, centre, dual);
-            // Where a limit curves towards the step, less of it.
+            let (mut primal, dual) = self.step_lengths(&c, &step, centre, STEP_SHARE);
+            self.update_multipliers(&c, &step, centre, dual);
+            // Halve the step while nonlinear limits are violated.
             let mut halved = 0;
             loop {
                 next.iter_mut().zip(c.iter().zip(&step)).for_each(|(next, (c, step))| *next = c + primal * step);
-                if self.measure(&next, 1.0 - STEP_SHARE) {
+                if self.compute_slacks(&next, 1.0 - STEP_SHARE) {
                     break;
                 }
                 halved += 1;
@@ -76,7 +76,7 @@ impl JerkProgram {
                 }
                 primal *= 0.5;
             }
-            self.sides.iter_mut().for_each(|side| side.settle());
+            self.sides.iter_mut().for_each(|side| side.accept());
             c.copy_from_slice(&next);
             let last = time;
             (time, gap) = (self.time(&c), self.gap(&c));

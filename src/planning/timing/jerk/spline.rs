@@ -4,7 +4,7 @@ use super::easing::eased;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::profile::Profile;
 
-/// Points and weights of Gauss over one space, for its time.
+/// Points and weights of Gaussian quadrature over an interval, for its time.
 const GAUSS_TIMES: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
     (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
@@ -12,36 +12,36 @@ const GAUSS_TIMES: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
 ];
 
-/// A timing.
+/// A timing y(θ).
 pub struct Timing {
-    /// θ.
+    /// Nodes θ_i.
     pub nodes: Vec<f64>,
-    /// c_i.
+    /// Coefficients c_i, 1/s³.
     pub(super) c: Vec<f64>,
 }
 
 impl Timing {
-    /// y at both ends of a space, and the coefficient between.
-    fn space(&self, i: usize) -> [f64; 3] {
+    /// Returns y at both ends of interval i, and the coefficient between.
+    fn interval(&self, i: usize) -> [f64; 3] {
         let (c, ends) = (&self.c[i..i + 3], [share(&self.nodes, i), share(&self.nodes, i + 1)]);
         [(1.0 - ends[0]) * c[0] + ends[0] * c[1], c[1], (1.0 - ends[1]) * c[1] + ends[1] * c[2]]
     }
 
-    /// y at a θ.
+    /// Returns y at a θ.
     pub fn at(&self, theta: f64) -> f64 {
         let i = self.nodes.partition_point(|node| *node <= theta).clamp(1, self.nodes.len() - 1) - 1;
         let u = (theta - self.nodes[i]) / (self.nodes[i + 1] - self.nodes[i]);
-        curved(self.space(i), u)
+        curved(self.interval(i), u)
     }
 
-    /// As phases, three for each space.
+    /// Converts the timing to a profile with three phases for each interval.
     pub fn profile(&self) -> Profile {
         let spaces = self.nodes.len() - 1;
         let mut jets = Vec::with_capacity(spaces + 1);
         let mut t = 0.0;
         for i in 0..spaces {
-            let (h, y) = (self.nodes[i + 1] - self.nodes[i], self.space(i));
-            // y′ at the node is twice the slope to the coefficient.
+            let (h, y) = (self.nodes[i + 1] - self.nodes[i], self.interval(i));
+            // y′ at the node is twice the slope to the coefficient between.
             let [s, first, second, _] = eased(self.nodes[i]);
             let rate = y[0].cbrt();
             let turn = 2.0 * (y[1] - y[0]) / (3.0 * h * rate);
@@ -54,14 +54,14 @@ impl Timing {
     }
 }
 
-/// The quadratic with given ends and a coefficient between, at a share u.
+/// Evaluates the quadratic with given ends and a coefficient between, at the fraction u.
 #[inline]
 fn curved(y: [f64; 3], u: f64) -> f64 {
     let v = 1.0 - u;
     y[0] * v * v + 2.0 * y[1] * u * v + y[2] * u * u
 }
 
-/// The share of the later one of the two coefficients that make y at a node.
+/// Returns the weight of the later of the two coefficients that determine y at node i.
 pub(super) fn share(nodes: &[f64], i: usize) -> f64 {
     let before = if i == 0 { 0.0 } else { nodes[i] - nodes[i - 1] };
     let after = nodes.get(i + 1).map_or(0.0, |next| next - nodes[i]);

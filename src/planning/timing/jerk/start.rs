@@ -1,10 +1,10 @@
-//! Where the method begins: a slow timing within all limits.
+//! Initial timing of the method: a slow timing within all limits.
 
 use super::program::{JerkProgram, dot};
 
 impl JerkProgram {
-    /// A timing within all limits, to begin with: below what each place bears by itself, with no more than a curvature
-    /// that jerk allows, of which a share is taken.
+    /// Returns an initial timing: below the maximum that each point permits by itself, with at most `share` of the
+    /// curvature that jerk allows. Returns `None` if there is none.
     pub(super) fn start(&self, bound: &impl Fn(f64) -> f64, share: f64) -> Option<Vec<f64>> {
         let mut bend = f64::INFINITY;
         let mut alone = Vec::with_capacity(self.places.len());
@@ -26,11 +26,11 @@ impl JerkProgram {
         if bend.is_nan() || bend <= 0.0 {
             return None;
         }
-        // From below by parabolas that open upwards, then from inside by ones that open downwards: what is left has no
-        // more curvature than they have (Lasry and Lions).
+        // Lower envelope of upward parabolas, then upper envelope of downward ones: the result has at most their
+        // curvature (Lasry–Lions regularisation).
         let bend = share * bend;
         let low = |theta: f64| {
-            alone.iter().map(|(at, most)| most + 0.5 * bend * (theta - at) * (theta - at)).fold(f64::INFINITY, f64::min)
+            alone.iter().map(|(at, max)| max + 0.5 * bend * (theta - at) * (theta - at)).fold(f64::INFINITY, f64::min)
         };
         let lows: Vec<(f64, f64)> = alone.iter().map(|(at, _)| (*at, low(*at))).collect();
         let high = |theta: f64| {
@@ -38,11 +38,11 @@ impl JerkProgram {
         };
         let last = self.nodes.len() - 1;
         let place = |j: usize| 0.5 * (self.nodes[j.saturating_sub(1)] + self.nodes[j.min(last)]);
-        let c: Vec<f64> = (0..self.worth.len()).map(|j| high(place(j))).collect();
+        let c: Vec<f64> = (0..self.multiplier.len()).map(|j| high(place(j))).collect();
         c.iter().all(|c| *c > 0.0 && c.is_finite()).then_some(c)
     }
 
-    /// A timing as slow as it must be to keep well within all limits.
+    /// Scales a timing so that it is well within all limits; `None` if no factor does.
     pub(super) fn within(&self, mut c: Vec<f64>) -> Option<Vec<f64>> {
         let mut factor: f64 = f64::INFINITY;
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
@@ -61,7 +61,7 @@ impl JerkProgram {
         (factor > 0.0 && factor.is_finite()).then_some(c)
     }
 
-    /// T of a timing, s.
+    /// Returns T of a timing, s.
     pub(super) fn time(&self, c: &[f64]) -> f64 {
         self.places.iter().map(|p| p.weight / dot(&p.y, &c[p.first..]).cbrt()).sum()
     }
