@@ -280,7 +280,8 @@ impl<A> Background<A> {
         let is_silent = self.change.as_ref().is_some_and(|(_, shown)| *shown <= SILENT_REPAINTS);
         let running = self.running.iter().filter(|(activity, _)| *activity != Activity::Change || !is_silent);
         let running = running.map(|(activity, work)| (*activity, work.progress()));
-        let queries_under_way = REPORTED_QUERIES.iter().filter_map(|(activity, progress, _)| Some((*activity, progress(&self.queries)?)));
+        let queries_under_way =
+            REPORTED_QUERIES.iter().filter_map(|(activity, progress, _)| Some((*activity, progress(&self.queries)?)));
         let mut all: Vec<(Activity, f64)> = running.chain(queries_under_way).collect();
         all.sort_by_key(|(activity, _)| *activity);
         // Of several with the same activity, the first is kept.

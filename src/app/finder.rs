@@ -172,7 +172,8 @@ pub fn show(
 }
 
 fn line(ui: &mut Ui, p: &Palette, entry: &Entry<'_>, chosen: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT - 1.0), egui::Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT - 1.0), egui::Sense::click());
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
     }

@@ -42,43 +42,46 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = DEFAULT_HEIGHT_PT.min(0.45 * ui.available_height());
     let most = (0.7 * ui.available_height()).max(MIN_HEIGHT_PT);
-    Panel::bottom("given").default_size(height).size_range(MIN_HEIGHT_PT..=most).resizable(true).frame(frame).show(ui, |ui| {
-        ui.horizontal(|ui| {
-            let title = match shown.content() {
-                Some(TableContent::Measurement) => "Measured machine",
-                Some(TableContent::Drives | TableContent::Tip) => "Given motion",
-                None => "Table",
-            };
-            ui.label(RichText::new(title).font(bold(13.5)));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
-                    commands.push(ViewChange::Switch(Switch::Table, false).into());
-                }
-                if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
-                    commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
-                }
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
-                    ui.add(Label::new(words).truncate());
+    Panel::bottom("given").default_size(height).size_range(MIN_HEIGHT_PT..=most).resizable(true).frame(frame).show(
+        ui,
+        |ui| {
+            ui.horizontal(|ui| {
+                let title = match shown.content() {
+                    Some(TableContent::Measurement) => "Measured machine",
+                    Some(TableContent::Drives | TableContent::Tip) => "Given motion",
+                    None => "Table",
+                };
+                ui.label(RichText::new(title).font(bold(13.5)));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
+                        commands.push(ViewChange::Switch(Switch::Table, false).into());
+                    }
+                    if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
+                        commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
+                    }
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
+                        ui.add(Label::new(words).truncate());
+                    });
                 });
             });
-        });
-        ui.add_space(2.0);
-        ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
-            ui.horizontal_top(|ui| {
-                column(ui, "asked", OPTIONS_WIDTH_PT, |ui| asked(ui, &p, &shown, commands));
-                let rest = ui.available_width();
-                match shown.answer {
-                    None => {}
-                    Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
-                    Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
-                        motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+            ui.add_space(2.0);
+            ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
+                ui.horizontal_top(|ui| {
+                    column(ui, "asked", OPTIONS_WIDTH_PT, |ui| asked(ui, &p, &shown, commands));
+                    let rest = ui.available_width();
+                    match shown.answer {
+                        None => {}
+                        Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
+                        Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
+                            motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+                        }
+                        Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
                     }
-                    Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
-                }
+                });
             });
-        });
-    });
+        },
+    );
 }
 
 /// Shows why a table cannot be read.

@@ -35,7 +35,8 @@ pub fn show(
     let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new("HISTORY").font(bold(11.0)).color(colour(p.dim)));
-        let room = MAX_HEIGHT_PT - if branches.is_empty() { 0.0 } else { 30.0 + BRANCH_HEIGHT_PT * branches.len().min(4) as f32 };
+        let room = MAX_HEIGHT_PT
+            - if branches.is_empty() { 0.0 } else { 30.0 + BRANCH_HEIGHT_PT * branches.len().min(4) as f32 };
         ScrollArea::vertical().max_height(room).show(ui, |ui| list(ui, session, &p, commands));
         if !branches.is_empty() {
             ui.add_space(6.0);

@@ -37,7 +37,8 @@ const NEWEST_WEIGHT: f64 = 0.3;
 impl Pace {
     /// Returns the maximum number of steps in a repaint.
     pub fn most_steps(&self) -> f64 {
-        self.step_cost_s.map_or(MAX_STEPS_UNMEASURED, |cost| (STEP_BUDGET_S / cost.max(1e-9)).floor().clamp(1.0, MAX_STEPS))
+        self.step_cost_s
+            .map_or(MAX_STEPS_UNMEASURED, |cost| (STEP_BUDGET_S / cost.max(1e-9)).floor().clamp(1.0, MAX_STEPS))
     }
 
     /// Records one repaint.

@@ -122,8 +122,9 @@ fn drag(
     let (session, view_state) = (shown.session, shown.view_state);
     let extent = extent(session);
     let shift = ui.input(|i| i.modifiers.shift);
-    let is_near =
-        |time: f64, pos: egui::Pos2| (axes.place([time, 0.0])[0] + response.rect.left() - pos.x).abs() <= GRAB_DISTANCE_PT;
+    let is_near = |time: f64, pos: egui::Pos2| {
+        (axes.place([time, 0.0])[0] + response.rect.left() - pos.x).abs() <= GRAB_DISTANCE_PT
+    };
     // If both cursors coincide, the second one is dragged.
     let hold_at = |pos: egui::Pos2| match view_state.mark {
         _ if shift => Hold::Range(time_at(pos)),

@@ -40,7 +40,11 @@ const SCROLL_BAR_WIDTH_PT: f32 = 12.0;
 
 /// Returns the default width of the panel in a window, points.
 fn usual(ui: &Ui, layout: Layout) -> f32 {
-    let (share, widest) = if layout == Layout::Compare { (COMPARE_WIDTH_FRACTION, COMPARE_MAX_WIDTH_PT) } else { (WIDTH_FRACTION, MAX_WIDTH_PT) };
+    let (share, widest) = if layout == Layout::Compare {
+        (COMPARE_WIDTH_FRACTION, COMPARE_MAX_WIDTH_PT)
+    } else {
+        (WIDTH_FRACTION, MAX_WIDTH_PT)
+    };
     (share * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, widest).round()
 }
 
@@ -60,7 +64,8 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
-        let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
+        let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT) * ui.ctx().pixels_per_point())
+            .clamp(16.0, 8192.0) as usize;
         let (lines, is_whole) = prepared::drawn(what, &plots, columns);
         if !is_whole {
             ui.ctx().request_repaint();
