@@ -32,15 +32,15 @@ pub struct Action {
     pub turns: Option<Switch>,
     /// Its command in the present state; `None` inside while it has no effect. Without this function the action turns
     /// its switch.
-    asks: Option<fn(&Session, &ViewState) -> Option<Command>>,
+    command_fn: Option<fn(&Session, &ViewState) -> Option<Command>>,
 }
 
 impl Action {
     /// Returns its command in the present state; `None` while it has no effect.
     pub fn command(&self, session: &Session, view_state: &ViewState) -> Option<Command> {
         let other = |switch| view_state.has(switch, session).then(|| view_state.other(switch));
-        match self.asks {
-            Some(asks) => asks(session, view_state),
+        match self.command_fn {
+            Some(command) => command(session, view_state),
             None => self.turns.and_then(other),
         }
     }
@@ -162,7 +162,7 @@ macro_rules! actions {
         $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
         &[$(Action {
             group: Group::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            turns: actions!(@of Switch $($switch)?), asks: actions!(@given $($asks)?),
+            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@given $($asks)?),
         }),+]
     };
     (@of $kind:ident) => { None };

@@ -71,8 +71,8 @@ impl Quick for Differs {
     }
 }
 
-/// Number of poses on the plane b at a point of the end effector, m, and distance of the point from the boundary of the
-/// workspace, m, positive inside.
+/// Number of poses on the plane b for a point of the end effector, m. Then the distance of the point from the boundary
+/// of the workspace, m, positive inside.
 struct Standing;
 
 impl Quick for Standing {

@@ -1,5 +1,5 @@
-//! The panel at the bottom for an open table: a given motion and the nearest reactionless one, or a measured machine
-//! and the change that balances it.
+//! The panel at the bottom for an open table. For a given motion it shows the nearest reactionless one; for a measured
+//! machine, the change that balances it.
 
 pub(super) mod assess;
 mod measured;
@@ -68,7 +68,7 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
             ui.add_space(2.0);
             ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    column(ui, "asked", OPTIONS_WIDTH_PT, |ui| asked(ui, &p, &shown, commands));
+                    column(ui, "asked", OPTIONS_WIDTH_PT, |ui| options_column(ui, &p, &shown, commands));
                     let rest = ui.available_width();
                     match shown.answer {
                         None => {}
@@ -91,7 +91,7 @@ fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
 }
 
 /// Draws the options for reading and assessing the table.
-fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+fn options_column(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
     let (options, content) = (&shown.given.options, shown.content());
     let choices = [
         (None, "as its columns say"),

@@ -1,5 +1,5 @@
-//! The introduction: the same task along a straight line and reactionless, side by side and in a loop until the user
-//! touches the machine; and three hints, each shown until it has been followed.
+//! The introduction: the same task along a straight line and reactionless, side by side in a loop until the user
+//! touches the machine. Hints follow one after the other, each shown until it has been done.
 
 use std::sync::Arc;
 

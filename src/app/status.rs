@@ -204,10 +204,10 @@ pub fn show(
                     false => many,
                 });
             }
-            let told = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
+            let label = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
             if !remarks.is_empty() {
                 let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
-                told.on_hover_text(long.join("\n"));
+                label.on_hover_text(long.join("\n"));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some((activity, done)) = under_way.filter(|_| !bad_news) {

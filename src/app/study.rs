@@ -1,5 +1,5 @@
-//! The study of tolerances at the bottom: the tolerances, the base moment of many machines, the contribution of each
-//! tolerance to its variance, and the spectrum of the motion.
+//! The study of tolerances at the bottom: tolerances, base moment of many machines, contribution of each tolerance to
+//! its variance, and spectrum of the motion.
 
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
@@ -183,8 +183,8 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
-/// Plots n_B over time minus that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one
-/// standard deviation to first order.
+/// Plots n_B over time minus that of the nominal machine: percentiles 5 to 95 and 25 to 75 over the machines, mean, and
+/// first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);

@@ -88,14 +88,14 @@ const MAX_FRAMES: usize = 4_000;
 struct Step {
     title: &'static str,
     words: &'static str,
-    asks: &'static str,
+    exercise: &'static str,
     /// A button that does the exercise, or most of it.
-    shows: fn(&Session) -> Option<Shows>,
+    button: fn(&Session) -> Option<StepButton>,
     done: fn(&Session, &Seen) -> bool,
 }
 
 /// Text and commands of a button.
-type Shows = (&'static str, Vec<Command>);
+type StepButton = (&'static str, Vec<Command>);
 
 /// Above the first, a moment, N m, or a force, N, is felt; below the second, a moment is treated as zero.
 const FELT_ABOVE: f64 = 0.05;
@@ -122,7 +122,7 @@ fn case(name: &str) -> Vec<Command> {
 }
 
 /// Returns the button that opens the paper's machine, if the present one has no plane to drag on.
-fn paper_machine(session: &Session) -> Option<Shows> {
+fn paper_machine(session: &Session) -> Option<StepButton> {
     let has_planes = session.run().planes().is_some() && session.follows_hands();
     (!has_planes).then(|| ("Take the paper's machine", case("case-3")))
 }
@@ -132,8 +132,8 @@ const STEPS: [Step; 7] = [
         title: "An arm shakes what it stands on",
         words: "To speed up its links it pushes against its base, and twists it. Here it takes its end effector from A to \
                 B along a straight line: the red arc is the moment on the base, n_B.",
-        asks: "Run the straight line to its end.",
-        shows: |_| Some(("Show me", case("case-1"))),
+        exercise: "Run the straight line to its end.",
+        button: |_| Some(("Show me", case("case-1"))),
         done: |session, seen| {
             let straight = session.scenario().task.kind == TaskKind::MinimumNorm && !session.is_led();
             seen.ran && straight && session.frame().peaks.moment > FELT_ABOVE
@@ -143,8 +143,8 @@ const STEPS: [Step; 7] = [
         title: "Balance takes the force away",
         words: "Counterweights keep the centre of mass in B, the cross, in every pose. What does not move needs no force: \
                 f_B = 0. Hang something on the end effector, and the force is there. (Eq. 7)",
-        asks: "Let it hold 0.3 kg, and run it.",
-        shows: |_| {
+        exercise: "Let it hold 0.3 kg, and run it.",
+        button: |_| {
             let commands = [
                 vec![Command::Session(SessionCommand::Seek(0.0))],
                 payload(LOAD_KG),
@@ -162,8 +162,8 @@ const STEPS: [Step; 7] = [
         title: "Balance makes the mass matrix constant",
         words: "Without the load nothing in the equations of motion depends on the pose: the moment on the base is a sum \
                 of the drives' accelerations with constant weights, n_B = −(D₁ q̈₁ + D₂ q̈₂ + D₃ q̈₃). (Eqs. 6, 8)",
-        asks: "Take the load off again.",
-        shows: |session| match session.scenario().plant.payload.mass > 0.0 {
+        exercise: "Take the load off again.",
+        button: |session| match session.scenario().plant.payload.mass > 0.0 {
             true => Some(("Take it off", payload(0.0))),
             false => Some(("Hang 0.3 kg on it", payload(LOAD_KG))),
         },
@@ -173,8 +173,8 @@ const STEPS: [Step; 7] = [
         title: "On a plane the drives cancel out",
         words: "So the drives only have to move together: as long as q₁ + λ₂ q₂ + λ₃ q₃ keeps one value, the pose constant \
                 b, the sum is zero. That is a plane in the space of the three angles. (Eq. 13)",
-        asks: "Run the same task on its plane.",
-        shows: |_| Some(("Show me", case("case-3"))),
+        exercise: "Run the same task on its plane.",
+        button: |_| Some(("Show me", case("case-3"))),
         done: |session, seen| {
             let verdict = Verdict::of(session.scenario(), session.frame());
             seen.ran && verdict.moved && verdict.arm_moment < ZERO_BELOW_N_M && !session.is_led()
@@ -184,8 +184,8 @@ const STEPS: [Step; 7] = [
         title: "The reactionless workspace",
         words: "A plane leaves two free angles: enough to go anywhere inside the amber area. Every path in it is free of \
                 reactions, whichever way it goes. (Eqs. 15, 16)",
-        asks: "Drag the white ring about inside the amber area.",
-        shows: paper_machine,
+        exercise: "Drag the white ring about inside the amber area.",
+        button: paper_machine,
         done: |session, seen| {
             let dragged = |e: &&TimedEdit| matches!(e.edit, Edit::DragTarget { .. });
             let moved = (session.frame().end_effector - seen.tip).norm() >= MIN_DRAG_M;
@@ -198,8 +198,8 @@ const STEPS: [Step; 7] = [
         title: "b only turns it",
         words: "Another plane, another b: the area is the same, turned about the base. What one b leaves out another \
                 one reaches. (Eq. 16)",
-        asks: "Turn b by 0.2 rad: the amber ring at the base, the slider, or keys [ and ].",
-        shows: paper_machine,
+        exercise: "Turn b by 0.2 rad: the amber ring at the base, the slider, or keys [ and ].",
+        button: paper_machine,
         done: |session, seen| {
             let turned = |e: &TimedEdit| matches!(e.edit, Edit::SlideB { .. } | Edit::PoseB { .. });
             (session.b_aim() - seen.b).abs() >= MIN_B_CHANGE_PAUSED_RAD && seen.newest(session).any(turned)
@@ -209,8 +209,8 @@ const STEPS: [Step; 7] = [
         title: "What it costs to change planes",
         words: "To go from one plane to another the arm must turn as a whole, and the base feels it: the faster, the more. \
                 n_B = −D₁ b̈.",
-        asks: "Turn b while time runs.",
-        shows: |_| Some(("Start time", case("case-3"))),
+        exercise: "Turn b while time runs.",
+        button: |_| Some(("Start time", case("case-3"))),
         done: |session, seen| {
             let slid = |e: &&TimedEdit| matches!(e.edit, Edit::SlideB { .. });
             (session.b_aim() - seen.b).abs() > MIN_B_CHANGE_RUNNING_RAD

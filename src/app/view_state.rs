@@ -164,7 +164,7 @@ impl ViewState {
 }
 
 /// Returns the edit for a new b, rad. While time runs, the machine moves to it. Paused, the machine is put on the plane
-/// b, or on the nearest plane feasible for the points of the task unless these may rotate with it.
+/// b. If the points of the task may not rotate with the plane, it is put on the nearest plane feasible for them.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::query::{Work, Workers};
 
-/// Worker threads that start no work while the window is drawn: new work on the same processor could delay the drawing
+/// Worker threads that start no work while the window is drawn. New work on the same processor could delay the drawing
 /// by a time slice of the operating system.
 pub(super) struct Waiting {
     workers: Box<dyn Workers + Send + Sync>,

@@ -170,7 +170,7 @@ impl Row<'_> {
 
     fn stopped_slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool, stops: impl Fn(f64) -> f64) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
-        // The height of the number field follows that of the row.
+        // The slider's size follows from the row height.
         ui.spacing_mut().interact_size.y = 15.0;
         let before = *value;
         let turned = |requested: Option<f64>| {

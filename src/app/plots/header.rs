@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, comman
 /// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor.
 fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, fewer: usize) -> String {
     let (signal, thousandths) = (curve.signal, curve.times != 1.0);
-    // Two digits suffice for values in thousandths, and the plot names their body.
+    // Values in thousandths get two decimals; their index B is omitted, since the plot names it.
     let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();

@@ -1,4 +1,4 @@
-//! The section *Plant* of the panel on the left, the differences of the simulated machine from the model: payload,
+//! The section *Plant* of the panel on the left: differences of the simulated machine from the model, namely payload,
 //! friction, torque limits, links, lengths, a force.
 
 use egui::Ui;

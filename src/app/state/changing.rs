@@ -37,8 +37,8 @@ impl AppState {
         }
     }
 
-    /// Stores the message for a change that has left a branch. The tuple describes the state before the change: the
-    /// number of branches left so far, the time on display, s, and whether the machine was dragged.
+    /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
+    /// branches left so far, the time on display, s, and whether the machine was dragged.
     pub(super) fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
         let (now, gone) = self.session.partings();
         if !matches!(change, Change::Edit(_)) || now == partings {

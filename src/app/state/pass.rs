@@ -13,7 +13,7 @@ use crate::picture::scene::views::ViewKind;
 const PROGRESS_INTERVAL_S: f32 = 0.1;
 
 impl AppState {
-    /// Returns a guard that lives while the window is drawn: background work that nobody waits for starts after it is
+    /// Returns a guard that lives while the window is drawn. Background work that nobody waits for starts after it is
     /// dropped, so that it does not delay the drawing.
     #[must_use]
     pub fn drawing(&self) -> Drawing {

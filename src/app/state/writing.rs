@@ -115,10 +115,10 @@ impl AppState {
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
                 let options = crate::recording::Options { pictures: None, force };
-                let mut told = |progress: crate::recording::Progress| {
+                let mut report = |progress: crate::recording::Progress| {
                     ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64)
                 };
-                let done = crate::recording::record(&[scenario], path, &options, &mut told);
+                let done = crate::recording::record(&[scenario], path, &options, &mut report);
                 let done = done.map_err(|e| e.to_string())?;
                 let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
                 Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))

@@ -133,7 +133,7 @@ pub(super) struct Told {
 /// Query for the measure of each machine, one machine per portion.
 struct MeasureQuery {
     of: <Self as Query>::Input,
-    told: Vec<Option<f64>>,
+    values: Vec<Option<f64>>,
 }
 
 impl Query for MeasureQuery {
@@ -142,18 +142,18 @@ impl Query for MeasureQuery {
     type Answer = Told;
 
     fn begin(of: Self::Input) -> Self {
-        Self { of, told: Vec::new() }
+        Self { of, values: Vec::new() }
     }
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
         let (front, by, motion) = &self.of;
         let points = front.0.as_deref().unwrap_or_default();
-        match points.get(self.told.len()) {
+        match points.get(self.values.len()) {
             Some(point) => {
-                self.told.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
-                Portion::More(self.told.len() as f64 / points.len() as f64)
+                self.values.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
+                Portion::More(self.values.len() as f64 / points.len() as f64)
             }
-            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.told) }),
+            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.values) }),
         }
     }
 }
@@ -190,7 +190,7 @@ impl Term {
 }
 
 /// Contributions below this fraction of the largest are treated as zero.
-const ZERO_BELOW: f64 = 1e-9;
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Facts {
     /// Queries the values of the machine on display, with its Pareto front and those of other machines.
@@ -202,7 +202,7 @@ impl Facts {
             queries.ask_beside::<Fronts>(&request)
         });
         let Some(bare) = &facts.sums.bare else { return facts };
-        let front = queries.ask_beside::<FrontSearch>(&asked(bare, &session.scenario().design));
+        let front = queries.ask_beside::<FrontSearch>(&front_request(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
         // A run that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
@@ -298,7 +298,7 @@ impl Facts {
 /// Returns a machine of the Pareto front for the present machine and brief, by its index.
 pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
     let sums = queries.ask::<Whole<Sums>>(&session.scenario().machine);
-    let front = queries.ask::<FrontSearch>(&asked(sums.bare.as_ref()?, &session.scenario().design));
+    let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &session.scenario().design));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
@@ -310,7 +310,7 @@ pub fn leave(queries: &Queries) {
 }
 
 /// Returns the request for a Pareto front.
-fn asked(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
+fn front_request(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
     (bare.clone(), brief.weighing(bare), FRONT_POINTS)
 }
 
@@ -320,7 +320,7 @@ fn terms(machine: &Machine) -> Vec<Term> {
         let links = (0..machine.links().len()).map(|link| (link, breakdown.of_link(term, link).re));
         let mut parts: Vec<(usize, f64)> = links.collect();
         let most = parts.iter().fold(0.0_f64, |most, (_, part)| most.max(part.abs()));
-        parts.retain(|(_, part)| part.abs() > ZERO_BELOW * most);
+        parts.retain(|(_, part)| part.abs() > ROUNDING_TOLERANCE * most);
         parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let (symbol, meaning, unit) = match term.condition {
             Condition::Force(k) => (format!("g{}", subscript(k + 1)), "no force", "kg m"),
@@ -334,7 +334,7 @@ fn terms(machine: &Machine) -> Vec<Term> {
     for unit in ["kg m", "kg m²"] {
         let alike = || terms.iter().filter(|term| term.unit == unit);
         let most = alike().map(Term::greatest).fold(0.0, f64::max);
-        for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < ZERO_BELOW * most) {
+        for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < ROUNDING_TOLERANCE * most) {
             term.parts.clear();
         }
     }

@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     }
     let [mass, inertia] = facts.now();
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
-    // Counterweights in use are shown among the others, if they are near.
+    // Counterweights in use are shown among the others.
     let shown = mass > MIN_ADDED_MASS_KG;
     let everything: Vec<[f64; 2]> = all.iter().copied().chain(beside::places(facts)).collect();
     let of = |i: usize| everything.iter().map(move |at| at[i]);
@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     let told = facts.told.as_ref().and_then(|told| ColourScale::of(told.by, &told.values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| by(ui, view_state, commands));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| measure_choice(ui, view_state, commands));
     });
     small_axes(ui);
     let response = base_plot("front", p, PLOT_HEIGHT_PT)
@@ -121,7 +121,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
-    say(ui, points, (near, told.as_ref()), view_state, facts, commands);
+    summary(ui, points, (near, told.as_ref()), view_state, facts, commands);
     beside::list(ui, facts, p, commands);
 }
 
@@ -190,7 +190,7 @@ fn tone(p: &Palette, share: f32) -> Rgba {
 }
 
 /// Draws the choice of the measure shown by colour.
-fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let mut by = view_state.front_by;
     let words = |by: Option<FrontMeasure>| by.map_or("nothing more", |by| by.words()[0]);
     let list = egui::ComboBox::from_id_salt("front-by").selected_text(words(by)).width(150.0).show_ui(ui, |ui| {
@@ -206,7 +206,7 @@ fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
 }
 
 /// Draws the values of the machine under the pointer, or on display, and the buttons for ends and middle of the front.
-fn say(
+fn summary(
     ui: &mut Ui,
     points: &[Point],
     (near, told): (Option<usize>, Option<&ColourScale<'_>>),

@@ -55,7 +55,7 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(2);
 const COPY_SHARE: u32 = 50;
 
 impl Keeper {
-    /// Starts with preferences and session as they are stored.
+    /// Creates the keeper; preferences and session count as stored.
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
         let held = (app_state.changes().0, app_state.left_off());

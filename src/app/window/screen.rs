@@ -193,7 +193,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // egui warns of texture changes that were not applied; here they are dropped deliberately.
+        // egui asserts that no texture changes are dropped; here it is intended.
         self.textures.clear();
     }
 }

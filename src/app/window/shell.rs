@@ -209,7 +209,7 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
-            // Presenting waits for the screen: held back work starts before.
+            // Presenting may wait for the screen: the work held back starts before.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, (&shapes, pixels_per_point), behind) == Outcome::Again {
