@@ -1,5 +1,5 @@
-//! Everything that can be asked for by name: its keys, where it lives in the window, and when it can be done. The
-//! keyboard, the list of commands and the card of keys are made from this table.
+//! The table of actions: name, keys, place in the window, and command. The keyboard, the list of commands and the card
+//! of keys are made from this table.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
@@ -16,48 +16,48 @@ use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
 use crate::simulation::signals::signals;
 
-/// One thing that can be asked for.
+/// A command with a name.
 pub struct Action {
-    /// What it is about.
+    /// Its group.
     pub group: Group,
-    /// What it does.
+    /// Its name in lists.
     pub name: &'static str,
-    /// Other words that it is sought by.
+    /// Further search words.
     pub also: &'static str,
-    /// The keys that ask for it; the first is shown.
+    /// Its keys; the first is shown.
     pub keys: &'static [KeyboardShortcut],
-    /// Where it is found in the window.
+    /// Its place in the window.
     pub place: &'static str,
-    /// What it turns on and off, if it does.
+    /// The switch that it turns, if any.
     pub turns: Option<Switch>,
-    /// What it asks for as things are, where that is not the other state of its switch; `None` while there is nothing to
-    /// do.
-    asks: Option<fn(&Session, &ViewState) -> Option<Command>>,
+    /// Its command in the present state; `None` inside while it has no effect. Without this function the action turns
+    /// its switch.
+    command_fn: Option<fn(&Session, &ViewState) -> Option<Command>>,
 }
 
 impl Action {
-    /// What it asks for as things are; `None` while there is nothing to do.
+    /// Returns its command in the present state; `None` while it has no effect.
     pub fn command(&self, session: &Session, view_state: &ViewState) -> Option<Command> {
         let other = |switch| view_state.has(switch, session).then(|| view_state.other(switch));
-        match self.asks {
-            Some(asks) => asks(session, view_state),
+        match self.command_fn {
+            Some(command) => command(session, view_state),
             None => self.turns.and_then(other),
         }
     }
 }
 
-/// What actions are about, in the order in which they are listed.
+/// Groups of actions, in the order in which they are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Time.
     Run,
-    /// The machine and what it is to do.
+    /// The machine and its task.
     Task,
-    /// How it is shown.
+    /// The display.
     View,
-    /// What is found out about it.
+    /// Analyses.
     Analysis,
-    /// Files and what was done.
+    /// Files and history.
     File,
 }
 
@@ -65,7 +65,7 @@ impl Group {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Run, Self::Task, Self::View, Self::Analysis, Self::File];
 
-    /// As a heading.
+    /// Returns the heading.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Run => "Run",
@@ -84,18 +84,20 @@ const fn on(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
 const PLAIN: Modifiers = Modifiers::NONE;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const CTRL: Modifiers = Modifiers::COMMAND;
-const FINE: Modifiers = Modifiers::COMMAND.plus(SHIFT);
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(SHIFT);
 const ALT: Modifiers = Modifiers::ALT;
 
-/// By how far a key moves the target, m, and with Shift.
-const NUDGE: [f64; 2] = [0.01, 0.001];
-/// By how much a key turns b, rad, and with Shift.
-const TURN: [f64; 2] = [0.01, 0.001];
-/// By how much a key turns the view, rad, and how many times it magnifies.
-const ORBIT: f64 = 0.1;
-const ZOOM: f64 = 1.15;
+/// Displacement of the target by one key press, m; the second with Shift.
+const TARGET_STEP_M: f64 = 0.01;
+const FINE_TARGET_STEP_M: f64 = 0.001;
+/// Change of b by one key press, rad; the second with Shift.
+const B_STEP_RAD: f64 = 0.01;
+const FINE_B_STEP_RAD: f64 = 0.001;
+/// Rotation of the view by one key press, rad (in 2D a displacement, in heights of the view), and zoom factor.
+const VIEW_TURN_RAD: f64 = 0.1;
+const ZOOM_FACTOR: f64 = 1.15;
 
-/// The target moved from where it is wanted, m.
+/// Moves the target by a displacement, m.
 fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
     session.run().pose_space().ok()?;
     let now = session.frame().target.at;
@@ -115,19 +117,19 @@ fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
     Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
 }
 
-/// The machine and the task as they stand, with nothing done to them.
+/// Opens the present machine and task as a new session without edits.
 fn new_session(session: &Session) -> Option<Command> {
     Some(Command::Session(SessionCommand::Open(Box::new(session.scenario().without_edits()))))
 }
 
-/// The plot that stands first, in a file.
+/// Opens the dialog that saves the first plot to a file.
 fn plot_file(session: &Session, view_state: &ViewState, file: PlotFile) -> Option<Command> {
     let signals = signals(&session.scenario().machine);
     let plots = view_state.charts.plots(session.scenario(), &signals, view_state.pins);
     dialog(session, Purpose::Plot(plots.first()?.name.clone(), file))
 }
 
-/// The time that plots show, so many times as close about the instant on display; all of it without a number.
+/// Zooms the time range of the plots about the instant on display by a factor; without a factor, shows the whole run.
 fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Option<Command> {
     let (extent, chosen) = (super::plots::extent(session), view_state.charts.range);
     let range = match factor {
@@ -137,20 +139,20 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
     Some(Command::View(ViewChange::Charts(Change::Range(range))))
 }
 
-/// The next view that the machine has.
+/// Shows the next view that the machine has.
 fn next_view(session: &Session, view_state: &ViewState) -> Option<Command> {
     let next = view_state.view.next();
     let has = Views::has(next, session.run()).is_ok();
     Some(Command::View(ViewChange::Kind(if has { next } else { ViewKind::Flat })))
 }
 
-/// A view of joint space or of all workspaces, if the machine has one.
+/// Shows the joint space or the tower of workspaces, if the machine has them.
 fn view_of_planes(session: &Session, view_state: &ViewState, kind: ViewKind) -> Option<Command> {
     Views::has(kind, session.run()).ok()?;
     view(view_state, kind)
 }
 
-/// What only a view of the machine has.
+/// Returns the command if the present view shows the machine.
 fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
     view_state.view.shows_machine().then_some(command)
 }
@@ -160,7 +162,7 @@ macro_rules! actions {
         $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
         &[$(Action {
             group: Group::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            turns: actions!(@of Switch $($switch)?), asks: actions!(@given $($asks)?),
+            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@given $($asks)?),
         }),+]
     };
     (@of $kind:ident) => { None };
@@ -207,20 +209,20 @@ pub const ACTIONS: &[Action] = actions![
         s.is_led().then_some(Command::Session(SessionCommand::BackToPath))
     };
     Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
-        nudge(s, [NUDGE[0], 0.0])
+        nudge(s, [TARGET_STEP_M, 0.0])
     };
     Task, "Target to the left by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowLeft)], "scene", |s, _| {
-        nudge(s, [-NUDGE[0], 0.0])
+        nudge(s, [-TARGET_STEP_M, 0.0])
     };
-    Task, "Target up by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowUp)], "scene", |s, _| nudge(s, [0.0, NUDGE[0]]);
+    Task, "Target up by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowUp)], "scene", |s, _| nudge(s, [0.0, TARGET_STEP_M]);
     Task, "Target down by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
-        nudge(s, [0.0, -NUDGE[0]])
+        nudge(s, [0.0, -TARGET_STEP_M])
     };
     Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
-        turn(s, v, TURN[0])
+        turn(s, v, B_STEP_RAD)
     };
     Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
-        turn(s, v, -TURN[0])
+        turn(s, v, -B_STEP_RAD)
     };
     Task, "Turn the task along with b", [], "left panel" turns TurnTask;
     Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar" turns Drawing;
@@ -239,18 +241,18 @@ pub const ACTIONS: &[Action] = actions![
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
     View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
-        Some(Command::View(ViewChange::Look(Look::Zoom(ZOOM))))
+        Some(Command::View(ViewChange::Look(Look::Zoom(ZOOM_FACTOR))))
     };
-    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(Look::Zoom(1.0 / ZOOM))));
+    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(Look::Zoom(1.0 / ZOOM_FACTOR))));
     View, "Plots closer to the instant shown", [on(ALT, Key::Plus), on(ALT, Key::Equals)], "plots, Ctrl wheel", |s, v| {
         charts(s, v, Some(1.5))
     };
     View, "Plots from farther away", [on(ALT, Key::Minus)], "plots, Ctrl wheel", |s, v| charts(s, v, Some(1.0 / 1.5));
     View, "Plots show all time", [on(ALT, Key::Num0)], "plots, double click", |s, v| charts(s, v, None);
-    View, "Turn or pan the view left", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-ORBIT, 0.0);
-    View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
-    View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
-    View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -ORBIT);
+    View, "Turn or pan the view left", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-VIEW_TURN_RAD, 0.0);
+    View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(VIEW_TURN_RAD, 0.0);
+    View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, VIEW_TURN_RAD);
+    View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -VIEW_TURN_RAD);
     View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour", [on(PLAIN, Key::J)], "tool bar" turns Dexterity,
         |_, v| of_machine(v, Command::View(ViewChange::Dexterity(Measure::after(v.dexterity))));
     View, "Snapshots along the motion" = "ghost poses strobe", [on(PLAIN, Key::S)], "tool bar" turns Snapshots;
@@ -288,7 +290,7 @@ pub const ACTIONS: &[Action] = actions![
     };
 
     File, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
-    File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
+    File, "Redo", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
     File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, scenario", |s, _| new_session(s);
@@ -308,17 +310,17 @@ pub const ACTIONS: &[Action] = actions![
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 
-/// The same keys with Shift move by less.
+/// The actions of keys with Shift, which move target and b by the finer steps.
 pub const FINE_ACTIONS: &[Action] = actions![
-    Task, "", [on(FINE, Key::ArrowRight)], "", |s, _| nudge(s, [NUDGE[1], 0.0]);
-    Task, "", [on(FINE, Key::ArrowLeft)], "", |s, _| nudge(s, [-NUDGE[1], 0.0]);
-    Task, "", [on(FINE, Key::ArrowUp)], "", |s, _| nudge(s, [0.0, NUDGE[1]]);
-    Task, "", [on(FINE, Key::ArrowDown)], "", |s, _| nudge(s, [0.0, -NUDGE[1]]);
-    Task, "", [on(SHIFT, Key::CloseBracket), on(SHIFT, Key::CloseCurlyBracket)], "", |s, v| turn(s, v, TURN[1]);
-    Task, "", [on(SHIFT, Key::OpenBracket), on(SHIFT, Key::OpenCurlyBracket)], "", |s, v| turn(s, v, -TURN[1]);
+    Task, "", [on(CTRL_SHIFT, Key::ArrowRight)], "", |s, _| nudge(s, [FINE_TARGET_STEP_M, 0.0]);
+    Task, "", [on(CTRL_SHIFT, Key::ArrowLeft)], "", |s, _| nudge(s, [-FINE_TARGET_STEP_M, 0.0]);
+    Task, "", [on(CTRL_SHIFT, Key::ArrowUp)], "", |s, _| nudge(s, [0.0, FINE_TARGET_STEP_M]);
+    Task, "", [on(CTRL_SHIFT, Key::ArrowDown)], "", |s, _| nudge(s, [0.0, -FINE_TARGET_STEP_M]);
+    Task, "", [on(SHIFT, Key::CloseBracket), on(SHIFT, Key::CloseCurlyBracket)], "", |s, v| turn(s, v, FINE_B_STEP_RAD);
+    Task, "", [on(SHIFT, Key::OpenBracket), on(SHIFT, Key::OpenCurlyBracket)], "", |s, v| turn(s, v, -FINE_B_STEP_RAD);
 ];
 
-/// What the pointer does.
+/// Gestures of the pointer, and their effects.
 pub const GESTURES: [(&str, &str); 22] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
@@ -352,7 +354,7 @@ fn look(right: f64, up: f64) -> Option<Command> {
     Some(Command::View(ViewChange::Look(Look::Turn([right, up]))))
 }
 
-/// The speeds that a run is played at.
+/// The selectable playback rates, simulated seconds per second.
 pub const SPEEDS: [f64; 6] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0];
 
 fn slower(view_state: &ViewState) -> Option<Command> {
@@ -363,17 +365,17 @@ fn faster(view_state: &ViewState) -> Option<Command> {
     SPEEDS.into_iter().find(|speed| *speed > view_state.speed).map(|it| Command::View(ViewChange::Speed(it)))
 }
 
-/// The first key of the action of a name, if it has one.
+/// Returns the first key of the action of this name, if it has one.
 pub fn key_of(action: &str) -> Option<String> {
     ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shown)
 }
 
-/// The first key of the action that turns this on and off, if it has one.
+/// Returns the first key of the action that turns this switch, if it has one.
 pub fn key_of_switch(switch: Switch) -> Option<String> {
     ACTIONS.iter().find(|known| known.turns == Some(switch))?.keys.first().map(shown)
 }
 
-/// A key as it stands on the keyboard.
+/// Returns the text of a key, as on the keyboard.
 pub fn shown(key: &KeyboardShortcut) -> String {
     let m = key.modifiers;
     let held = [(m.command || m.ctrl, "Ctrl "), (m.alt, "Alt "), (m.shift, "Shift ")];

@@ -1,33 +1,34 @@
-//! [`Activity`]: what can be under way beside the window, and what is said of it.
+//! [`Activity`]: the kinds of background work, and their messages.
 
-/// What can be under way beside the window, what matters most first.
+/// A kind of background work; the most important comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Activity {
     /// A change of the session.
     Change,
-    /// A session is opened.
+    /// Opening a session or table.
     Opening,
-    /// The session is saved.
+    /// Saving a file.
     Saving,
-    /// A recording is written.
+    /// Writing a recording.
     Recording,
-    /// What a table says is found.
+    /// Assessing a table.
     Table,
-    /// Machines of a study of tolerances are drawn.
+    /// Sampling machines for a study of tolerances.
     Study,
-    /// The ways of the task run side by side.
+    /// Running the task in its different ways.
     Ways,
-    /// A run that is kept beside them.
+    /// Running one more scenario for the table of runs.
     Kept,
-    /// Lengths are sought.
+    /// Searching for lengths.
     Seeking,
-    /// Fronts of other machines are found.
+    /// Computing the Pareto fronts of other machines.
     Fronts,
 }
 
 impl Activity {
-    /// What it does, for the line at the bottom, and what is said when it has been cancelled; none if it cannot be.
-    fn said(self) -> (&'static str, Option<&'static str>) {
+    /// Returns the text for the status line, and the message after cancelling; the second is `None` if the work cannot
+    /// be cancelled.
+    fn texts(self) -> (&'static str, Option<&'static str>) {
         match self {
             Self::Change => ("making the run again", Some("cancelled: nothing has changed")),
             Self::Opening => ("opening", Some("cancelled: nothing was opened")),
@@ -42,18 +43,18 @@ impl Activity {
         }
     }
 
-    /// What it does, for the line at the bottom.
+    /// Returns the text for the status line.
     pub fn words(self) -> &'static str {
-        self.said().0
+        self.texts().0
     }
 
-    /// Whether it stops when it is told to.
+    /// Whether it can be cancelled.
     pub(super) fn can_stop(self) -> bool {
-        self.said().1.is_some()
+        self.texts().1.is_some()
     }
 
-    /// What to say when it has been cancelled.
+    /// Returns the message after cancelling.
     pub(super) fn cancelled(self) -> &'static str {
-        self.said().1.unwrap_or_default()
+        self.texts().1.unwrap_or_default()
     }
 }

@@ -7,7 +7,7 @@ use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour};
 use super::{Command, Layout, Switch, ViewChange, ViewState};
 
-/// Draws its button, and itself while it is open.
+/// Draws the button of the menu, and the menu while it is open.
 pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let tip = "layout\nWhat the window is for: explore, compare, present; and its panels";
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         };
         heading(ui, "LAYOUT");
         for layout in Layout::ALL {
-            // As the table of actions calls it.
+            // The name of its action.
             let action = format!("{}: {}", layout.name(), layout.words());
             let what = (layout.name(), key_of(&action), layout.words());
             line(ui, what, view_state.arrangement.layout == layout, Command::View(ViewChange::Layout(layout)));

@@ -1,4 +1,4 @@
-//! [`Background`]: what is under way beside the window.
+//! [`Background`]: work in the background.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -16,22 +16,22 @@ use crate::study::fronts::Fronts;
 use crate::study::lengths::Seeking;
 use crate::study::tolerance::Studying;
 
-/// Work that changes what is on display once it has ended.
+/// Work whose result changes the display.
 trait Pending<A> {
-    /// How much of it is done, from 0 to 1.
+    /// Returns the fraction that is done, from 0 to 1.
     fn progress(&self) -> f64;
 
     /// Whether it has ended.
     fn has_ended(&mut self) -> bool;
 
-    /// Waits until it has.
+    /// Waits until it has ended.
     fn wait(&mut self);
 
-    /// Does what is to be done then.
+    /// Runs the follow-up with the result.
     fn finish(self: Box<Self>, app_state: &mut A);
 }
 
-/// A job, what it has come to, and what is to be done then. Nothing comes of a job that broke off.
+/// A job, its result, and the follow-up. A job that panicked has no result.
 struct Running<T, F> {
     job: Option<Job<T>>,
     result: Option<T>,
@@ -62,60 +62,60 @@ impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<
     }
 }
 
-/// What to do with a session that has been opened.
+/// What to do after a session has been opened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Opening {
-    /// Whether time passes at once.
+    /// Whether the run plays at once.
     pub plays: bool,
-    /// Whether the dialog closes that asked for it.
+    /// Whether the file dialog closes.
     pub closes: bool,
-    /// What to say then.
+    /// The message.
     pub news: Option<String>,
-    /// Where it comes from.
+    /// The file of the session.
     pub file: Option<File>,
-    /// What is opened where this cannot be, and what to say then.
+    /// The scenario to open instead if this one cannot be opened, and its message.
     pub instead: Option<Box<(Scenario, String)>>,
 }
 
-/// A file that a session comes from.
+/// The file of a session.
 #[derive(Clone, Debug)]
 pub(super) enum File {
-    /// One that the person named.
+    /// A file chosen by the user.
     Own(PathBuf),
-    /// One that the program left behind.
+    /// A journal left by an earlier program run.
     LeftBehind(PathBuf),
 }
 
-/// A session with a change made, or why it was not.
+/// The changed session, and the message or the reason of a refusal.
 pub(super) type Changed = (Session, Result<Option<String>, Refusal>);
 
-/// Frames that take some milliseconds to free.
-const LONG: usize = 20_000;
+/// Sessions with more frames are freed in the background: that takes milliseconds.
+const MAX_FRAMES_FREED_AT_ONCE: usize = 20_000;
 
-/// Repaints for which a change is not spoken of: most are made by then.
-const UNSPOKEN: u32 = 6;
+/// Number of repaints before a change is reported in the status line: most are finished earlier.
+const SILENT_REPAINTS: u32 = 6;
 
-/// What is under way, who does it, and what it changes in `A` once it has ended.
+/// Work in the background, its worker threads, and the follow-up, which changes `A`.
 pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
-    /// Where work waits until the window is drawn; none if it is done at once.
+    /// Queue in which work waits until the window is drawn; `None` if work is done at once.
     waiting: Option<Arc<Waiting>>,
-    /// What is derived of the session.
+    /// Queries about the session.
     pub queries: Queries,
-    /// Woken when a job has ended.
+    /// Repainted when a job has ended.
     ctx: Option<egui::Context>,
-    /// Work that changes what is on display, in the order in which it began.
+    /// Work whose result changes the display, in the order of its start.
     running: Vec<(Activity, Box<dyn Pending<A>>)>,
-    /// The change of the session that is being made, and for how many repaints.
+    /// The change of the session under way, and the number of repaints since its start.
     pub change: Option<(Change, u32)>,
-    /// What is to be done after that.
+    /// Commands that wait for its end.
     pub later: VecDeque<SessionCommand>,
 }
 
-/// What queries are spoken of: their activity, how far they are, and what stops them.
-type Told = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
+/// A query that the status line reports: its activity, its progress, and the function that stops it.
+type ReportedQuery = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
 
-const TOLD: [Told; 5] = [
+const REPORTED_QUERIES: [ReportedQuery; 5] = [
     (Activity::Table, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
     (Activity::Study, Queries::progress::<Studying>, Queries::stop::<Studying>),
     (Activity::Seeking, Queries::progress::<Seeking>, Queries::stop::<Seeking>),
@@ -138,7 +138,7 @@ impl<A> Default for Background<A> {
 }
 
 impl<A> Background<A> {
-    /// Has everything done by somebody from now on.
+    /// Sets the worker threads.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
         let waiting = Arc::new(Waiting::new(workers));
         self.workers = waiting.clone();
@@ -146,12 +146,12 @@ impl<A> Background<A> {
         self.queries.hire(self.workers.clone());
     }
 
-    /// The window is drawn from now on.
+    /// Returns a guard that holds new work back while the window is drawn.
     pub fn drawing(&self) -> Drawing {
         Drawing::begin(self.waiting.as_ref())
     }
 
-    /// Repaints this whenever a job has ended.
+    /// Sets the context that is repainted when a job has ended.
     pub fn wakes(&mut self, ctx: &egui::Context) {
         if self.ctx.is_none() {
             self.ctx = Some(ctx.clone());
@@ -160,7 +160,7 @@ impl<A> Background<A> {
         }
     }
 
-    /// Starts work beside the window that nobody waits for.
+    /// Starts work in the background that nobody waits for.
     fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
         self.start_by(&*self.workers, work)
     }
@@ -179,7 +179,7 @@ impl<A> Background<A> {
         Job::start(workers, wake, work)
     }
 
-    /// Does work beside the window, and something with what it has come to.
+    /// Runs work in the background, and then `then` with its result, or with `None` if it panicked.
     pub fn run<T: Send + 'static>(
         &mut self,
         activity: Activity,
@@ -187,15 +187,15 @@ impl<A> Background<A> {
         then: impl FnOnce(&mut A, Option<T>) + 'static,
     ) {
         let job = match activity {
-            // Most are made by the next repaint.
+            // Most changes are finished by the next repaint.
             Activity::Change => self.start_by(&Short(&*self.workers), work),
             _ => self.start_by(&*self.workers, work),
         };
         self.running.push((activity, Box::new(Running { job: Some(job), result: None, then })));
     }
 
-    /// The first work that has ended and whose turn it is, taken out: what is done to the session comes before another
-    /// session is opened, and of one activity the first ends first.
+    /// Takes out the follow-up of the first finished work whose turn it is. Changes of the session come before a
+    /// session is opened, and work of one activity ends in the order of its start.
     pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
         let is_changing = self.is_changing();
         let (mut place, mut before) = (None, Vec::new());
@@ -211,15 +211,15 @@ impl<A> Background<A> {
         Some(|app_state: &mut A| work.finish(app_state))
     }
 
-    /// Whether such work is under way.
+    /// Whether work of this activity is under way.
     pub fn runs(&self, activity: Activity) -> bool {
         self.running.iter().any(|(own, _)| *own == activity)
     }
 
-    /// Stops it.
+    /// Stops the work of this activity.
     pub fn stop(&mut self, activity: Activity) {
         self.running.retain(|(own, _)| *own != activity);
-        if let Some((_, _, stop)) = TOLD.iter().find(|(own, ..)| *own == activity) {
+        if let Some((_, _, stop)) = REPORTED_QUERIES.iter().find(|(own, ..)| *own == activity) {
             stop(&self.queries);
         }
         if activity == Activity::Change {
@@ -228,7 +228,7 @@ impl<A> Background<A> {
         }
     }
 
-    /// Waits for the end of such work; nothing is done then.
+    /// Waits for the end of the work of this activity, without its follow-up.
     pub fn wait_for(&mut self, activity: Activity) {
         if let Some(waiting) = &self.waiting {
             waiting.open();
@@ -236,21 +236,21 @@ impl<A> Background<A> {
         self.running.iter_mut().filter(|(own, _)| *own == activity).for_each(|(_, work)| work.wait());
     }
 
-    /// Lets go of a session in whose place there is another; of a long one that shares nothing where nobody waits for it.
+    /// Frees a replaced session. A long one that shares no frames with the present one is freed in the background.
     pub fn let_go(&self, old: Session, now: &Session) {
         let shares = now.frames().revision().kept_of(&old.frames().revision().mark()) > 0;
-        if old.frames().len() > LONG && !shares {
+        if old.frames().len() > MAX_FRAMES_FREED_AT_ONCE && !shares {
             drop(self.start(move |_| drop(old)));
         }
     }
 
-    /// Whether the session is being changed: what is done to it has to wait.
+    /// Whether the session is being changed, so that session commands have to wait.
     pub fn is_changing(&self) -> bool {
         self.change.is_some() || !self.later.is_empty()
     }
 
-    /// Does something to the session after all that waits already. Of a drag only the newest edit counts, and of
-    /// instants to show the newest.
+    /// Appends a session command to those that wait. Of the edits of one drag, and of consecutive seeks, only the
+    /// newest is kept.
     pub fn after(&mut self, command: SessionCommand) {
         let replaced = match (self.later.back(), &command) {
             (Some(SessionCommand::Edit(earlier)), SessionCommand::Edit(later)) => earlier.is_replaced_by(later),
@@ -263,32 +263,33 @@ impl<A> Background<A> {
         self.later.push_back(command);
     }
 
-    /// One more repaint during which the session is being changed.
+    /// Counts one more repaint during the change of the session.
     pub fn count(&mut self) {
         if let Some((_, shown)) = &mut self.change {
             *shown += 1;
         }
     }
 
-    /// What is under way and how far it is, for the line at the bottom.
+    /// Returns the most important activity under way and its progress, for the status line.
     pub fn under_way(&self) -> Option<(Activity, f64)> {
         self.all_under_way().into_iter().next()
     }
 
-    /// All that is under way, what matters most first.
+    /// Returns all activities under way with their progress, the most important first.
     pub fn all_under_way(&self) -> Vec<(Activity, f64)> {
-        let is_unspoken = self.change.as_ref().is_some_and(|(_, shown)| *shown <= UNSPOKEN);
-        let running = self.running.iter().filter(|(activity, _)| *activity != Activity::Change || !is_unspoken);
+        let is_silent = self.change.as_ref().is_some_and(|(_, shown)| *shown <= SILENT_REPAINTS);
+        let running = self.running.iter().filter(|(activity, _)| *activity != Activity::Change || !is_silent);
         let running = running.map(|(activity, work)| (*activity, work.progress()));
-        let told = TOLD.iter().filter_map(|(activity, progress, _)| Some((*activity, progress(&self.queries)?)));
-        let mut all: Vec<(Activity, f64)> = running.chain(told).collect();
+        let queries_under_way =
+            REPORTED_QUERIES.iter().filter_map(|(activity, progress, _)| Some((*activity, progress(&self.queries)?)));
+        let mut all: Vec<(Activity, f64)> = running.chain(queries_under_way).collect();
         all.sort_by_key(|(activity, _)| *activity);
-        // Of several of one kind the first.
+        // Of several with the same activity, the first is kept.
         all.dedup_by_key(|(activity, _)| *activity);
         all
     }
 
-    /// Whether anything at all is under way.
+    /// Whether any work is under way.
     pub fn is_busy(&self) -> bool {
         self.is_changing() || self.queries.is_busy() || !self.running.is_empty()
     }

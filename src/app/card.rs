@@ -1,4 +1,4 @@
-//! The card beside the pointer: what a thing of the scene is, with value and unit, and what can be done with it.
+//! The card beside the pointer: name, values and units of the object under it, and how to edit it.
 
 use egui::{RichText, Ui};
 
@@ -13,9 +13,9 @@ use crate::settings::number::subscript;
 use crate::simulation::frame::Reach;
 use crate::simulation::plant::BaseKind;
 
-/// What is said of a thing.
+/// Information on an object of the scene.
 pub struct Card {
-    /// What it is.
+    /// Its name.
     pub title: String,
     /// Its values with their units.
     pub rows: Vec<String>,
@@ -23,18 +23,18 @@ pub struct Card {
     pub hint: String,
 }
 
-/// What a target does while the run waits.
-const WAITS: &str = "the run waits: nothing follows until its task can be done";
+/// Hint on the target while the run waits.
+const RUN_WAITS: &str = "the run waits: nothing follows until its task can be done";
 
-/// An angle nearer to its limit counts as at it, rad.
-const AT_LIMIT: f64 = 1e-3;
+/// Angles closer to their limit than this are shown as at the limit, rad.
+const AT_LIMIT_RAD: f64 = 1e-3;
 
 impl Card {
     fn new(title: impl Into<String>, rows: impl Into<Vec<String>>, hint: impl Into<String>) -> Self {
         Self { title: title.into(), rows: rows.into(), hint: hint.into() }
     }
 
-    /// Of a thing at the instant on display; none of what says itself what it is.
+    /// Returns the card of an object at the instant on display; `None` for objects without a card.
     pub fn of(thing: Handle, session: &Session, views: &Views) -> Option<Self> {
         let (scenario, frame) = (session.scenario(), session.frame());
         let place = |x: f64, y: f64| format!("{}, {} m", signed(x, 3), signed(y, 3));
@@ -50,7 +50,7 @@ impl Card {
                     Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
                 };
                 let hint = match session.run().pose_space() {
-                    _ if session.run().waiting().is_some() => WAITS,
+                    _ if session.run().waiting().is_some() => RUN_WAITS,
                     Ok(_) => "drag: the machine follows, b stays",
                     Err(_) => "",
                 };
@@ -123,7 +123,7 @@ impl Card {
         })
     }
 
-    /// Of a link that is being turned.
+    /// Returns the card of a link that is being dragged.
     pub fn turned(i: usize, session: &Session) -> Option<Self> {
         let (machine, frame) = (&session.scenario().machine, session.frame());
         let drive = machine.resolved_links().get(i)?.drive;
@@ -133,7 +133,7 @@ impl Card {
         let mut rows = vec![format!("{others} b stays {} rad", signed(frame.b_reference, 3))];
         for (k, angle) in machine.angles().iter().enumerate() {
             let ends = [*angle.limits.start(), *angle.limits.end()];
-            if let Some(end) = ends.into_iter().find(|end| (frame.a[k] - end).abs() < AT_LIMIT) {
+            if let Some(end) = ends.into_iter().find(|end| (frame.a[k] - end).abs() < AT_LIMIT_RAD) {
                 rows.push(format!("a{} stands at its limit, {}°", subscript(k + 1), degrees(end)));
             }
         }
@@ -141,7 +141,7 @@ impl Card {
         Some(Self::new(title, rows, hint))
     }
 
-    /// Draws what stands in it.
+    /// Draws its content.
     pub fn show(&self, ui: &mut Ui, p: &Palette) {
         ui.spacing_mut().item_spacing.y = 3.0;
         ui.label(RichText::new(&self.title).font(bold(12.5)).color(colour(p.ink)));
@@ -189,7 +189,7 @@ fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {
         [] => format!("pin of link {last}"),
         before => format!("pin of links {} and {last}", before.join(", ")),
     };
-    // The relative angles between drives that meet here.
+    // The relative angles between drives whose links meet in this pin.
     let drives: Vec<usize> = joined.iter().map(|j| machine.resolved_links()[*j].drive).collect();
     let angles = machine.angles().iter().enumerate();
     let meets = angles.filter(|(_, angle)| drives.contains(&angle.to) && drives.contains(&angle.from));

@@ -1,4 +1,4 @@
-//! [`Change`]: what a person does to a session. It may take long, so it is made of a copy of the session.
+//! [`Change`]: a user's change of a session. It may take long, so it is made on a copy of the session.
 
 use std::path::{Path, PathBuf};
 
@@ -14,22 +14,23 @@ use crate::settings::text::brief;
 pub(super) enum Change {
     /// One edit.
     Edit(Edit),
-    /// Takes the last one back.
+    /// Undoes the last change.
     Undo,
-    /// Brings it back.
+    /// Redoes the change undone last.
     Redo,
-    /// Takes back or brings back up to where there are so many changes to undo.
+    /// Undoes or redoes until the session has this number of undo entries.
     GoTo(usize),
-    /// Shows an instant, s.
+    /// Shows the instant at this time, s.
     Seek(f64),
-    /// Shows a branch.
+    /// Shows the branch of this index.
     Branch(usize),
     /// Puts the machine back at the start of its planned path.
     BackToPath,
 }
 
 impl Change {
-    /// Makes it; what there is to say then.
+    /// Makes the change in `session` and returns a message for the user, if there is one. `watch` reports progress and
+    /// can stop the change.
     pub fn make(&self, session: &mut Session, watch: Watch<'_>) -> Result<Option<String>, Refusal> {
         match self {
             Self::Edit(edit) => session.apply_while(edit.clone(), watch)?,
@@ -79,34 +80,34 @@ impl Change {
     }
 }
 
-/// Where a session comes from that is to be opened.
+/// Source of a session or table to open.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
-    /// As it is.
+    /// A scenario in memory.
     Scenario(Box<Scenario>),
-    /// Read from a file.
+    /// A file.
     File(PathBuf),
-    /// Read from the journal of a program that did not end in order.
+    /// The journal of a program run that ended abnormally.
     Journal(PathBuf),
 }
 
-/// What was opened.
+/// Result of opening a [`Source`].
 pub(super) enum Opened {
     Session(Box<OpenedSession>),
-    /// A table of numbers, which is about the session on display.
+    /// A table of numbers to be assessed for the session on display.
     Table(PathBuf, Table),
 }
 
-/// A session that was opened.
+/// An opened session.
 pub(super) struct OpenedSession {
     pub session: Session,
-    /// What is to be said of where it comes from.
+    /// A note about the source, for the user.
     pub said: Option<String>,
-    /// Where a person left off, where a journal says so.
+    /// Instant and plots on display when the journal was written, if the journal has them.
     pub left_off: Option<LeftOff>,
 }
 
-/// Why something was not opened.
+/// The reason why a source was not opened.
 #[derive(Debug)]
 pub(super) struct NotOpened {
     pub why: String,
@@ -114,7 +115,7 @@ pub(super) struct NotOpened {
 }
 
 impl Source {
-    /// Reads, plans and replays it.
+    /// Reads, plans and replays the source. `watch` reports progress and can stop the work.
     pub fn open(self, watch: Watch<'_>) -> Result<Opened, NotOpened> {
         let read = |path: &Path| {
             let found = crate::files::scenario(&path.display().to_string());
@@ -141,7 +142,7 @@ impl Source {
             refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
         })?;
         if let Some(LeftOff { time, .. }) = &left_off {
-            // A file may say anything: no more of the run is made than there was.
+            // The file may name any time: the run is not extended beyond its length.
             session.seek_while(time.min(session.length()), watch);
         }
         Ok(Opened::Session(Box::new(OpenedSession { session, said: made, left_off })))

@@ -1,4 +1,4 @@
-//! What a person asks for: of the session, of how it is shown, and of the window itself.
+//! Commands of the user: to the session, to its display, and to the window.
 
 use std::path::PathBuf;
 
@@ -17,14 +17,14 @@ use crate::session::Edit;
 use crate::session::scenario::Scenario;
 use crate::study::front_point::FrontMeasure;
 
-/// What a person can ask for.
+/// A command of the user.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Read or change the session; this waits while the session is being changed beside the window.
+    /// Read or change the session; waits while the session is being changed in the background.
     Session(SessionCommand),
-    /// Change how it is shown.
+    /// Change the view state.
     View(ViewChange),
-    /// What is neither: the window itself, and what works beside it.
+    /// Change the window, or the work in the background.
     Window(WindowCommand),
 }
 
@@ -46,38 +46,38 @@ impl From<WindowCommand> for Command {
     }
 }
 
-/// What reads or changes the session.
+/// A command that reads or changes the session.
 #[derive(Clone, Debug)]
 pub enum SessionCommand {
     /// Change the machine, the run or its parameters.
     Edit(Edit),
-    /// The drag is over: the next edit is an undo of its own.
+    /// End the gesture: the next edit becomes an undo entry of its own.
     EndGesture,
-    /// Let time pass, or stop it.
+    /// Play or pause.
     TogglePlay,
     /// Show an instant, s.
     Seek(f64),
-    /// Put a bookmark at an instant, s, or give the one there this name; without a name it is taken away.
+    /// Set or rename the bookmark at a time, s; an empty name removes it.
     Bookmark(f64, String),
-    /// Ask for the name of the bookmark at an instant, s; where there is none it is put there.
+    /// Open the field for the name of the bookmark at a time, s; creates the bookmark if there is none.
     NameBookmark(f64),
-    /// Show the next mark of the time line, or the one before.
+    /// Show the next mark of the time line (`true`), or the previous one.
     ToMark(bool),
-    /// Show a branch, by its place among them; the run on display becomes one.
+    /// Show the branch of this index; the run on display becomes a branch.
     Branch(usize),
     /// Add a branch to the runs side by side.
     CompareBranch(usize),
-    /// Let go of a branch.
+    /// Remove a branch.
     DropBranch(usize),
-    /// Move by steps; time stops.
+    /// Move by a number of steps, and pause.
     Step(i64),
-    /// Replace everything by another scenario.
+    /// Open another scenario in place of the session.
     Open(Box<Scenario>),
     /// Open one of the paper's cases, by name.
     Case(&'static str),
     /// Open a saved session or scenario.
     OpenFile(PathBuf),
-    /// What becomes of a session that was left behind.
+    /// Answer the question about a session left by an earlier program run.
     Recover(Recovery),
     /// Save the session.
     SaveFile(PathBuf),
@@ -85,76 +85,76 @@ pub enum SessionCommand {
     Record(PathBuf),
     /// Write the plot of a name to a file.
     WritePlot(PathBuf, String, PlotFile),
-    /// Write the machine to a file for another program, which its ending names.
+    /// Write the machine to a file for another program, in the format of its extension.
     TakeElsewhere(PathBuf),
-    /// The next file that is written may take the place of this one: the person has agreed to that.
+    /// Allow the next write to replace this file: the user has agreed.
     Replace(PathBuf),
     /// Undo the last edit.
     Undo,
-    /// Undo what has been done since there were so many changes to undo: what a drag did that is given up.
+    /// Undo the last change if there are more than this number of undo entries: that of a cancelled drag.
     TakeBack(usize),
-    /// Take back what the drag under way has done.
+    /// Undo the changes of the drag under way.
     GiveUp,
-    /// Redo what was undone last.
+    /// Redo the change undone last.
     Redo,
-    /// Undo or redo up to where there are so many changes to undo.
+    /// Undo or redo until there is this number of undo entries.
     GoTo(usize),
     /// Put the machine back at the start of its planned path.
     BackToPath,
-    /// Take something of what a table says that was opened.
+    /// Apply a result of the open table.
     TakeGiven(Taking),
-    /// Take the counterweights of a machine of the front, by its place.
+    /// Apply the counterweights of a point of the Pareto front, by its index.
     Take(usize),
-    /// Take the lengths that were found, with their counterweights.
+    /// Apply the lengths found, with their counterweights.
     TakeLengths,
-    /// Take the counterweights and ratios of rotors with which the drives give least to the base.
+    /// Apply the counterweights and rotor ratios with which the drives give the base the least momentum.
     TakeStillest,
-    /// Keep the session's own run in the table of runs.
+    /// Add the session's run to the table of runs.
     KeepRun,
-    /// Open the scenario of a row of that table in the session.
+    /// Open the scenario of a row of the table of runs.
     OpenRun(usize),
 }
 
-/// What is shown or not, done or not.
+/// What can be turned on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Switch {
     /// The panel of settings.
     Side,
     /// The panel of plots.
     Plots,
-    /// Both panels, or nothing but the scene.
+    /// Both panels.
     Panels,
     /// Settings on the right and plots on the left.
     Swapped,
-    /// What was done.
+    /// The list of changes.
     History,
     /// Runs side by side.
     Compare,
     /// The study of tolerances.
     Study,
-    /// What a table says that was opened.
+    /// The panel of the open table.
     Table,
-    /// What pins carry.
+    /// The pin forces.
     Pins,
     /// Snapshots along the motion.
     Snapshots,
-    /// The keys.
+    /// The card of keys.
     Help,
-    /// What a repaint takes.
+    /// The display of repaint times.
     Times,
     /// The list of commands.
     Finder,
-    /// The equations beside the machine that is designed, and not its balance.
+    /// The equations beside the machine being designed, in place of its balance.
     Equations,
-    /// Play over and over, not once.
+    /// Play in a loop.
     Loop,
-    /// Exaggerate the motion of the base as much as it takes to be seen.
+    /// Enlarge the drawn motion of the base so that it can be seen.
     Exaggeration,
-    /// Let b leave the range that serves the points of the task, and turn the points along with it.
+    /// Let b leave the interval feasible for the points of the task, and rotate the points with it.
     TurnTask,
-    /// The workspace is shaded by a measure of dexterity.
+    /// Shade the workspace by a measure of dexterity.
     Dexterity,
-    /// The pointer takes hold of things: it neither draws nor pushes.
+    /// The pointer drags objects: it neither draws nor pushes.
     Holding,
     /// The pointer draws a path.
     Drawing,
@@ -162,7 +162,7 @@ pub enum Switch {
     Pushing,
 }
 
-/// A change of how the session is shown, or of what a person is about to do: no more than a [`ViewState`] knows.
+/// A change of a [`ViewState`].
 ///
 /// [`ViewState`]: super::ViewState
 #[derive(Clone, Debug)]
@@ -171,117 +171,117 @@ pub enum ViewChange {
     Switch(Switch, bool),
     /// Show one of the linked views.
     Kind(ViewKind),
-    /// Lay the window out for what it is for now; again: as that is at first.
+    /// Choose a layout; choosing the present one again restores its defaults.
     Layout(Layout),
     /// Light or dark colours.
     Theme(Theme),
-    /// Play faster or slower: simulated seconds a second.
+    /// Playback rate, simulated seconds per second.
     Speed(f64),
-    /// Shade the workspace by a measure of dexterity, or not.
+    /// Shade the workspace by this measure of dexterity, or by none.
     Dexterity(Option<Measure>),
-    /// Point the camera so that everything is seen.
+    /// Frame the camera to show everything.
     Fit,
     /// Move the camera.
     Look(Look),
-    /// Put these drives, counted from 0, along the axes of joint space, where there are more than three.
+    /// Assign these drives, counted from 0, to the axes of joint space, if there are more than three.
     Drives([usize; 3]),
-    /// Put the second cursor at a time, s, or away.
+    /// Set the second cursor at a time, s, or remove it.
     Mark(Option<f64>),
     /// Change what plots show.
     Charts(Change),
-    /// Show how A would be held on the plane of another b, rad.
+    /// Preview how A would be held on the plane of another b, rad.
     Preview(Option<f64>),
-    /// Show the counterweights of a machine of the front, by its place, or none.
+    /// Show the counterweights of a point of the Pareto front, by its index, or hide them.
     Ghost(Option<usize>),
-    /// Tell the machines of the front apart by this, or by nothing more.
+    /// Colour the points of the Pareto front by this measure, or not.
     FrontBy(Option<FrontMeasure>),
-    /// Show where in the panel of settings a thing of the scene stands.
+    /// Show the rows of an object in the panel of settings.
     Reveal(Handle),
-    /// Show a setting there, by its path.
+    /// Show a setting in the list of all settings, by its path.
     LookUp(String),
-    /// Ask for the name of a bookmark no longer.
+    /// Close the field for the name of a bookmark.
     LeaveNaming,
-    /// Show or hide the dialog for a file.
+    /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
 }
 
-/// What is asked of the window itself, and of what works beside it.
+/// A command to the window, or to the work in the background.
 #[derive(Clone, Debug)]
 pub enum WindowCommand {
     /// Change the table of runs.
     Comparison(ComparisonCommand),
-    /// Read the table that was opened so, and ask this of it.
+    /// Assess the open table with these options.
     Ask(TableOptions),
-    /// Seek lengths with which this is least, as the brief has them.
+    /// Search for lengths that minimise this objective, within the bounds of the brief.
     Seek(Objective),
-    /// Change which fronts are drawn beside that of the machine that is designed.
+    /// Change which Pareto fronts are drawn beside that of the machine being designed.
     Fronts(FrontsCommand),
-    /// Put the cursor where a signal to plot is sought.
+    /// Move the keyboard focus to the search for signals.
     LookFor,
-    /// Show why a number that was typed is refused.
+    /// Show why a typed number is refused.
     Refuse(String),
-    /// Stop what is under way beside the window.
+    /// Stop an activity in the background.
     Cancel(Activity),
-    /// Ask whether the window may close with changes that are in no file, or ask no more.
+    /// Open or close the question whether the window may close with unsaved changes.
     AskToLeave(bool),
-    /// Close the window, after a question if changes are in no file.
+    /// Close the window, after a question if there are unsaved changes.
     Quit,
-    /// Close the window as it is.
+    /// Close the window without a question.
     Leave,
     /// Show no more hints, now and at the next start.
     SkipHints,
-    /// Begin the tour, or leave it.
+    /// Begin or leave the tour.
     Tour(bool),
-    /// On to its next step, or back.
+    /// Go to its next step (`true`), or to the previous one.
     TurnTour(bool),
 }
 
-/// Which fronts are drawn beside that of the machine that is designed.
+/// Changes the Pareto fronts that are drawn beside that of the machine being designed.
 #[derive(Clone, Debug)]
 pub enum FrontsCommand {
-    /// That of this machine stays as it is now.
+    /// Keep the front of this machine in its present state.
     Keep,
-    /// That of another machine, asked as this one is.
+    /// Add the front of another machine, with the same brief.
     Add(Box<Machine>),
-    /// One is taken away, by its place.
+    /// Remove a front, by its index.
     Remove(usize),
 }
 
-/// What becomes of a session that was left behind.
+/// Answers to the question about a session left by an earlier program run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
-    /// It is opened.
+    /// Open it.
     Open,
-    /// It is removed.
+    /// Remove it.
     Forget,
-    /// It is offered again at the next start.
+    /// Offer it again at the next start.
     Later,
 }
 
-/// How the camera is moved.
+/// A movement of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
-    /// Around the scene to the right and up, rad; in 2D along it.
+    /// Rotate about the scene to the right and up, rad; in 2D pan by these fractions of the view's height.
     Turn([f64; 2]),
-    /// Nearer, so many times.
+    /// Zoom in by this factor.
     Zoom(f64),
 }
 
-/// What can be done to the table of runs.
+/// Changes of the table of runs.
 #[derive(Clone, Debug)]
 pub enum ComparisonCommand {
     /// Sort by a column, counted from 0.
     Sort(usize),
-    /// Draw a row's run in plots and scene, or no longer.
+    /// Draw the run of a row in plots and scene, or not.
     Show(usize, bool),
     /// Add a scenario.
     Add(Box<Scenario>),
-    /// Take a kept row away.
+    /// Remove a kept row.
     Remove(usize),
 }
 
 impl FileDialog {
-    /// What to do with a file that was named.
+    /// Returns the command for the file named in the dialog.
     pub fn named(self, file: PathBuf) -> SessionCommand {
         match self.purpose {
             Purpose::Open => SessionCommand::OpenFile(file),

@@ -1,4 +1,4 @@
-//! The table of runs at the bottom: the same task done in several ways, and what was kept.
+//! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
             let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 buttons(ui, comparison, commands);
-                // What is left between title and buttons.
+                // The space between title and buttons.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
                 });
@@ -59,9 +59,9 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     name(&add.response.on_hover_text("Another scenario to compare with"), "Add a run");
 }
 
-/// What stands over a column.
+/// Head of a column.
 struct Head {
-    /// Its place among all columns.
+    /// Its index among all columns.
     at: usize,
     head: &'static str,
     meaning: &'static str,
@@ -76,7 +76,7 @@ impl Head {
     }
 }
 
-/// Columns in which something stands; of designs where there are several.
+/// Returns the columns that have a value in any row; those of designs only if there are several designs.
 fn columns(comparison: &Comparison) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
@@ -180,7 +180,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[Head], comm
     }
 }
 
-/// A short piece of a line as plots draw it.
+/// Draws a short sample of a line in the style of the plots.
 fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
     let ends = [rect.left_center(), rect.right_center()];
     let stroke = egui::Stroke::new(1.6, tone);

@@ -1,4 +1,4 @@
-//! Joint space of more than three drives: which three have an axis, and where the others stand.
+//! Joint space of more than three drives: the choice of the three drives along the axes, and the angles of the others.
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 
@@ -10,17 +10,18 @@ use crate::picture::scene::joints::{Joints, SYMBOLS};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::Session;
 
-/// Where it lies over a scene.
+/// Returns the rectangle that it covers in a scene.
 pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {
     chosen(views, view_state).map(|_| Rect::from_min_size(rect.min, vec2(rect.width().min(260.0), 56.0)))
 }
 
-/// Joint space in which there is a choice of drives, where it is what is seen.
+/// Returns the joint space on display if its axes can be chosen.
 fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a Joints> {
     views.joints().filter(|joints| view_state.view == ViewKind::Joints && joints.has_choice())
 }
 
-/// Draws it in the upper left corner of a scene; a tower that is not known yet says so.
+/// Draws it in the upper left corner of a scene. In the tower view, says that the tower is being computed while it is
+/// missing.
 pub fn show(
     ui: &egui::Ui,
     rect: Rect,

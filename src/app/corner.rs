@@ -1,4 +1,5 @@
-//! The scene's lower corners: what can be done or the key to the shade of the workspace, and the grid's width.
+//! The lower corners of the scene: a hint or the colour scale of the workspace on the left, the grid width on the
+//! right.
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
@@ -10,12 +11,12 @@ use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
 
-/// Where they lie over a scene.
+/// Returns the rectangle that they cover in a scene.
 pub fn strip(rect: Rect) -> Rect {
     Rect::from_min_max(pos2(rect.left(), rect.bottom() - 28.0), rect.right_bottom())
 }
 
-/// In the scene's lower corners: what can be done or the key to the shade, and the grid's width.
+/// Draws the hint or the colour scale, and the grid width.
 pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let low = rect.bottom() - 16.0;
@@ -26,7 +27,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
         plain(11.5),
         colour(p.dim),
     );
-    // Where there is no room, it is cut short rather than run into the grid's width.
+    // Long text is truncated before the grid width.
     let left = pos2(rect.left() + 16.0, low);
     let room = Rect::from_min_max(left - vec2(0.0, 12.0), pos2(grid.left() - 12.0, low + 12.0));
     let layout = egui::Layout::left_to_right(egui::Align::Center);
@@ -42,7 +43,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     }
 }
 
-/// A way back where a part of the machine or its target is out of view, at the upper edge.
+/// Draws the button *show everything* at the upper edge, for when a part of the machine or its target is out of view.
 pub fn way_back(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
@@ -56,7 +57,7 @@ pub fn way_back(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut 
     }
 }
 
-/// The key to the shade of the workspace.
+/// Draws the colour scale of the workspace.
 fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let [least, most] = views.stage().shaded(measure);

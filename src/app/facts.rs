@@ -1,4 +1,4 @@
-//! [`Facts`]: what panels say of a run that has to be found first, asked for each picture of them.
+//! [`Facts`]: values shown by the panels that have to be computed first, queried for each repaint.
 
 use std::sync::Arc;
 
@@ -11,29 +11,29 @@ use crate::session::scenario::{Scenario, Value};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{Holds, Key};
 
-/// A setting and what can be said of it.
+/// A setting and its state.
 pub(super) struct Setting {
     pub path: String,
     pub key: &'static Key,
     /// As it would be typed; empty if it is not set.
     pub typed: String,
-    /// Whether it is as usual.
+    /// Whether it has its default value.
     pub usual: bool,
-    /// What it takes to have an effect, if it has none.
+    /// The condition under which it has an effect, if it has none now.
     pub wants: Option<&'static str>,
-    /// Path and explanation in small letters, to be searched.
+    /// Path and explanation in lower case, to be searched.
     pub text: String,
 }
 
-/// How well a machine is balanced.
+/// Residuals of the balance of a machine.
 pub(super) struct Balance {
-    /// Largest |g_k|, kg m, and whether that is as good as none.
+    /// Largest |g_k|, kg m, and whether it is within the tolerance of zero.
     pub force: (f64, bool),
-    /// Largest |C_kl|, kg m², and whether that is as good as none.
+    /// Largest |C_kl|, kg m², and whether it is within the tolerance of zero.
     pub coupling: (f64, bool),
-    /// Of each drive, kg m².
+    /// D_k of each drive, kg m².
     pub inertia: Vec<f64>,
-    /// What a change of b accelerates, kg m².
+    /// Inertia that a change of b accelerates, kg m².
     pose_inertia: f64,
 }
 
@@ -52,7 +52,7 @@ impl Quick for Balance {
     }
 }
 
-/// What of a scenario differs from what is built in under the same names.
+/// Whether machine and task setup of a scenario differ from the built-in ones of the same names.
 struct Differs {
     machine: bool,
     work: bool,
@@ -71,8 +71,8 @@ impl Quick for Differs {
     }
 }
 
-/// How many poses of the plane b put the end effector on a point, m, and how far that is from the boundary of the
-/// workspace, m, positive inside.
+/// Number of poses on the plane b for a point of the end effector, m. Then the distance of the point from the boundary
+/// of the workspace, m, positive inside.
 struct Standing;
 
 impl Quick for Standing {
@@ -85,7 +85,7 @@ impl Quick for Standing {
     }
 }
 
-/// All settings of a scenario but rows from files.
+/// All settings of a scenario except tables of samples.
 struct Settings;
 
 impl Quick for Settings {
@@ -93,7 +93,7 @@ impl Quick for Settings {
     type Answer = Vec<Setting>;
 
     fn answer(Shared(scenario): &Self::Input) -> Vec<Setting> {
-        // Rows come from files alone.
+        // Tables of samples come from files alone.
         let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != Holds::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
             let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT).unwrap_or_default();
@@ -111,24 +111,24 @@ impl Quick for Settings {
     }
 }
 
-/// Of a scenario, and of the instant on display.
+/// Values of a scenario and of the instant on display.
 pub(super) struct Facts<'a> {
     queries: &'a Queries,
     scenario: Shared<Scenario>,
     /// Whether the machine differs from the built-in one of its name.
     pub machine_differs: bool,
-    /// Whether the work differs from that of the built-in scenario of its name.
+    /// Whether task, plant, base or control differ from those of the built-in scenario of its name.
     pub work_differs: bool,
     pub balance: Arc<Balance>,
-    /// The moment that a change of b in motion takes, N m.
+    /// Base moment of a change of b in motion, N m.
     pub price: f64,
-    /// How many poses put the end effector where it is, and how far it is from the boundary of the workspace, m; none
-    /// of a machine without planes.
+    /// Number of poses that put the end effector at its present point, and distance of the point from the boundary of
+    /// the workspace, m. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
 }
 
 impl<'a> Facts<'a> {
-    /// What has to be said of a session.
+    /// Queries the values of a session.
     pub fn of(queries: &'a Queries, session: &Session) -> Self {
         let (run, frame) = (session.run(), session.frame());
         let scenario = run.shared_scenario();
@@ -147,13 +147,13 @@ impl<'a> Facts<'a> {
         }
     }
 
-    /// All settings but rows from files.
+    /// Queries all settings except tables of samples.
     pub fn settings(&self) -> Arc<Vec<Setting>> {
         self.queries.ask::<Whole<Settings>>(&self.scenario)
     }
 }
 
-/// Whether two scenarios ask for the same, whatever the machine.
+/// Whether two scenarios agree in task, plant, base and control.
 fn same_work(a: &Scenario, b: &Scenario) -> bool {
     a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
 }

@@ -1,18 +1,18 @@
-//! [`FileDialog`]: asking for a file, and what is done with the one that was named.
+//! [`FileDialog`]: the dialog for a file name.
 
 use crate::exchange::form;
 use crate::session::Session;
 
-/// Asking for a file name.
+/// A dialog for a file name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileDialog {
-    /// What the file is for.
+    /// The purpose of the file.
     pub purpose: Purpose,
-    /// What is typed so far.
+    /// The text typed so far.
     pub path: String,
 }
 
-/// What a file name is for.
+/// Purpose of a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Read a session.
@@ -21,20 +21,20 @@ pub enum Purpose {
     Save,
     /// Write a recording.
     Record,
-    /// Write the plot of a name.
+    /// Write the plot of this name.
     Plot(String, PlotFile),
     /// Write the machine for another program.
     Machine,
 }
 
-/// How a plot is written to a file.
+/// File format of a plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlotFile {
-    /// Every sample of the time shown.
+    /// The samples of the time shown.
     Csv,
-    /// A drawing.
+    /// A vector drawing.
     Svg,
-    /// A picture.
+    /// A raster picture.
     Png,
 }
 
@@ -42,7 +42,7 @@ impl PlotFile {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
 
-    /// What it is called.
+    /// Its name.
     pub fn words(self) -> &'static str {
         match self {
             Self::Csv => "CSV",
@@ -53,7 +53,7 @@ impl PlotFile {
 }
 
 impl Purpose {
-    /// What a dialog asks, what its button says, and how such a file may be called.
+    /// Returns the title of the dialog, the text of its button, and an example of a file name.
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
             Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv"],
@@ -66,7 +66,7 @@ impl Purpose {
         }
     }
 
-    /// What a dialog asks, with the endings to choose from.
+    /// Returns the title of the dialog, with the file extensions to choose from.
     pub(super) fn title(&self) -> String {
         let [title, ..] = self.words();
         match self {
@@ -77,12 +77,12 @@ impl Purpose {
 }
 
 impl FileDialog {
-    /// To open a file.
+    /// Returns a dialog to open a file.
     pub fn opening() -> Self {
         Self { purpose: Purpose::Open, path: String::new() }
     }
 
-    /// A file name that is free, for a dialog to start from.
+    /// Returns a dialog with an unused file name as its start.
     pub fn suggest(session: &Session, purpose: Purpose) -> Self {
         let own = &session.scenario().name;
         let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();

@@ -1,4 +1,4 @@
-//! The list of commands: every action, scenario, machine, setting and recent file, found by a few letters.
+//! The list of commands: every action, scenario, machine, setting and recent file, searched by a few letters.
 
 use std::path::PathBuf;
 
@@ -19,23 +19,23 @@ use crate::session::scenario::Scenario;
 struct Entry<'a> {
     title: String,
     place: &'static str,
-    /// Other words that it is sought by.
+    /// Further search words.
     also: &'a str,
-    /// Shown only to who asks for it.
+    /// Shown only if there is a search text.
     hides: bool,
     keys: String,
-    /// Made for the line that is carried out alone.
+    /// Built only for the line that is carried out.
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
-/// The most lines that are kept.
-const MOST: usize = 60;
+/// Maximum number of lines.
+const MAX_ENTRIES: usize = 60;
 
-/// How many lines are seen at once, and how high each is with the gap below, points.
-const ROWS: f32 = 10.0;
-const ROW: f32 = 27.0;
+/// Number of lines visible at once, and height of a line with the gap below, points.
+const VISIBLE_ROWS: f32 = 10.0;
+const ROW_HEIGHT_PT: f32 = 27.0;
 
-/// What can be done now, in the order of the table.
+/// Returns the commands available now, in the order of the table of actions.
 fn entries<'a>(
     session: &'a Session,
     (settings, recent): (&'a [Setting], &'a [PathBuf]),
@@ -87,7 +87,7 @@ fn entries<'a>(
     actions.chain(recent).chain(scenarios).chain(machines).chain(settings).collect()
 }
 
-/// Those that answer what was typed, best first.
+/// Returns the entries that match the search text, best first.
 fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     let score = |entry: &Entry| {
         let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
@@ -98,12 +98,12 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
         .filter(|entry| !(entry.hides && sought.trim().is_empty()))
         .filter_map(|entry| Some((score(&entry)? - i32::from(entry.hides), entry)))
         .collect();
-    // Stable: among equals the order of the table stays.
+    // The sort is stable: equal scores keep the order of the table.
     scored.sort_by_key(|(score, _)| -score);
-    scored.into_iter().take(MOST).map(|(_, entry)| entry).collect()
+    scored.into_iter().take(MAX_ENTRIES).map(|(_, entry)| entry).collect()
 }
 
-/// Draws it.
+/// Draws the list and reads its keys.
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
@@ -138,8 +138,8 @@ pub fn show(
                 finder.chosen = 0;
             }
             ui.add_space(4.0);
-            let room = (ctx.content_rect().height() - 180.0).clamp(4.0 * ROW, ROWS * ROW);
-            // Else it would stay as low as it was when fewer lines were found.
+            let room = (ctx.content_rect().height() - 180.0).clamp(4.0 * ROW_HEIGHT_PT, VISIBLE_ROWS * ROW_HEIGHT_PT);
+            // Otherwise the list would keep the height that it had with fewer lines.
             let list_area = ScrollArea::vertical().max_height(room).min_scrolled_height(room);
             list_area.auto_shrink([false, true]).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
@@ -172,11 +172,12 @@ pub fn show(
 }
 
 fn line(ui: &mut Ui, p: &Palette, entry: &Entry<'_>, chosen: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 1.0), egui::Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT - 1.0), egui::Sense::click());
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
     }
-    // Painted, so that a screen reader is told of the line and not of its parts.
+    // Painted, so that a screen reader announces the line as one, not its parts.
     let middle = rect.center().y;
     let write = |ui: &Ui, right: f32, text: &str, font, ink| {
         ui.painter().text(egui::pos2(right, middle), Align2::RIGHT_CENTER, text, font, colour(ink)).left()

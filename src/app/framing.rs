@@ -1,4 +1,5 @@
-//! "Show everything": it holds until a hand moves the view, and keeps clear of what lies over the scene.
+//! "Show everything": stays in force until the user moves the view, and keeps the content clear of what covers the
+//! scene.
 
 use std::sync::Arc;
 
@@ -10,7 +11,8 @@ use crate::picture::scene::framing::Room;
 use crate::picture::scene::views::Views;
 use crate::session::Session;
 
-/// Points the camera of the present view, if it is to show everything, in a part of the screen with these parts covered.
+/// Frames the camera of the present view, if it is to show everything. `rect` is the scene on the screen, `covered` its
+/// covered parts.
 pub fn keep(
     rect: Rect,
     covered: &[Rect],
@@ -24,7 +26,7 @@ pub fn keep(
         Framing::Free => return,
         Framing::Held(_, last) if *last == size => return,
         Framing::Held(content, _) => content.clone(),
-        // What a hand holds stays under it; all is seen again once that lets go.
+        // During a drag the view stays still; it is framed after the release.
         Framing::Wanted if view_state.gesture.grabbed.is_some() => return,
         Framing::Wanted => Arc::new(views.content(view, session.frame(), &poses())),
     };

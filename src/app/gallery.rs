@@ -10,25 +10,25 @@ use crate::mechanics::machine::{self, Machine};
 use crate::picture::paint::portrait::Portrait;
 use crate::picture::scene::palette::Palette;
 
-/// Of the built-in machines, in their order; made when the list is first opened.
+/// Pictures of the built-in machines, in their order; drawn when the list is first opened.
 static PORTRAITS: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());
 
 const CARD: egui::Vec2 = vec2(282.0, 222.0);
 const PICTURE: f32 = 112.0;
 const GAP: f32 = 8.0;
 const MARGIN: f32 = 12.0;
-/// Columns in a window that has room for them.
-const MOST: f32 = 4.0;
+/// Maximum number of columns.
+const MAX_COLUMNS: f32 = 4.0;
 
-/// How high the list may be in a window, px.
+/// Returns the maximum height of the list, px.
 pub fn room(ui: &Ui) -> f32 {
     (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD.y + GAP))
 }
 
-/// Draws the list; the machine that was chosen, if it is another.
+/// Draws the list; returns the chosen machine, if it is another one.
 pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
     let wide = ui.ctx().content_rect().width() - 60.0;
-    let columns = ((wide + GAP) / (CARD.x + GAP)).floor().clamp(1.0, MOST) as usize;
+    let columns = ((wide + GAP) / (CARD.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;
     ui.set_width(columns as f32 * (CARD.x + GAP) - GAP);
     ui.spacing_mut().item_spacing = vec2(GAP, GAP);
     let opened = ui.ctx().memory(|memory| memory.focused()).is_none();
@@ -43,21 +43,21 @@ pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Mach
     }
     let own = machines.iter().position(|(machine, _)| machine.name() == present.name());
     if opened {
-        // Arrows lead on from the machine that is there.
+        // Arrow keys start from the present machine.
         let card = &cards[own.unwrap_or(0)];
         card.request_focus();
         card.scroll_to_me(None);
     }
     if let Some(at) = cards.iter().position(egui::Response::has_focus) {
-        led(ui, &cards, at, columns);
+        move_focus(ui, &cards, at, columns);
     }
     let picked = cards.iter().position(egui::Response::clicked)?;
     ui.close();
     Some(machines[picked].0).filter(|machine| *machine != present)
 }
 
-/// Hands the keyboard from the card that has it to the one where an arrow points: what lies under the list gets none.
-fn led(ui: &Ui, cards: &[egui::Response], at: usize, columns: usize) {
+/// Moves the keyboard focus between cards by the arrow keys, and consumes these keys.
+fn move_focus(ui: &Ui, cards: &[egui::Response], at: usize, columns: usize) {
     let filter = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(cards[at].id, filter));
     let pressed = |key| ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));

@@ -1,49 +1,49 @@
-//! What the pointer does: what it is over, what it holds, and what it is for.
+//! State of the pointer: the object under it, the drag under way, and the tool.
 
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::pick::Pick;
 
-/// What the pointer, or the keyboard in its place, is over.
+/// What is under the pointer or has the keyboard focus.
 #[derive(Clone, Debug, Default)]
 pub struct Pointed {
-    /// In the scene.
+    /// Object of the scene under the pointer.
     pub hot: Option<Handle>,
-    /// What has its place in the panel under it.
+    /// Object whose rows in the panel are under the pointer.
     pub lit: Option<Handle>,
-    /// The links that a term under it comes from.
+    /// Links that contribute to the term under the pointer.
     pub lit_links: Vec<usize>,
-    /// The b under it in the chart of which b, rad.
+    /// b under the pointer in the chart *Which b?*, rad.
     pub preview: Option<f64>,
 }
 
-/// A drag from the press of the button to its release; nothing of it outlives that.
+/// A drag, from the press of the button to its release.
 #[derive(Clone, Debug, Default)]
 pub struct Gesture {
-    /// What was under the pointer when its button went down: it may have moved on before the drag is noticed.
+    /// Object under the pointer at the press of the button: it may have moved before the drag is noticed.
     pub pressed: Option<Pick>,
-    /// What is being dragged.
+    /// The dragged object.
     pub grabbed: Option<Pick>,
-    /// Where the pointer was last in this drag, and by how much what is dragged stays behind it since Shift was held,
-    /// points of the screen.
+    /// Last position of the pointer in this drag, and offset of the dragged object behind the pointer since Shift was
+    /// held, points of the screen.
     pub fine: [egui::Vec2; 2],
-    /// Where the pointer holds the target, m.
+    /// Position to which the pointer drags the target or a point, m.
     pub held: Option<[f64; 2]>,
-    /// The force at the end effector before a hand pushes, N.
+    /// The force at the end effector before the push, N.
     pub force: [f64; 2],
     /// The drag has changed something.
     pub dragged: bool,
-    /// How many changes there were to undo when it began.
+    /// Number of undo entries at its start.
     pub undone_to: usize,
 }
 
-/// What dragging in the scene does.
+/// Effect of a drag in the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Tool {
-    /// It takes hold of things.
+    /// Drags objects.
     #[default]
     Hold,
-    /// It draws a path: what has been drawn so far, m.
+    /// Draws a path; holds the points drawn so far, m.
     Draw(Vec<[f64; 2]>),
-    /// It pushes the end effector.
+    /// Pushes the end effector.
     Push,
 }

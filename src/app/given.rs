@@ -1,5 +1,5 @@
-//! The panel at the bottom for a table of numbers that was opened: a motion of a person's own and the nearest one without
-//! reactions, or a measured machine and what mends it.
+//! The panel at the bottom for an open table. For a given motion it shows the nearest reactionless one; for a measured
+//! machine, the change that balances it.
 
 pub(super) mod assess;
 mod measured;
@@ -18,13 +18,13 @@ use assess::{Assessed, TableContent};
 pub(super) use parts::Shown;
 use parts::{column, worded};
 
-/// How high it is at first, and at least.
-const HEIGHT: f32 = 268.0;
-const LEAST: f32 = 150.0;
-/// How wide the column is of what is asked, points.
-const ASKED: f32 = 250.0;
+/// Default and minimum height of the panel, points.
+const DEFAULT_HEIGHT_PT: f32 = 268.0;
+const MIN_HEIGHT_PT: f32 = 150.0;
+/// Width of the column of options, points.
+const OPTIONS_WIDTH_PT: f32 = 250.0;
 
-/// What the table holds, in a line.
+/// Returns the title line: file name and content of the table.
 fn summary(shown: &Shown<'_>) -> String {
     let file = shown.given.file.file_name().unwrap_or_default().to_string_lossy();
     let held = match shown.answer {
@@ -40,55 +40,58 @@ fn summary(shown: &Shown<'_>) -> String {
 pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
-    let height = HEIGHT.min(0.45 * ui.available_height());
-    let most = (0.7 * ui.available_height()).max(LEAST);
-    Panel::bottom("given").default_size(height).size_range(LEAST..=most).resizable(true).frame(frame).show(ui, |ui| {
-        ui.horizontal(|ui| {
-            let title = match shown.content() {
-                Some(TableContent::Measurement) => "Measured machine",
-                Some(TableContent::Drives | TableContent::Tip) => "Given motion",
-                None => "Table",
-            };
-            ui.label(RichText::new(title).font(bold(13.5)));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
-                    commands.push(ViewChange::Switch(Switch::Table, false).into());
-                }
-                if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
-                    commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
-                }
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
-                    ui.add(Label::new(words).truncate());
+    let height = DEFAULT_HEIGHT_PT.min(0.45 * ui.available_height());
+    let most = (0.7 * ui.available_height()).max(MIN_HEIGHT_PT);
+    Panel::bottom("given").default_size(height).size_range(MIN_HEIGHT_PT..=most).resizable(true).frame(frame).show(
+        ui,
+        |ui| {
+            ui.horizontal(|ui| {
+                let title = match shown.content() {
+                    Some(TableContent::Measurement) => "Measured machine",
+                    Some(TableContent::Drives | TableContent::Tip) => "Given motion",
+                    None => "Table",
+                };
+                ui.label(RichText::new(title).font(bold(13.5)));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
+                        commands.push(ViewChange::Switch(Switch::Table, false).into());
+                    }
+                    if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
+                        commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
+                    }
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
+                        ui.add(Label::new(words).truncate());
+                    });
                 });
             });
-        });
-        ui.add_space(2.0);
-        ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
-            ui.horizontal_top(|ui| {
-                column(ui, "asked", ASKED, |ui| asked(ui, &p, &shown, commands));
-                let rest = ui.available_width();
-                match shown.answer {
-                    None => {}
-                    Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
-                    Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
-                        motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+            ui.add_space(2.0);
+            ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
+                ui.horizontal_top(|ui| {
+                    column(ui, "asked", OPTIONS_WIDTH_PT, |ui| options_column(ui, &p, &shown, commands));
+                    let rest = ui.available_width();
+                    match shown.answer {
+                        None => {}
+                        Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
+                        Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
+                            motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+                        }
+                        Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
                     }
-                    Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
-                }
+                });
             });
-        });
-    });
+        },
+    );
 }
 
-/// Why a table cannot be read.
+/// Shows why a table cannot be read.
 fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
     let words = RichText::new(worded(why)).font(plain(12.5)).color(colour(p.reaction));
     ui.add(Label::new(words).wrap());
 }
 
-/// How the table is read, and what is asked of it.
-fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+/// Draws the options for reading and assessing the table.
+fn options_column(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
     let (options, content) = (&shown.given.options, shown.content());
     let choices = [
         (None, "as its columns say"),
@@ -131,7 +134,7 @@ fn asked(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command
     switch(ui, ("bridge gaps", tip), options.gaps, |on| shown.ask(commands, |options| options.gaps = on));
 }
 
-/// A label, and a list to choose from.
+/// Draws a label and a list to choose from.
 fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     (label, tip): (&str, &str),
@@ -166,7 +169,7 @@ fn switch(ui: &mut Ui, (label, tip): (&str, &str), now: bool, to: impl FnOnce(bo
     }
 }
 
-/// A number that is left to the program unless it is ticked.
+/// Draws an optional number: the program chooses it unless it is ticked.
 fn optional(ui: &mut Ui, p: &Palette, row: &Row<'_>, (now, usual): (Option<f64>, f64), to: impl FnOnce(Option<f64>)) {
     let (mut is_set, mut value) = (now.is_some(), now.unwrap_or(usual));
     let mut changed = false;

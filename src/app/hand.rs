@@ -1,4 +1,4 @@
-//! The [`Hand`]: the pointer over the scene, what it takes hold of, and what pulling at it asks for.
+//! The [`Hand`]: the pointer over the scene, the object that it drags, and the edit of the drag.
 
 use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
@@ -13,10 +13,10 @@ use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::design::length_of;
 use crate::session::{Edit, Session};
 
-/// From how far away the tip can be taken hold of while the demonstration goes on, points.
-const GENEROUS: f64 = 60.0;
-/// Smaller changes of the pulling force send no new edit, N.
-const LEAST_PUSH: f64 = 0.02;
+/// Distance within which the tip can be grabbed during the demonstration, points.
+const DEMO_GRAB_DISTANCE_PT: f64 = 60.0;
+/// Smaller changes of the pushing force send no new edit, N.
+const MIN_FORCE_CHANGE_N: f64 = 0.02;
 
 /// The pointer over a scene.
 pub struct Hand<'a> {
@@ -27,14 +27,14 @@ pub struct Hand<'a> {
     shown: &'a Shown<'a>,
     views: &'a Views,
     view: ViewKind,
-    /// The demonstration's arm moves, so that its tip is hard to catch: any part of it will do.
+    /// Whether any part of the arm can be grabbed: in the demonstration its tip moves and is hard to catch.
     catches_arm: bool,
-    /// A drag pushes.
+    /// Whether a drag pushes.
     pushes: bool,
 }
 
 impl<'a> Hand<'a> {
-    /// Over a scene of a session as it is shown; whether that is the demonstration.
+    /// Creates the pointer over a scene of a session; `demonstrates` says whether the scene is the demonstration.
     pub fn over(
         ui: &'a Ui,
         response: &'a Response,
@@ -44,43 +44,43 @@ impl<'a> Hand<'a> {
         view_state: &ViewState,
     ) -> Self {
         let view = view_state.view;
-        // Dragging pushes with Alt held, or after U.
+        // Dragging pushes with Alt held, or with the push tool.
         let pushes = view.shows_machine() && (view_state.tool == Tool::Push || ui.input(|i| i.modifiers.alt));
         let catches_arm = demonstrates && view.shows_machine() && !pushes;
         Self { ui, response, spot, session, shown, views, view, catches_arm, pushes }
     }
 
-    /// Takes hold, pulls, lets go, clicks, and takes points out by a key.
+    /// Handles grabbing, dragging, release, handle_clicks, and the key that removes a point.
     pub fn points(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
-        self.looks(view_state);
-        self.takes_hold(view_state, commands);
+        self.update_hot(view_state);
+        self.grab(view_state, commands);
         match view_state.gesture.grabbed {
-            Some(pick) => self.pulls(pick, view_state, commands),
-            None => self.hovers(view_state),
+            Some(pick) => self.drag(pick, view_state, commands),
+            None => self.set_cursor(view_state),
         }
-        self.clicks(view_state, commands);
-        self.takes_out(view_state, commands);
+        self.handle_clicks(view_state, commands);
+        self.remove_point(view_state, commands);
     }
 
-    /// The arm of the demonstration, near a place.
+    /// Returns the arm of the demonstration if it is near a position.
     fn arm(&self, pos: Pos2) -> Option<Pick> {
-        let near = || self.views.pick_arm(self.shown, &self.spot.pointer(pos), GENEROUS);
+        let near = || self.views.pick_arm(self.shown, &self.spot.pointer(pos), DEMO_GRAB_DISTANCE_PT);
         self.catches_arm.then(near).flatten()
     }
 
-    /// What can be pulled at.
+    /// Returns the object at a position that can be dragged.
     fn under(&self, pos: Pos2) -> Option<Pick> {
         let pointer = self.spot.pointer(pos);
         let pick = match self.pushes {
             true => self.views.pick_tip(self.shown, &pointer),
             false => self.arm(pos).or_else(|| self.views.pick(self.view, self.shown, &pointer)),
         };
-        // Nothing follows while the run waits, in joint space and tower either.
+        // Targets cannot be dragged while the run waits, in any view.
         pick.filter(|pick| pick.handle != Handle::Target || self.session.follows_hands())
     }
 
-    /// Remembers what is under the pointer.
-    fn looks(&self, view_state: &mut ViewState) {
+    /// Stores the object under the pointer.
+    fn update_hot(&self, view_state: &mut ViewState) {
         if view_state.gesture.grabbed.is_some() {
             return;
         }
@@ -94,8 +94,8 @@ impl<'a> Hand<'a> {
         view_state.pointed.hot = self.response.hover_pos().and_then(seen);
     }
 
-    /// Takes hold of what was there when the button went down: it may move on.
-    fn takes_hold(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    /// Grabs the object that was under the pointer at the press of the button: it may have moved since.
+    fn grab(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let origin = || self.ui.input(|i| i.pointer.press_origin());
         if self.response.is_pointer_button_down_on() && self.ui.input(|i| i.pointer.primary_pressed()) {
             let origin = origin();
@@ -105,7 +105,7 @@ impl<'a> Hand<'a> {
             }
         }
         if self.response.drag_started_by(PointerButton::Primary) {
-            // A drag begins where the button went down, not where it was noticed.
+            // A drag begins where the button was pressed, not where the drag was noticed.
             let origin = origin();
             view_state.gesture = Gesture {
                 grabbed: view_state.gesture.pressed.or_else(|| origin.and_then(|pos| self.under(pos))),
@@ -117,8 +117,8 @@ impl<'a> Hand<'a> {
         }
     }
 
-    /// The command that pulling at something to a place asks for.
-    fn asks(&self, pick: Pick, pos: Pos2, view_state: &mut ViewState) -> Option<Command> {
+    /// Returns the command for dragging an object to a position.
+    fn drag_command(&self, pick: Pick, pos: Pos2, view_state: &mut ViewState) -> Option<Command> {
         let (session, pointer) = (self.session, self.spot.pointer(pos));
         let snaps = self.ui.input(|i| i.modifiers.ctrl || i.modifiers.command);
         let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
@@ -130,12 +130,12 @@ impl<'a> Hand<'a> {
         edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
     }
 
-    /// Pulls at what is held, and lets go of it.
-    fn pulls(&self, pick: Pick, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    /// Drags the grabbed object, and ends the drag.
+    fn drag(&self, pick: Pick, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let response = self.response;
         self.ui.ctx().set_cursor_icon(cursor(pick.handle, true));
         let pushes = pick.handle == Handle::EndEffector;
-        // A push goes on while the pointer stands still and the machine moves on.
+        // A push continues while the pointer stands still and the machine moves.
         let lasts = pushes && self.session.is_moving();
         // The last movement may come together with the release.
         let moved =
@@ -147,7 +147,7 @@ impl<'a> Hand<'a> {
             }
             *last = pos.to_vec2();
             let at = pos - *behind;
-            commands.extend(self.asks(pick, at, view_state));
+            commands.extend(self.drag_command(pick, at, view_state));
             if pushes && !self.session.is_playing() {
                 commands.push(SessionCommand::TogglePlay.into());
             }
@@ -166,8 +166,8 @@ impl<'a> Hand<'a> {
         }
     }
 
-    /// Shows by the cursor what could be pulled at.
-    fn hovers(&self, view_state: &ViewState) {
+    /// Sets the cursor by what can be dragged.
+    fn set_cursor(&self, view_state: &ViewState) {
         let Some(hot) = view_state.pointed.hot else { return };
         let turns = self.session.follows_hands()
             && self.session.run().pose_space().is_ok_and(|map| map.leaves_freedoms() || map.planes().is_ok());
@@ -175,14 +175,14 @@ impl<'a> Hand<'a> {
         self.ui.ctx().set_cursor_icon(cursor(hot, false));
     }
 
-    /// A click on a bar chooses its b, one on what stands in the panel shows it there; a double click beside all handles
-    /// adds a point to the path.
-    fn clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    /// Handles handle_clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them. A
+    /// double click beside all handles adds a point to the path.
+    fn handle_clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let pos = self.response.interact_pointer_pos();
         if let Some(pos) = pos.filter(|_| clicked)
             && let Some(pick) = self.under(pos).filter(|pick| pick.handle == Handle::Bar)
-            && let Some(edit) = self.asks(pick, pos, view_state)
+            && let Some(edit) = self.drag_command(pick, pos, view_state)
         {
             commands.extend([edit, Command::Session(SessionCommand::EndGesture)]);
         }
@@ -203,8 +203,8 @@ impl<'a> Hand<'a> {
         }
     }
 
-    /// Takes the point of the path under the pointer out, at the key for that.
-    fn takes_out(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    /// Removes the point of the path under the pointer, on Delete or Backspace.
+    fn remove_point(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let typing = self.ui.ctx().egui_wants_keyboard_input();
         let key = |i: &egui::InputState| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace);
         let out = !typing && self.ui.input(key);
@@ -220,7 +220,7 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// The edit that an aim is; none if what it names is not there, or a push is as it was.
+/// Returns the edit for an aim; `None` if its object does not exist, or the pushing force is unchanged.
 fn edit_of(aim: Aim, session: &Session, view_state: &ViewState) -> Option<Edit> {
     let machine = &session.scenario().machine;
     Some(match aim {
@@ -233,7 +233,7 @@ fn edit_of(aim: Aim, session: &Session, view_state: &ViewState) -> Option<Edit> 
         Aim::B(b) => set_b(session, view_state, b),
         Aim::Push([x, y]) => {
             let [now_x, now_y] = session.scenario().plant.force;
-            if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
+            if (x - now_x).hypot(y - now_y) < MIN_FORCE_CHANGE_N {
                 return None;
             }
             Edit::Push { x, y }

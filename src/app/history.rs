@@ -1,4 +1,4 @@
-//! Everything that was done, as a list to go back and forth in.
+//! The list of changes, to undo and redo.
 
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
@@ -10,10 +10,10 @@ use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::{Fork, Session};
 
-/// How high the list grows before it scrolls, points.
-const HIGHEST: f32 = 380.0;
-/// A branch in its list.
-const BRANCH: f32 = 38.0;
+/// Maximum height of the list, points; above it the list scrolls.
+const MAX_HEIGHT_PT: f32 = 380.0;
+/// Height of a branch in its list, points.
+const BRANCH_HEIGHT_PT: f32 = 38.0;
 
 /// Draws its button, and the list while it is open.
 pub fn show(
@@ -35,13 +35,14 @@ pub fn show(
     let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new("HISTORY").font(bold(11.0)).color(colour(p.dim)));
-        let room = HIGHEST - if branches.is_empty() { 0.0 } else { 30.0 + BRANCH * branches.len().min(4) as f32 };
+        let room = MAX_HEIGHT_PT
+            - if branches.is_empty() { 0.0 } else { 30.0 + BRANCH_HEIGHT_PT * branches.len().min(4) as f32 };
         ScrollArea::vertical().max_height(room).show(ui, |ui| list(ui, session, &p, commands));
         if !branches.is_empty() {
             ui.add_space(6.0);
             let tip = "How the run went on before you went back and did something else";
             ui.label(RichText::new("BRANCHES").font(bold(11.0)).color(colour(p.dim))).on_hover_text(tip);
-            let area = ScrollArea::vertical().id_salt("branches").max_height(4.0 * BRANCH);
+            let area = ScrollArea::vertical().id_salt("branches").max_height(4.0 * BRANCH_HEIGHT_PT);
             area.show(ui, |ui| list_branches(ui, branches, &p, commands));
         }
     });
@@ -50,7 +51,7 @@ pub fn show(
     }
 }
 
-/// The state that was opened, then each edit; what was undone is dimmed.
+/// Draws the opened state, then each edit; undone edits are dimmed.
 fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 1.0;
     let present = session.undo_count();
@@ -81,14 +82,15 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
 }
 
-/// Each with what was done in it first, the newest on top: a click shows it, and what is shown now takes its place.
+/// Draws each branch with its first edit, the newest on top. A click shows the branch; the run on display becomes a
+/// branch.
 fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing = vec2(2.0, 1.0);
     for (i, branch) in branches.iter().enumerate().rev() {
         ui.horizontal(|ui| {
             let when = format!("parts at {:.3} s, to {:.3} s", branch.from, branch.to);
             let dim = colour(p.dim);
-            let line = egui::Button::new("").frame_when_inactive(false).min_size(vec2(196.0, BRANCH - 2.0));
+            let line = egui::Button::new("").frame_when_inactive(false).min_size(vec2(196.0, BRANCH_HEIGHT_PT - 2.0));
             let line = ui.add(line);
             let corner = line.rect.left_top() + vec2(8.0, 4.0);
             for (words, font, tone, y) in
@@ -114,7 +116,7 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
     }
 }
 
-/// Where the list was scrolled to last.
+/// Key of the entry to which the list was scrolled last.
 fn seen_id() -> egui::Id {
     egui::Id::unique("history seen")
 }

@@ -1,4 +1,4 @@
-//! Icons, drawn as strokes with the painter: as crisp as the screen, in any colour.
+//! Icons, drawn as strokes with the painter.
 
 use std::f32::consts::TAU;
 
@@ -7,20 +7,20 @@ use egui::{Color32, Painter, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, Wid
 use super::theme::{bold, colour};
 use crate::picture::scene::palette::{Palette, faded};
 
-/// What a button is about.
+/// An icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
-    /// The pointer takes hold of things.
+    /// The pointer drags objects.
     Pointer,
     /// A curve drawn by hand.
     Curve,
     /// A force.
     Push,
-    /// How well something moves in each direction.
+    /// Dexterity by direction.
     Ellipse,
     /// Poses one after the other.
     Fan,
-    /// A joint and what it carries.
+    /// A pin with two links.
     Pin,
     /// A spread of values.
     Bell,
@@ -28,37 +28,37 @@ pub enum Icon {
     Samples,
     /// Two things beside each other.
     Beside,
-    /// All of it.
+    /// The whole scene.
     Corners,
     /// The parts of a window.
     Panes,
-    /// What was done before.
+    /// The list of changes.
     History,
     /// To the start.
     Start,
-    /// Let time pass.
+    /// Play.
     Play,
-    /// Stop it.
+    /// Pause.
     Pause,
-    /// One step on.
+    /// One step forward.
     Step,
-    /// Over and over.
+    /// Play in a loop.
     Loop,
     /// Light and dark.
     Halves,
-    /// Take away.
+    /// Remove.
     Cross,
     /// Record.
     Record,
 }
 
-/// Half the width of the field in which an icon is drawn.
-const HALF: f32 = 8.0;
+/// Half the width of the square in which an icon is drawn, points.
+const HALF_SIZE_PT: f32 = 8.0;
 
 impl Icon {
-    /// Draws it about a place.
+    /// Draws it with its centre at a position.
     pub fn draw(self, painter: &Painter, at: Pos2, ink: Color32) {
-        // On whole pixels, so that upright and level lines are sharp.
+        // On whole pixels, so that vertical and horizontal lines are sharp.
         let scale = painter.ctx().pixels_per_point();
         let at = (at * scale).round() / scale;
         let pen = Pen { painter, at, stroke: Stroke::new(1.5, ink) };
@@ -121,8 +121,8 @@ impl Icon {
                 pen.line(&[[-3.0, 1.5], [7.5, 1.5]]);
             }
             Self::History => {
-                pen.line(&sampled(|t| round([0.5, 0.0], 6.5, 0.55 + 0.86 * t)));
-                let [x, y] = round([0.5, 0.0], 6.5, 0.55);
+                pen.line(&sampled(|t| on_circle([0.5, 0.0], 6.5, 0.55 + 0.86 * t)));
+                let [x, y] = on_circle([0.5, 0.0], 6.5, 0.55);
                 pen.line(&[[x - 2.6, y - 2.2], [x, y + 0.6], [x + 3.2, y - 1.6]]);
                 pen.line(&[[0.5, -3.5], [0.5, 0.0], [3.2, 1.8]]);
             }
@@ -147,7 +147,7 @@ impl Icon {
             }
             Self::Halves => {
                 pen.ring([0.0, 0.0], 6.5);
-                let half: Vec<[f32; 2]> = sampled(|t| round([0.0, 0.0], 6.5, 0.25 + 0.5 * t));
+                let half: Vec<[f32; 2]> = sampled(|t| on_circle([0.0, 0.0], 6.5, 0.25 + 0.5 * t));
                 pen.solid(&half);
             }
             Self::Cross => {
@@ -159,7 +159,7 @@ impl Icon {
     }
 }
 
-/// Draws about a place; y points down.
+/// A painter with an origin; y points down.
 struct Pen<'a> {
     painter: &'a Painter,
     at: Pos2,
@@ -217,19 +217,19 @@ fn sampled(point: impl Fn(f32) -> [f32; 2]) -> Vec<[f32; 2]> {
     (0..=32).map(|i| point(i as f32 / 32.0)).collect()
 }
 
-/// A place on a circle, so many turns on from the right, clockwise.
-fn round([x, y]: [f32; 2], radius: f32, turns: f32) -> [f32; 2] {
+/// Returns a point on a circle at an angle, turns, clockwise from the right.
+fn on_circle([x, y]: [f32; 2], radius: f32, turns: f32) -> [f32; 2] {
     [x + radius * (TAU * turns).cos(), y + radius * (TAU * turns).sin()]
 }
 
 /// A button of one icon.
 pub struct IconButton<'a> {
     pub icon: Icon,
-    /// What a screen reader says.
+    /// Label for screen readers.
     pub label: &'a str,
-    /// What it says under the pointer: its name, its key, what it does.
+    /// Tooltip: its name, its key, its effect.
     pub tip: &'a str,
-    /// Whether it is on; none for what does something once.
+    /// Whether it is on; `None` for a button that acts once.
     pub on: Option<bool>,
     /// Whether it can be used now.
     pub enabled: bool,
@@ -237,7 +237,7 @@ pub struct IconButton<'a> {
 }
 
 impl<'a> IconButton<'a> {
-    /// One that does something once.
+    /// A button that acts once.
     pub fn of(icon: Icon, label: &'a str, tip: &'a str) -> Self {
         Self { icon, label, tip, on: None, enabled: true, size: vec2(28.0, 26.0) }
     }
@@ -252,38 +252,38 @@ impl<'a> IconButton<'a> {
         self.show_in(ui, p, colour(ink))
     }
 
-    /// Draws it in a colour of its own.
+    /// Draws it in another colour.
     pub fn show_in(&self, ui: &mut Ui, p: &Palette, ink: Color32) -> Response {
         let sense = if self.enabled { Sense::click() } else { Sense::hover() };
         let (rect, response) = ui.allocate_exact_size(self.size, sense);
-        behind(ui, p, &response, self.on == Some(true));
+        background(ui, p, &response, self.on == Some(true));
         let ink = if self.enabled { ink } else { ink.gamma_multiply(0.4) };
-        debug_assert!(rect.width() >= 2.0 * HALF, "room for the icon");
+        debug_assert!(rect.width() >= 2.0 * HALF_SIZE_PT, "room for the icon");
         self.icon.draw(ui.painter(), rect.center(), ink);
-        response.widget_info(|| told(self.label, self.enabled, self.on));
+        response.widget_info(|| accessible_info(self.label, self.enabled, self.on));
         response.on_hover_text(self.tip)
     }
 }
 
-/// A button of a short word, as quiet as one of an icon.
+/// Draws a button with a short word.
 pub fn word_button(ui: &mut Ui, p: &Palette, (word, tip): (&str, &str), on: bool, size: Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    behind(ui, p, &response, on);
+    background(ui, p, &response, on);
     let ink = colour(if on { p.ink } else { p.dim });
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, word, bold(11.0), ink);
-    response.widget_info(|| told(word, true, Some(on)));
+    response.widget_info(|| accessible_info(word, true, Some(on)));
     response.on_hover_text(tip)
 }
 
-fn told(label: &str, enabled: bool, on: Option<bool>) -> WidgetInfo {
+fn accessible_info(label: &str, enabled: bool, on: Option<bool>) -> WidgetInfo {
     match on {
         Some(on) => WidgetInfo::selected(egui::Role::Button, enabled, on, label),
         None => WidgetInfo::labeled(egui::Role::Button, enabled, label),
     }
 }
 
-/// What tells that a button is on, under the pointer, or has the keyboard.
-fn behind(ui: &Ui, p: &Palette, response: &Response, on: bool) {
+/// Draws the background of a button: whether it is on, under the pointer, or has the focus.
+fn background(ui: &Ui, p: &Palette, response: &Response, on: bool) {
     let rect = response.rect;
     if on || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(if on { p.line } else { faded(p.line, 0.6) }));
@@ -297,23 +297,23 @@ fn behind(ui: &Ui, p: &Palette, response: &Response, on: bool) {
     }
 }
 
-/// The same where it can do nothing, which its tip tells.
+/// Draws a disabled button with a short word; its tooltip says why.
 pub fn word_without(ui: &mut Ui, p: &Palette, (word, tip): (&str, &str), size: Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, word, bold(11.0), colour(faded(p.dim, 0.45)));
-    response.widget_info(|| told(word, false, Some(false)));
+    response.widget_info(|| accessible_info(word, false, Some(false)));
     response.on_hover_text(tip)
 }
 
-/// Marks a line of a list as the present one.
+/// Marks the present line of a list.
 pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
     ui.painter().circle_filled(line.rect.left_center() + vec2(12.0, 0.0), 3.5, colour(p.amber));
 }
 
-/// How high a rule is with the room about it, points.
+/// Height of a rule with the space about it, points.
 pub const RULE: f32 = 11.0;
 
-/// A thin line between groups.
+/// Draws a thin line between groups.
 pub fn rule(ui: &mut Ui, p: &Palette, width: f32) {
     let (rect, _) = ui.allocate_exact_size(vec2(width, RULE), Sense::hover());
     let y = rect.center().y.round() + 0.5;

@@ -1,5 +1,5 @@
-//! The first minute: the same task along a straight line and reactionless, side by side, over and over until it is
-//! touched; and three hints, each gone when it has been done.
+//! The introduction: the same task along a straight line and reactionless, side by side in a loop until the user
+//! touches the machine. Hints follow one after the other, each shown until it has been done.
 
 use std::sync::Arc;
 
@@ -22,32 +22,32 @@ use crate::session::{Edit, Refusal, Run, Session};
 use crate::simulation::frame::{Frame as Instant, Reach};
 use crate::study::comparison::Comparison;
 
-/// What is left of the first minute.
+/// State of the introduction.
 pub struct Intro {
-    /// The same task straight; shown until the machine is touched.
+    /// The same task along a straight line; shown until the machine is touched.
     straight: Option<Straight>,
-    /// The next hint, counted from 0.
+    /// The present hint, counted from 0.
     hint: usize,
-    /// b when the last hint began, rad.
+    /// b at the start of the present hint, rad.
     b: f64,
-    /// How long the run has rested at its end, s, and how often it was started over.
+    /// Time for which the run has rested at its end, s, and number of restarts.
     rested: f64,
     rounds: u32,
 }
 
-/// The run that shakes its base.
+/// The run along a straight line, with base reactions.
 struct Straight {
     run: Comparison,
     stage: Stage,
 }
 
-/// How many hints there are.
-const HINTS: usize = 3;
+/// Number of hints.
+const HINT_COUNT: usize = 3;
 
-/// What a hint asks for on a machine, and why; none where there is nothing to drag or to turn.
+/// Returns text and reason of a hint for a machine; `None` if there is nothing to drag or to turn, or no such hint.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     let map = session.run().pose_space().ok().filter(|_| session.follows_hands())?;
-    // What is amber: two drives reach a curve, more of them an area.
+    // The amber set: two drives reach a curve, more drives an area.
     let (on, off, amber) = if map.reaches_area() { ("inside", "out of", "area") } else { ("on", "off", "curve") };
     let (title, why) = match i {
         0 => (
@@ -67,16 +67,16 @@ fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     Some((title, why))
 }
 
-/// How long the run rests at its end before it starts over, s, and how often it does.
-const REST: f64 = 1.2;
-const ROUNDS: u32 = 20;
-/// How far a drawn base turns under a moment, rad for each N m: a soft mount, so that it can be seen.
-const SOFT: f64 = 0.03;
-/// The least width of two scenes beside each other.
-const BOTH: f32 = 680.0;
+/// Rest of the run at its end before it starts over, s, and maximum number of restarts.
+const REST_AT_END_S: f64 = 1.2;
+const MAX_RESTARTS: u32 = 20;
+/// Rotation of the drawn base under a moment, rad/(N m): a soft mount, so that it can be seen.
+const MOUNT_COMPLIANCE: f64 = 0.03;
+/// Minimum width of two scenes side by side, points.
+const MIN_WIDTH_OF_BOTH_PT: f32 = 680.0;
 
 impl Intro {
-    /// Beside a session on the built-in reactionless case.
+    /// Creates the introduction for a session on the built-in reactionless case.
     ///
     /// # Errors
     /// If the straight line cannot be run.
@@ -94,47 +94,47 @@ impl Intro {
         Ok(Self { straight, hint: 0, b: session.b_aim(), rested: 0.0, rounds: 0 })
     }
 
-    /// Whether both runs are to be seen in a view so wide.
+    /// Whether both runs are shown in a view of this width, points.
     pub fn shows_both(&self, width: f32) -> bool {
-        self.straight.is_some() && width >= BOTH
+        self.straight.is_some() && width >= MIN_WIDTH_OF_BOTH_PT
     }
 
-    /// Whether the contrast is on display in a window so wide, points; the scenes then take the room of the settings.
+    /// Whether both runs are shown in a window of this width, points; the scenes then take the space of the settings.
     pub fn contrasts_in(&self, width: f32) -> bool {
-        self.straight.is_some() && width >= BOTH + 360.0
+        self.straight.is_some() && width >= MIN_WIDTH_OF_BOTH_PT + 360.0
     }
 
-    /// The straight run, for plots.
+    /// Returns the run along the straight line, for the plots.
     pub fn beside_it(&self) -> Option<&Comparison> {
         self.straight.as_ref().map(|straight| &straight.run)
     }
 
-    /// Whether the demonstration goes on: the machine was not touched yet.
+    /// Whether the demonstration goes on: the machine has not been touched yet.
     pub fn demonstrates(&self) -> bool {
         self.straight.is_some()
     }
 
-    /// Wall time, s, passes while the session rests; whether the run is to start over.
+    /// Advances the rest at the end by wall time, s; returns whether the run is to start over.
     pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
         let waits = self.straight.is_some()
             && session.is_playing()
             && session.is_at_end()
             && !session.is_moving()
-            && self.rounds < ROUNDS;
+            && self.rounds < MAX_RESTARTS;
         self.rested = if waits && session.frame().time >= session.length() { self.rested + wall } else { 0.0 };
-        let over = self.rested > REST;
+        let over = self.rested > REST_AT_END_S;
         if over {
             (self.rested, self.rounds) = (0.0, self.rounds + 1);
         }
         over
     }
 
-    /// Whether it only waits to start over.
+    /// Whether it rests at the end of the run before it starts over.
     pub fn is_resting(&self) -> bool {
         self.rested > 0.0
     }
 
-    /// A command was carried out.
+    /// Takes note of a command that was carried out; `held` says whether a drag is under way.
     pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
             Command::Session(
@@ -169,40 +169,40 @@ impl Intro {
         }
     }
 
-    /// Whether everything has been done.
+    /// Whether the machine was touched and all hints were followed.
     pub fn is_over(&self) -> bool {
-        self.straight.is_none() && self.hint >= HINTS
+        self.straight.is_none() && self.hint >= HINT_COUNT
     }
 
-    /// The straight run at the time of a frame: the frame, and how it is drawn.
+    /// Returns the frame of the straight run at the time of another frame, and its scene.
     pub fn straight(&self, now: &Instant, theme: Theme) -> Option<(&Instant, Scene)> {
         let straight = self.straight.as_ref()?;
         let frame = straight.run.shown().next()?.1.at(now.time)?;
-        let exaggeration = Exaggeration::Mount(SOFT);
+        let exaggeration = Exaggeration::Mount(MOUNT_COMPLIANCE);
         let options = ViewOptions { theme, invites: false, exaggeration, ..Default::default() };
         Some((frame, straight.stage.scene(frame, &options)))
     }
 
-    /// Draws the straight run on the left of a view, with what both are about.
+    /// Draws the straight run on the left of a view, with its caption.
     pub fn show_straight(&self, ui: &Ui, rect: egui::Rect, now: &Instant, camera: &Camera, view_state: &ViewState) {
         let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
         words(ui, &Spot { rect, camera: *camera }, &scene, &[]);
-        let turn = SOFT.to_degrees();
+        let turn = MOUNT_COMPLIANCE.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);
         ui.painter().vline(rect.right(), rect.y_range(), egui::Stroke::new(1.0, colour(p.line)));
     }
 
-    /// What the right half is about.
+    /// Draws the caption of the right half.
     pub fn caption(&self, ui: &Ui, rect: egui::Rect, now: &Instant, view_state: &ViewState) {
         let p = view_state.palette();
         let words = "From A to B on one plane of joint space. The base feels nothing.";
         caption(ui, rect, &p, "Reactionless path", words, now.wrench.total().moment, p.zero);
     }
 
-    /// What lies over a scene: the present hint, and while both runs are to be seen what they are about.
+    /// Returns the rectangles covered in a scene: the present hint, and the caption while both runs are shown.
     pub fn covers(&self, ctx: &egui::Context, rect: egui::Rect, session: &Session, both: bool) -> Vec<egui::Rect> {
         let usual = egui::Rect::from_min_max(rect.right_bottom() - vec2(406.0, 140.0), rect.right_bottom());
         let hint = hint(self.hint, session).map(|_| ctx.memory(|m| m.area_rect(Id::unique("hint"))).unwrap_or(usual));
@@ -210,7 +210,8 @@ impl Intro {
         hint.into_iter().chain(both.then_some(caption)).collect()
     }
 
-    /// The present hint, over a lower corner of the scene: rather where it covers nothing that it speaks of.
+    /// Draws the present hint over a corner of the scene, if possible where it covers none of the objects that it
+    /// mentions.
     pub fn show_hint(
         &self,
         ctx: &egui::Context,
@@ -225,7 +226,7 @@ impl Intro {
         let id = Id::unique("hint");
         let size = ctx.memory(|m| m.area_rect(id)).map_or(vec2(width, 100.0), |last| last.size());
         let stands = Id::unique("corner of the hint");
-        // What a hand holds may pass under it.
+        // During a drag the hint stays in its corner.
         let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
         let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, spoken_of));
         ctx.data_mut(|d| d.insert_temp(stands, corner));
@@ -251,7 +252,7 @@ impl Intro {
     }
 }
 
-/// Where a card stands over a scene.
+/// Corner of a scene for a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Corner {
     RightBottom,
@@ -263,9 +264,9 @@ enum Corner {
 impl Corner {
     const ALL: [Self; 4] = [Self::RightBottom, Self::LeftBottom, Self::RightTop, Self::LeftTop];
 
-    /// Where a card of a size stands in it.
+    /// Returns the rectangle of a card of this size.
     fn place(self, rect: egui::Rect, size: egui::Vec2) -> egui::Rect {
-        // Above are the numbers of the scene, below its scale.
+        // The numbers of the scene are above, its scale below.
         let (x, [top, bottom]) = ([16.0, rect.width() - 16.0 - size.x], [64.0, rect.height() - 40.0 - size.y]);
         let [x, y] = match self {
             Self::RightBottom => [x[1], bottom],
@@ -276,7 +277,7 @@ impl Corner {
         egui::Rect::from_min_size(rect.min + vec2(x, y), size)
     }
 
-    /// The first that covers none of these, or else the one that covers the least of them.
+    /// Returns the corner whose card covers the least area of these rectangles, the first of equals.
     fn freest(rect: egui::Rect, size: egui::Vec2, spoken_of: &[egui::Rect]) -> Self {
         let covered = |corner: &Self| {
             let card = corner.place(rect, size).expand(6.0);
@@ -288,14 +289,14 @@ impl Corner {
 }
 
 fn dots(ui: &mut Ui, p: &Palette, present: usize) {
-    for i in (0..HINTS).rev() {
+    for i in (0..HINT_COUNT).rev() {
         let (rect, _) = ui.allocate_exact_size(vec2(8.0, 8.0), egui::Sense::hover());
         let tone = if i == present { p.amber } else { p.line };
         ui.painter().circle_filled(rect.center(), 3.0, colour(tone));
     }
 }
 
-/// A title over a scene and the moment on its base below.
+/// Draws a title over a scene, and the moment on its base below.
 fn caption(ui: &Ui, rect: egui::Rect, p: &Palette, title: &str, about: &str, moment: f64, tone: Rgba) {
     let painter = ui.painter().with_clip_rect(rect);
     let left = rect.left() + 22.0;

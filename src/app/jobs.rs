@@ -1,4 +1,4 @@
-//! [`Threads`]: who does the work of jobs where there are threads.
+//! [`Threads`]: worker threads for jobs.
 
 use std::sync::mpsc::{RecvTimeoutError, SendError, Sender, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -7,46 +7,47 @@ use std::time::Duration;
 use self::priority::{step_back, thread};
 use crate::query::{Work, Workers};
 
-/// Each job that runs has a thread to itself; where none can be had, it is done at once.
+/// Each running job has a thread of its own; if no thread can be started, the job runs at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
-    /// The window goes first where there are fewer processors than work.
+    /// The job runs with lower priority than the window.
     Background,
-    /// The job runs like the window: short work that must not wait, such as keeping a change.
+    /// The job runs with the priority of the window: short work that must not wait, such as writing a change to the
+    /// journal.
     Prompt,
 }
 
-/// How long short work is waited for: with it a repaint is still one of sixty a second.
-const UNSEEN: Duration = Duration::from_millis(4);
+/// Maximum time for which the window waits for short work: repaints at 60 Hz stay possible.
+const SHORT_WORK_WAIT: Duration = Duration::from_millis(4);
 
 impl Workers for Threads {
     fn start(&self, work: Work) {
         match self {
-            Self::Background => PATIENT.start(work),
+            Self::Background => BACKGROUND_POOL.start(work),
             Self::Prompt => on_thread(work, |work| work()),
         }
     }
 
-    /// Work that turns out to be long lets the window go first from then on.
+    /// Waits a short time for the work; if it takes longer, its priority is lowered.
     fn start_short(&self, work: Work) {
-        let (told, ended) = channel();
+        let (report, ended) = channel();
         let work = Box::new(move || {
-            // The other end may wait no more.
-            let _ = told.send(thread());
+            // The receiver may be gone.
+            let _ = report.send(thread());
             work();
-            let _ = told.send(None);
+            let _ = report.send(None);
         });
         on_thread(work, |work| work());
         let thread = ended.recv().unwrap_or_default();
-        if ended.recv_timeout(UNSEEN) == Err(RecvTimeoutError::Timeout) && *self == Self::Background {
+        if ended.recv_timeout(SHORT_WORK_WAIT) == Err(RecvTimeoutError::Timeout) && *self == Self::Background {
             step_back(thread);
         }
     }
 }
 
-/// Has it done on a new thread in this way; where none can be had, it is done at once.
+/// Runs the work on a new thread in this way; if no thread can be started, runs it at once.
 fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
-    // A thread that cannot start takes the work with it, so the work waits here for whoever can do it.
+    // A thread that cannot start drops its closure; the work is sent separately, so that it is not lost.
     let (hand, take) = channel::<Work>();
     let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
         if let Ok(work) = take.recv() {
@@ -59,17 +60,17 @@ fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
     }
 }
 
-/// Threads that let the window go first. They stay for the next job: a new thread begins as urgent as the window, and
-/// would hold it up before it steps back.
-static PATIENT: Pool = Pool { idle: Mutex::new(Vec::new()) };
+/// Threads of lower priority. They stay for the next job: a new thread starts with the priority of the window, and
+/// would delay it until the priority is lowered.
+static BACKGROUND_POOL: Pool = Pool { idle: Mutex::new(Vec::new()) };
 
-/// Threads without work, the one that worked last at the end.
+/// Idle threads, the most recently used last.
 struct Pool {
     idle: Mutex<Vec<Sender<Work>>>,
 }
 
 impl Pool {
-    /// Hands work to an idle thread, or to a new one.
+    /// Passes work to an idle thread, or to a new one.
     fn start(&'static self, work: Work) {
         let idle = self.idle().pop();
         let refused = match idle {
@@ -81,7 +82,7 @@ impl Pool {
         }
     }
 
-    /// Does this work and all that is handed over afterwards. A panic ends the thread, and nothing else.
+    /// Runs this work and all that follows. A panic ends this thread only.
     fn run(&self, mut work: Work) {
         step_back(None);
         loop {
@@ -100,7 +101,7 @@ impl Pool {
     }
 }
 
-/// On Linux a thread has a priority of its own, which the threads that it starts take over; elsewhere it has none.
+/// On Linux each thread has its own priority, which its child threads inherit; elsewhere priorities are not changed.
 #[cfg(all(target_os = "linux", feature = "window"))]
 mod priority {
     pub type Thread = rustix::thread::Pid;
@@ -110,14 +111,13 @@ mod priority {
         Some(rustix::thread::gettid())
     }
 
-    /// Lets the window go first where there are fewer processors than work; the present thread, or another. A refusal
-    /// changes nothing that matters.
+    /// Lowers the priority of a thread, or of the present one. A refusal is ignored.
     pub fn step_back(thread: Option<Thread>) {
         let _ = rustix::process::setpriority_process(thread.or_else(self::thread), 19);
     }
 }
 
-/// Elsewhere a lower priority would set back the whole program.
+/// Elsewhere a lower priority would apply to the whole program.
 #[cfg(not(all(target_os = "linux", feature = "window")))]
 mod priority {
     pub type Thread = ();

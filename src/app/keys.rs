@@ -9,13 +9,13 @@ use super::{Command, Layout, Open, SessionCommand, Switch, Tool, ViewChange, Vie
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
-/// Turns keys into commands; while text is typed only what does not type counts: shortcuts with Ctrl that a field does
-/// not know, and F1.
+/// Turns keys into commands. In a text field, only keys that the field does not use count: shortcuts with Ctrl that a
+/// field does not know, and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing =
         ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
-    // While something is dragged or a list is open, Esc ends that and nothing else.
+    // During a drag or with a list open, Esc ends only that.
     let busy = view_state.gesture.grabbed.is_some()
         || view_state.open.history
         || view_state.open.naming.is_some()
@@ -25,42 +25,42 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
     }
-    let at_hand = |key: &KeyboardShortcut| !typing || beside_typing(key);
-    // Those with more keys held go first: a shortcut answers to one with Shift or Alt besides, too.
+    let allowed = |key: &KeyboardShortcut| !typing || works_while_typing(key);
+    // Keys with Shift or Alt come first: a shortcut without them would match as well.
     let mut all: Vec<(&Action, &KeyboardShortcut)> = ACTIONS
         .iter()
         .chain(FINE_ACTIONS)
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
-    // What asks for text has the rest of a slow pass for itself: what is typed after it is no shortcut.
+    // A key that opens a text field takes the rest of a slow pass: what is typed after it is no shortcut.
     if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
         commands.extend(action.command(session, view_state));
         return;
     }
-    for (action, key) in all.into_iter().filter(|(_, key)| at_hand(key)) {
+    for (action, key) in all.into_iter().filter(|(_, key)| allowed(key)) {
         if taken(key) {
             commands.extend(action.command(session, view_state));
         }
     }
-    // What a held key moves is one undo.
+    // The changes of a held key are one undo entry.
     let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
     if !typing && view_state.gesture.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
         commands.push(SessionCommand::EndGesture.into());
     }
 }
 
-/// Keys that no text field wants.
-fn beside_typing(key: &KeyboardShortcut) -> bool {
+/// Whether no text field uses the key.
+fn works_while_typing(key: &KeyboardShortcut) -> bool {
     asks_for_text(key) || key.logical_key == Key::F1
 }
 
-/// Keys that open a text field: the list of commands, and the names of files.
+/// Whether the key opens a text field: the list of commands, or a file name.
 fn asks_for_text(key: &KeyboardShortcut) -> bool {
     key.modifiers.command && [Key::S, Key::O, Key::K].contains(&key.logical_key)
 }
 
-/// What Esc closes.
+/// Returns the command of Esc.
 fn escape(view_state: &ViewState) -> Command {
     let ViewState { open, tool, arrangement, .. } = view_state;
     match open {
@@ -76,7 +76,7 @@ fn escape(view_state: &ViewState) -> Command {
     }
 }
 
-/// The card of keys and gestures, in groups, and what of it answers a few letters.
+/// Draws the card of keys and gestures, in groups, with a search field.
 pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) {
     if !view_state.open.help {
         return;
@@ -131,7 +131,7 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
 
 type Lines = Vec<(String, &'static str)>;
 
-/// What the card shows: titles, and below each its keys with what they do.
+/// Returns the titles of the card, with the keys below each title and their effects; filtered by the search text.
 fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
     let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
     let of = |group: Group| -> Lines {
@@ -145,7 +145,7 @@ fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
     all.filter(|(_, lines)| !lines.is_empty()).collect()
 }
 
-/// The keys of an action, each once.
+/// Returns the keys of an action, without repetitions.
 fn all_keys(action: &Action) -> String {
     let mut keys: Vec<String> = action.keys.iter().map(shown).collect();
     keys.dedup();

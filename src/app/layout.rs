@@ -1,10 +1,10 @@
-//! [`Layout`]: what people do with the window, and which panels it has for that.
+//! [`Layout`]: the purposes of the window, and the panels for each.
 
 use serde::{Deserialize, Serialize};
 
 use crate::picture::scene::palette::Theme;
 
-/// What the window is for just now.
+/// A layout of the window, for a purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
@@ -13,7 +13,7 @@ pub enum Layout {
     Explore,
     /// Scene, wide plots, and the table of runs side by side.
     Compare,
-    /// The scene alone, with what counts in large type.
+    /// The scene alone, with the main results in large type.
     Present,
 }
 
@@ -21,7 +21,7 @@ impl Layout {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Explore, Self::Compare, Self::Present];
 
-    /// What it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Explore => "Explore",
@@ -30,7 +30,7 @@ impl Layout {
         }
     }
 
-    /// What it has.
+    /// Its content in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Explore => "settings, scene and plots",
@@ -43,19 +43,19 @@ impl Layout {
 /// A panel beside the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
-    /// It is on display.
+    /// Whether it is on display.
     pub shown: bool,
-    /// How wide it was made, points of the screen; none as long as it was left alone.
+    /// Width set by the user, points of the screen; `None` while the user has not changed it.
     pub width: Option<f32>,
 }
 
 impl Panel {
-    /// As wide as it makes itself.
+    /// A panel of its default width.
     pub const fn usual(shown: bool) -> Self {
         Self { shown, width: None }
     }
 
-    /// How wide it was made, given how wide it is and how wide it is made by itself.
+    /// Returns the width set by the user, from the present and the default width, points.
     pub(super) fn made(&self, now: f32, usual: f32) -> Option<f32> {
         if self.width.is_some() || (now - usual).abs() > 1.0 { Some(now) } else { None }
     }
@@ -71,41 +71,41 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// As a layout has them until a hand changes that.
+    /// The default panels of a layout.
     pub const fn usual(layout: Layout) -> Self {
         let (side, plots) = (matches!(layout, Layout::Explore), !matches!(layout, Layout::Present));
         Self { side: Panel::usual(side), plots: Panel::usual(plots) }
     }
 }
 
-/// What is on display below the scene: the window has room for one.
+/// Content of the panel below the scene: there is room for one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Below {
     /// The table of runs side by side.
     Runs,
     /// The study of tolerances.
     Tolerances,
-    /// What a table says that was opened.
+    /// The panel of the open table.
     Table,
 }
 
-/// How the window is arranged: a person's liking, which outlives the session.
+/// Arrangement of the window: a preference of the user, which outlives the session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrangement {
     /// Light or dark.
     pub theme: Theme,
-    /// What the window is for just now.
+    /// The present layout.
     pub layout: Layout,
-    /// Settings stand on the right and plots on the left.
+    /// Whether settings are on the right and plots on the left.
     pub swapped: bool,
-    /// The equations stand beside the machine that is designed, and not its balance.
+    /// Whether the design view shows the equations in place of the balance.
     pub learns: bool,
     /// The panels of each layout, in the order of [`Layout::ALL`].
     pub panels: [Panels; Layout::ALL.len()],
 }
 
 impl Arrangement {
-    /// As it is until a hand changes that.
+    /// Returns the default arrangement.
     pub fn usual(theme: Theme) -> Self {
         let panels = Layout::ALL.map(Panels::usual);
         Self { theme, layout: Layout::Explore, swapped: false, learns: false, panels }
@@ -121,7 +121,7 @@ impl Arrangement {
         &mut self.panels[self.layout as usize]
     }
 
-    /// Lays the window out; again, and to present: as that layout is at first.
+    /// Chooses a layout. `Present`, and the layout already chosen, return to their default panels.
     pub(super) fn lay_out(&mut self, layout: Layout) {
         if layout == self.layout || layout == Layout::Present {
             self.panels[layout as usize] = Panels::usual(layout);

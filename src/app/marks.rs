@@ -1,5 +1,5 @@
-//! [`Marks`]: what stands on the time line: bookmarks, events, and where branches part. What lies too close to be told
-//! apart is one mark.
+//! [`Marks`]: marks on the time line: bookmarks, events, and the starts of branches. Marks closer than a minimum
+//! distance are drawn as one.
 
 use std::sync::Arc;
 
@@ -10,24 +10,24 @@ use crate::session::{Fork, Session};
 use crate::settings::number::significant;
 use crate::study::comparison::{Compared, Comparison};
 
-/// An instant worth to be found again.
+/// A marked instant.
 #[derive(Clone, Debug)]
 pub(super) struct Mark {
-    /// s.
+    /// Time, s.
     pub time: f64,
-    /// What is there.
+    /// Its description.
     pub words: String,
     pub tone: Tone,
 }
 
-/// What a mark is about, what matters most last.
+/// Kind of a mark, the most important last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Tone {
-    /// Something happens.
+    /// An event.
     Event,
-    /// A branch parts.
+    /// The start of a branch.
     Fork,
-    /// The base feels most, or an audit fails.
+    /// The peak of the base reaction, or a failed audit.
     Peak,
     /// A bookmark.
     Own,
@@ -36,44 +36,44 @@ pub(super) enum Tone {
 /// Marks that are drawn as one.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// Of the mark in it that matters most, s.
+    /// Time of its most important mark, s.
     pub time: f64,
     pub tone: Tone,
-    /// From the first of them to the last, s.
+    /// Times of its first and last mark, s.
     pub span: [f64; 2],
-    /// When, s, and what, one after the other; at most so many that they can be read.
+    /// Time, s, and description of its marks; at most `MAX_LINES`.
     pub lines: Vec<(String, String)>,
-    /// How many more there are.
+    /// Number of marks without a line.
     pub more: usize,
-    /// The same as one text.
+    /// The lines as one text.
     pub words: String,
 }
 
-/// Marks closer than this are one, points.
-const APART: f64 = 10.0;
+/// Marks closer than this are drawn as one, points.
+const MIN_SEPARATION_PT: f64 = 10.0;
 
-/// Lines that one of them says.
-const LINES: usize = 6;
+/// Maximum number of lines in the text of a group.
+const MAX_LINES: usize = 6;
 
-/// Frames that are read in one repaint: they take a few milliseconds.
-const AT_ONCE: usize = 20_000;
+/// Number of frames read in one repaint: a few milliseconds.
+const FRAMES_PER_REPAINT: usize = 20_000;
 
-/// All marks by time, what matters most first of those at one instant.
+/// Query for all marks, by time; of marks at one instant, the most important first.
 pub(super) struct Marking;
 
-/// What the marks depend on.
+/// The input of the marks.
 #[derive(Clone, PartialEq)]
 pub(super) struct Marked {
-    /// How long a step lasts, s.
+    /// Time step, s.
     step: f64,
-    /// What hands did.
+    /// Gestures of the user.
     gestures: Grown<Gestures>,
-    /// What else has happened.
+    /// Other events.
     events: Shared<Vec<Event>>,
     peak: Option<Event>,
     bookmarks: Shared<Vec<Bookmark>>,
     forks: Same<Vec<Fork>>,
-    /// Runs that are laid over, with their titles.
+    /// Runs shown in comparison, with their titles.
     others: Vec<(String, Same<Compared>)>,
 }
 
@@ -83,7 +83,7 @@ impl Quick for Marking {
 
     fn answer(of: &Marked) -> Vec<Mark> {
         let gestures: Vec<Event> = of.gestures.answer().map_or_else(Vec::new, |all| all.told().collect());
-        let told = gestures.iter().chain(&*of.events.0).chain(&of.peak).filter(|event| event.step > 0);
+        let events = gestures.iter().chain(&*of.events.0).chain(&of.peak).filter(|event| event.step > 0);
         let event = |event: &Event| {
             let tone = if matches!(event.kind, Kind::Peak | Kind::Fault) { Tone::Peak } else { Tone::Event };
             Mark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
@@ -92,7 +92,7 @@ impl Quick for Marking {
         let fork =
             |fork: &Fork| Mark { time: fork.from, words: format!("a branch parts: {}", fork.title), tone: Tone::Fork };
         let worst = of.others.iter().filter_map(|(title, run)| worst(title, &run.0));
-        let mut marks: Vec<Mark> = told
+        let mut marks: Vec<Mark> = events
             .map(event)
             .chain(worst)
             .chain(of.bookmarks.0.iter().map(own))
@@ -107,7 +107,7 @@ impl Quick for Marking {
     }
 }
 
-/// Marks on a time line so long, s, and so wide, points, each group as one.
+/// Query for the groups of marks on a time line of this length, s, and width, points.
 struct Grouping;
 
 impl Quick for Grouping {
@@ -115,27 +115,27 @@ impl Quick for Grouping {
     type Answer = Vec<Group>;
 
     fn answer((marks, [length, width]): &Self::Input) -> Vec<Group> {
-        parted(seen(&marks.0, *length), APART / width.max(1.0) * length)
+        grouped(within(&marks.0, *length), MIN_SEPARATION_PT / width.max(1.0) * length)
     }
 }
 
-/// Those on a time line so long, s: a bookmark may stand beyond it.
-fn seen(marks: &[Mark], length: f64) -> &[Mark] {
+/// Returns the marks on a time line of this length, s: a bookmark may lie beyond it.
+fn within(marks: &[Mark], length: f64) -> &[Mark] {
     &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
 }
 
-/// All of them, as far as the run is read.
+/// All marks, as far as the frames of the run have been read.
 pub(super) struct Marks {
     queries: Queries,
     marks: Arc<Vec<Mark>>,
-    /// Whether all frames are read.
+    /// Whether all frames have been read.
     pub is_whole: bool,
 }
 
 impl Marks {
-    /// Of the session and of the runs beside it.
+    /// Queries the marks of the session and of the runs shown in comparison.
     pub fn of(queries: &Queries, session: &Session, beside: Option<&Comparison>) -> Self {
-        let watched = session.events(queries, AT_ONCE);
+        let watched = session.events(queries, FRAMES_PER_REPAINT);
         let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
         let marked = Marked {
             step: session.scenario().step,
@@ -150,30 +150,30 @@ impl Marks {
         Self { queries: queries.clone(), marks, is_whole: watched.is_whole }
     }
 
-    /// Marks on a time line so long, s, and so wide, points.
+    /// Returns the groups of marks on a time line of this length, s, and width, points.
     pub fn on_line(&self, length: f64, width: f64) -> Arc<Vec<Group>> {
         self.queries.ask::<Whole<Grouping>>(&(Same(self.marks.clone()), [length, width]))
     }
 }
 
-/// Of the marks that are shown the first after the instant on display, or the last before it, s.
+/// Returns the time of the next mark after the instant on display (`on`), or of the last mark before it, s.
 pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
     let marks = queries.last::<Whole<Marking>>()?;
-    let mut times = seen(&marks, session.length()).iter().map(|mark| mark.time);
+    let mut times = within(&marks, session.length()).iter().map(|mark| mark.time);
     match on {
         true => times.find(|mark| *mark > time + 0.5 * step),
         false => times.rfind(|mark| *mark < time - 0.5 * step),
     }
 }
 
-/// Runs that are laid over plots and scene, with their titles.
+/// Returns the runs shown in plots and scene, with their titles.
 fn laid_over(beside: Option<&Comparison>) -> impl Iterator<Item = (&str, &Arc<Compared>)> {
     let shown = beside.map_or(&[][..], Comparison::entries).iter().filter(|entry| entry.shown);
     shown.filter_map(|entry| Some((entry.title.as_str(), entry.outcome.as_ref().ok()?)))
 }
 
-/// The worst moment of such a run, if its base feels the arm.
+/// Returns the mark at the peak base moment of a run, if it has reactions.
 fn worst(title: &str, run: &Compared) -> Option<Mark> {
     let peaks = run.frames.last().map(|last| &last.peaks).filter(|peaks| !peaks.is_reactionless())?;
     let first = run.frames.iter().find(|frame| frame.peaks.arm_moment >= peaks.arm_moment)?;
@@ -181,14 +181,14 @@ fn worst(title: &str, run: &Compared) -> Option<Mark> {
     Some(Mark { time: first.time, words, tone: Tone::Peak })
 }
 
-/// Marks by time in groups, so that none is drawn closer to the next than so much, s.
-fn parted(marks: &[Mark], near: f64) -> Vec<Group> {
-    // Where each begins, and its mark that matters most, the first of equals: there it is drawn.
+/// Groups marks, sorted by time, so that drawn marks are at least `min_separation` apart, s.
+fn grouped(marks: &[Mark], min_separation: f64) -> Vec<Group> {
+    // Start index and most important mark of each group, the first of equals: the group is drawn there.
     let mut groups: Vec<(usize, &Mark)> = Vec::new();
     for (i, mark) in marks.iter().enumerate() {
         let (mut start, mut best) = (i, mark);
-        // Joined to the group before, it may be drawn too close to the one before that.
-        while let Some((before, other)) = groups.pop_if(|(_, other)| best.time - other.time < near) {
+        // A mark that joins a group may move it too close to the previous group.
+        while let Some((before, other)) = groups.pop_if(|(_, other)| best.time - other.time < min_separation) {
             (start, best) = (before, if other.tone >= best.tone { other } else { best });
         }
         groups.push((start, best));
@@ -200,7 +200,7 @@ fn parted(marks: &[Mark], near: f64) -> Vec<Group> {
 impl Group {
     fn of(marks: &[Mark], best: &Mark) -> Self {
         let line = |mark: &Mark| (format!("{:.3} s", mark.time), mark.words.clone());
-        let lines: Vec<(String, String)> = marks.iter().take(LINES).map(line).collect();
+        let lines: Vec<(String, String)> = marks.iter().take(MAX_LINES).map(line).collect();
         let more = marks.len() - lines.len();
         let mut words: Vec<String> = lines.iter().map(|(when, what)| format!("{what} at {when}")).collect();
         words.extend((more > 0).then(|| format!("and {more} more")));

@@ -1,4 +1,4 @@
-//! What the right button of the mouse offers in the scene, for the thing and the place that it was pressed on.
+//! The context menu of the scene, for the object and the position under the pointer.
 
 use egui::{Id, PointerButton, Response, Ui};
 
@@ -9,15 +9,16 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::options::Handle;
 use crate::session::{Edit, Session};
 
-/// What the menu is about.
+/// Object and position of the menu.
 #[derive(Clone, Copy)]
 struct About {
     thing: Option<Handle>,
-    /// In the plane of motion, m.
+    /// Position in the plane of motion, m.
     at: Option<[f64; 2]>,
 }
 
-/// Draws the menu, while it is open; `hot` is what the pointer is on, and `at` where it is in the plane of motion, m.
+/// Draws the menu while it is open; `hot` is the object under the pointer, and `at` its position in the plane of
+/// motion, m.
 pub fn show(
     response: &Response,
     session: &Session,

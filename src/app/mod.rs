@@ -1,7 +1,7 @@
-//! Panels, plots and the viewport: the same pixels in a window, in a test and in a figure.
+//! The user interface: panels, plots and the viewport. It draws the same pixels in a window, in a test and in a figure.
 //!
-//! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s, which the [`AppState`]
-//! carries out at the end of the pass. Nothing is computed here.
+//! The panels read a [`Session`](crate::session::Session) and return [`Command`]s. The [`AppState`] carries them out at
+//! the end of the pass. Nothing is computed here.
 
 pub mod actions;
 mod activity;

@@ -1,32 +1,32 @@
-//! What lies open over the window until it is closed.
+//! Dialogs, lists and cards that are open over the window.
 
 use super::FileDialog;
 use super::tour::Tour;
 
-/// What is typed into the list, and which line is chosen.
+/// State of the list of commands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Finder {
-    /// A few letters.
+    /// Search text.
     pub sought: String,
-    /// Counted from the top.
+    /// Index of the selected line, counted from 0 at the top.
     pub chosen: usize,
 }
 
-/// Cards, lists and dialogs.
+/// Which cards, lists and dialogs are open.
 #[derive(Clone, Debug, Default)]
 pub struct Open {
-    /// The keys.
+    /// The card of keys.
     pub help: bool,
-    /// What was done.
+    /// The list of changes.
     pub history: bool,
-    /// What a repaint takes.
+    /// The display of repaint times.
     pub times: bool,
-    /// The tour, while it is under way.
+    /// The tour while it runs.
     pub tour: Option<Tour>,
     /// The list of commands.
     pub finder: Option<Finder>,
-    /// A file is being asked for.
+    /// The file dialog.
     pub dialog: Option<FileDialog>,
-    /// The name of the bookmark at this instant, s, is asked for.
+    /// The time of the bookmark that is being named, s.
     pub naming: Option<f64>,
 }

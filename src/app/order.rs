@@ -1,12 +1,12 @@
 //! Pointer events in the order in which they happened.
 //!
-//! egui looks at the pointer once a frame, at its last position. On a slow or remote display one frame may bring a
-//! press, a drag, a release and whatever the hand did afterwards; the widget would then be let go where the pointer is
-//! now, not where the button came up. So a frame is given no more than one change of a button, and nothing after it.
+//! egui reads the pointer once a frame, at its last position. On a slow or remote display one frame may contain a
+//! press, a drag, a release and later movements. A widget would then be released at the present position, not at that
+//! of the release. So a frame gets at most one change of a button, and no event after it.
 
 use egui::{Context, Event, Plugin, RawInput, Ui};
 
-/// Holds back what comes after a press or a release, for the next frame.
+/// Plugin that holds back the events after a press or a release, for the next frame.
 #[derive(Debug, Default)]
 pub struct Order {
     waiting: Vec<Event>,
@@ -29,21 +29,22 @@ impl Plugin for Order {
     }
 }
 
-/// Takes events off the front up to the first press, or up to before the first release; a release that comes first is
-/// taken alone, and so are keys before a press: an Esc that closed something must not give up the drag after it.
+/// Removes and returns the first events: up to and with the first press, or up to but without the first release. A
+/// release without movement before it is passed with the events before it. Keys before a press are passed without it:
+/// an Esc that closed something must not cancel the drag after it.
 fn first_part(events: &mut Vec<Event>) -> Vec<Event> {
-    let turn = |event: &Event| match event {
+    let pressed_in = |event: &Event| match event {
         Event::PointerButton { pressed, .. } => Some(*pressed),
         _ => None,
     };
-    let cut = match events.iter().enumerate().find_map(|(i, event)| Some((i, turn(event)?))) {
+    let split = match events.iter().enumerate().find_map(|(i, event)| Some((i, pressed_in(event)?))) {
         None => events.len(),
         Some((at, true)) if events[..at].iter().any(|event| matches!(event, Event::Key { .. })) => at,
         Some((at, true)) => at + 1,
-        // A drag has to be seen as one before it ends.
+        // A drag has to be noticed before it ends.
         Some((at, false)) if events[..at].iter().any(|event| matches!(event, Event::PointerMoved(_))) => at,
         Some((at, false)) => at + 1,
     };
-    let rest = events.split_off(cut);
+    let rest = events.split_off(split);
     std::mem::replace(events, rest)
 }

@@ -1,73 +1,80 @@
-//! [`Pace`]: whether a run is played as fast as it is asked to be, and how many steps a repaint may do so that the
-//! picture stays smooth.
+//! [`Pace`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so that
+//! the picture stays smooth.
 
-/// How fast time passes in the run.
+/// Measured playback rate and cost of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pace {
-    /// Simulated seconds a second, averaged over some time.
+    /// Playback rate, simulated seconds per second, averaged over [`AVERAGING_TIME_S`].
     rate: Option<f64>,
-    /// Wall time that was counted, s.
-    counted: f64,
-    /// Said to be behind.
-    behind: bool,
-    /// What a step takes, s; unknown as long as nobody measures it.
-    cost: Option<f64>,
-    /// Steps of the last repaint.
+    /// Wall time in the average, s.
+    counted_s: f64,
+    /// Whether playback counts as lagging.
+    lags: bool,
+    /// Wall time of a step, s; `None` until it has been measured.
+    step_cost_s: Option<f64>,
+    /// Number of steps in the last repaint.
     steps: f64,
 }
 
-/// Over how much wall time is averaged, s.
-const AVERAGED: f64 = 0.5;
-/// A repaint so late, s, says that the program was held up, not that it is slow.
-const HELD_UP: f64 = 2.0;
-/// What of the speed is slower than asked for, and what is as good as that again.
-const SLOW: [f64; 2] = [0.9, 0.97];
-/// What the steps of one repaint may take, s.
-const BUDGET: f64 = 0.012;
-/// The most steps of a repaint, while it is not known what they take and where they take next to nothing.
-const MOST: [f64; 2] = [2000.0, 20_000.0];
-/// What they are believed to have taken at most, s.
-const LONGEST: f64 = 0.2;
-/// Share of the newest measure in what a step takes.
-const NEWEST: f64 = 0.3;
+/// Time constant of the average, wall time, s.
+const AVERAGING_TIME_S: f64 = 0.5;
+/// Longer gaps between repaints, s, mean that the program was suspended, not that it is slow.
+const MAX_REPAINT_GAP_S: f64 = 2.0;
+/// Playback counts as lagging below this fraction of the requested rate, until it is back above the second
+/// (hysteresis).
+const LAG_BELOW: f64 = 0.9;
+const LAG_ENDS_AT: f64 = 0.97;
+/// Wall time that the steps of one repaint may take, s.
+const STEP_BUDGET_S: f64 = 0.012;
+/// Maximum number of steps in a repaint, while the cost of a step is unknown, and in any case.
+const MAX_STEPS_UNMEASURED: f64 = 2000.0;
+const MAX_STEPS: f64 = 20_000.0;
+/// Longer measured times of a repaint are limited to this, s.
+const MAX_MEASURED_S: f64 = 0.2;
+/// Weight of the newest measurement in the cost of a step.
+const NEWEST_WEIGHT: f64 = 0.3;
 
 impl Pace {
-    /// How many steps a repaint may do.
+    /// Returns the maximum number of steps in a repaint.
     pub fn most_steps(&self) -> f64 {
-        self.cost.map_or(MOST[0], |cost| (BUDGET / cost.max(1e-9)).floor().clamp(1.0, MOST[1]))
+        self.step_cost_s
+            .map_or(MAX_STEPS_UNMEASURED, |cost| (STEP_BUDGET_S / cost.max(1e-9)).floor().clamp(1.0, MAX_STEPS))
     }
 
-    /// In so much wall time so much time has passed in the run, s, in so many steps, where it was to be so many times as
-    /// much.
+    /// Records one repaint.
+    /// * `wall`: wall time since the last repaint, s;
+    /// * `simulated`: simulated time of its steps, s;
+    /// * `steps`: number of steps;
+    /// * `speed`: requested playback rate, simulated seconds per second.
     pub fn count(&mut self, wall: f64, simulated: f64, steps: f64, speed: f64) {
         self.steps = steps;
-        if wall <= 0.0 || wall > HELD_UP {
+        if wall <= 0.0 || wall > MAX_REPAINT_GAP_S {
             return;
         }
         let now = simulated / wall;
-        let share = 1.0 - (-wall / AVERAGED).exp();
+        let share = 1.0 - (-wall / AVERAGING_TIME_S).exp();
         let rate = self.rate.map_or(speed, |rate| rate) * (1.0 - share) + now * share;
-        (self.rate, self.counted) = (Some(rate), self.counted + wall);
-        let slow = if self.behind { SLOW[1] } else { SLOW[0] };
-        self.behind = self.counted >= AVERAGED && rate < slow * speed;
+        (self.rate, self.counted_s) = (Some(rate), self.counted_s + wall);
+        let threshold = if self.lags { LAG_ENDS_AT } else { LAG_BELOW };
+        self.lags = self.counted_s >= AVERAGING_TIME_S && rate < threshold * speed;
     }
 
-    /// What the steps of the last repaint have taken, s.
+    /// Records the wall time that the steps of the last repaint took, s.
     pub fn took(&mut self, seconds: f64) {
         if self.steps >= 1.0 {
-            // A program that was held up has learnt nothing of its steps.
-            let now = seconds.min(LONGEST) / self.steps;
-            self.cost = Some(self.cost.map_or(now, |cost| cost + NEWEST * (now - cost)));
+            // A suspension of the program says nothing about its steps.
+            let now = seconds.min(MAX_MEASURED_S) / self.steps;
+            self.step_cost_s = Some(self.step_cost_s.map_or(now, |cost| cost + NEWEST_WEIGHT * (now - cost)));
         }
     }
 
-    /// Time stands.
+    /// Restarts the average, because the run is paused.
     pub fn rest(&mut self) {
-        *self = Self { cost: self.cost, ..Self::default() };
+        *self = Self { step_cost_s: self.step_cost_s, ..Self::default() };
     }
 
-    /// Simulated seconds a second, where that is less than asked for.
+    /// Returns the playback rate, simulated seconds per second, if it lags behind the requested one.
     pub fn behind(&self) -> Option<f64> {
-        self.rate.filter(|_| self.behind)
+        self.rate.filter(|_| self.lags)
     }
 }

@@ -1,4 +1,4 @@
-//! The task in the panel on the left: what becomes of the redundancy, which points, along what, and when.
+//! The section *Path* of the panel on the left: kind of task, shape, time law, points and corners.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,8 +19,8 @@ use crate::session::{Edit, Session};
 use crate::settings::number::counted;
 use crate::settings::word::{Choice, Words};
 
-/// The most points that are listed.
-const LISTED: usize = 8;
+/// Maximum number of points that are listed.
+const MAX_LISTED_POINTS: usize = 8;
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     let task = &session.scenario().task;
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
     let mut kinds = TaskKind::ALL.to_vec();
-    // Those that want more than points come last.
+    // Kinds that need more than points come last.
     kinds.sort_by_key(|kind| matches!(kind, TaskKind::SameTip | TaskKind::Given));
     choose(ui, session, ("Redundancy", "kind"), &kinds, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
@@ -58,12 +58,12 @@ fn choose<T: Choice>(
             if ui.selectable_label(*choice == now, screen).on_hover_text(meaning).clicked() && *choice != now {
                 let mut change = Change::from_iter([(key.to_owned(), Value::String(word.into()))]);
                 if word == "arc" && session.scenario().task.via.is_empty() {
-                    // The arc goes through the middle of the path so far.
+                    // The arc passes through the middle of the present path.
                     let p = session.run().on_path(0.5);
                     change.insert("via".into(), vec![vec![p.re, p.im]].into());
                 }
                 if key == "kind" {
-                    // What only the other kind has.
+                    // Keys that only the other kind has.
                     change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
                     let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
                     if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
@@ -80,7 +80,7 @@ fn choose<T: Choice>(
     name(&response.response.on_hover_text(now.words().meaning), label);
 }
 
-/// Sets one key of the task, as an undo of its own.
+/// Sets one key of the task, as an undo entry of its own.
 fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
     commands.extend([
         Command::Session(SessionCommand::Edit(Edit::at(&["task", key], value))),
@@ -108,14 +108,14 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     send(commands, &responses, || Edit::set("task.time", time));
 }
 
-/// The points of the path: to type, reorder and remove.
+/// Draws the points of the path, to edit, reorder and remove.
 fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     if let Some(samples) = &task.samples {
         note(ui, p, &format!("the motion over time is given by {}", counted(samples.count(), "sample")));
         return;
     }
     let all = task.points();
-    if all.len() > LISTED || task.shape() == Shape::Freehand {
+    if all.len() > MAX_LISTED_POINTS || task.shape() == Shape::Freehand {
         note(ui, p, &format!("{} points from A to B", all.len()));
         return;
     }
@@ -175,7 +175,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
     if response.clicked() {
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
-        // The new point is on the path where there is one, so that the machine can reach it.
+        // The new point lies on the path if possible, so that the machine can reach it.
         let at = if all.len() == 2 { session.run().on_path(0.5) } else { middle };
         change(commands, task.adding(at), false);
     }
@@ -221,7 +221,7 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// What only some kinds of task have.
+/// Draws the settings of particular kinds of task.
 fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
@@ -303,7 +303,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     }
 }
 
-/// What the planned motion will cost, in two lines whatever plant and base are, so that nothing below jumps.
+/// Draws the forecast of the planned motion, always in two lines, so that nothing below moves.
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
@@ -311,7 +311,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
         ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
     }
-    // A plan is for the model on a fixed base; the status line shows what plant and base do.
+    // The plan is computed for the model on a fixed base; the status line shows the effects of plant and base.
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
     let waits = session.run().waiting().is_some();

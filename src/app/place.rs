@@ -1,5 +1,5 @@
-//! Where in the panel a thing of the scene stands: clicked in the scene, its place is opened, scrolled to and marked for
-//! a moment; with pointer or keyboard on its place, the thing lights up in the scene.
+//! The rows of scene objects in the panel of settings. A click on an object opens, scrolls to and marks its rows for a
+//! moment. With the pointer or keyboard focus on its rows, the object lights up in the scene.
 
 use egui::{Align, Context, Id, Rect, Shape, Ui};
 
@@ -8,15 +8,15 @@ use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::Session;
 
-/// How long a place stays marked, s.
-const MARKED: f64 = 1.6;
+/// Duration of the mark on an object's rows, s.
+const MARK_DURATION_S: f64 = 1.6;
 
-/// What the places of one pass share.
+/// State shared by the rows of all objects in a pass.
 #[derive(Clone, Copy, Default)]
 struct Places {
-    /// The place that is marked, and until when, s; the latter unknown as long as it was not seen.
+    /// The object whose rows are marked, and the end of the mark, s; `None` until they are drawn.
     marked: Option<(Handle, Option<f64>)>,
-    /// What the pointer's or the keyboard's place is of.
+    /// The object whose rows are under the pointer or have the keyboard focus.
     lit: Option<Handle>,
 }
 
@@ -24,26 +24,26 @@ fn id() -> Id {
     Id::unique("places")
 }
 
-/// Where the panel keeps whether a section is unfolded.
+/// Key under which egui stores whether a section is unfolded.
 pub fn fold_id(title: &str) -> Id {
     Id::unique(("fold", title))
 }
 
-/// Where it keeps which link or length its list of differences shows.
+/// Key under which egui stores the chosen link or length of a list of differences.
 pub fn chosen_id(what: &str) -> Id {
     Id::unique(("differs", what))
 }
 
-/// The list of links that differ from the model.
+/// Name of the list of links that differ from the model.
 pub const LINKS: &str = "a link differs";
 
-/// Whether a thing has a place in the panel.
+/// Whether an object has rows in the panel.
 pub fn is_in_panel(thing: Handle) -> bool {
     use Handle::{Base, Boundary, Joint, Limit, Link, Payload, Ring, Target, Waypoint};
     matches!(thing, Target | Link(_) | Joint(_) | Limit(..) | Base | Payload | Waypoint(_) | Ring | Boundary)
 }
 
-/// The thing whose place stands for it.
+/// Returns the object whose rows are shown for this one.
 fn standing_for(thing: Handle) -> Handle {
     match thing {
         Handle::Boundary => Handle::Ring,
@@ -52,7 +52,7 @@ fn standing_for(thing: Handle) -> Handle {
     }
 }
 
-/// Opens the place of a thing; it is scrolled to and marked when it is drawn next.
+/// Opens the rows of an object; they are scrolled to and marked when they are drawn next.
 pub fn open(ctx: &Context, thing: Handle, session: &Session) {
     let thing = standing_for(thing);
     ctx.data_mut(|data| {
@@ -73,38 +73,38 @@ pub fn open(ctx: &Context, thing: Handle, session: &Session) {
     });
 }
 
-/// What has its place under the pointer or the keyboard; to be asked once all places have been drawn.
+/// Takes the object whose rows are under the pointer or have the focus; to be called after all rows have been drawn.
 pub fn lit(ctx: &Context) -> Option<Handle> {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit.take())
 }
 
-/// Where the links that are spoken of wait for the end of the panels.
+/// Key under which egui stores the links to light up, until the end of the pass.
 fn links_id() -> Id {
     Id::unique("links that are spoken of")
 }
 
-/// Lights links up that are spoken of.
+/// Lights up links that a panel mentions.
 pub fn light_links(ctx: &Context, links: Vec<usize>) {
     ctx.data_mut(|data| data.insert_temp(links_id(), links));
 }
 
-/// The links that are spoken of; to be asked once all panels have been drawn.
+/// Takes the links that the panels mention; to be called after all panels have been drawn.
 pub fn lit_links(ctx: &Context) -> Vec<usize> {
     ctx.data_mut(|data| data.remove_temp::<Vec<usize>>(links_id())).unwrap_or_default()
 }
 
-/// Lights a thing up that is spoken of.
+/// Lights up an object that a panel mentions.
 pub fn light(ctx: &Context, thing: Handle) {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
 }
 
-/// The place of a thing.
+/// Draws the rows of an object.
 pub fn of<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOnce(&mut Ui) -> R) -> R {
     let behind = ui.painter().add(Shape::Noop);
     let shown = ui.scope(add);
     let rect = shown.response.rect;
     let focused = ui.memory(egui::Memory::focused).and_then(|id| ui.ctx().read_response(id));
-    // The limits of all joints share one place.
+    // The limits of all joints share one set of rows.
     let alone = !matches!(thing, Handle::Joint(_));
     let over = ui.rect_contains_pointer(rect) || focused.is_some_and(|r| r.has_focus() && rect.contains_rect(r.rect));
     if alone && over {
@@ -121,7 +121,7 @@ fn mark(ui: &Ui, rect: Rect, behind: egui::layers::ShapeIdx, thing: Handle, unti
     let now = ui.input(|i| i.time);
     let until = until.unwrap_or_else(|| {
         ui.scroll_to_rect(rect, Some(Align::Center));
-        now + MARKED
+        now + MARK_DURATION_S
     });
     let marked = (now < until).then_some((thing, Some(until)));
     ui.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).marked = marked);

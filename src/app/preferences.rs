@@ -1,4 +1,4 @@
-//! [`Preferences`]: how a person likes the window, remembered from one start to the next.
+//! [`Preferences`]: the user's preferences for the window, stored between program runs.
 
 use std::path::PathBuf;
 
@@ -7,39 +7,39 @@ use serde::{Deserialize, Serialize};
 use super::layout::{Arrangement, Layout, Panel, Panels};
 use crate::picture::scene::palette::Theme;
 
-/// How the window is liked. A file of an older or newer program reads as far as it is understood.
+/// Preferences for the window. A file of an older or newer program is read as far as its keys are known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Light or dark.
+    /// Colour theme.
     pub theme: Theme,
-    /// Width and height, points of the screen.
+    /// Width and height of the window, points of the screen.
     pub size: [f32; 2],
-    /// The hints of the first minute are still to be shown.
+    /// Whether to show the hints at the next start.
     pub hints: bool,
-    /// What the window is for.
+    /// The layout.
     pub layout: Layout,
-    /// Settings stand on the right and plots on the left.
+    /// Whether settings are on the right and plots on the left.
     pub swapped: bool,
-    /// The equations stand beside the machine that is designed.
+    /// Whether the design view shows the equations in place of the balance.
     pub learns: bool,
-    /// The panel of settings is shown, to explore.
+    /// Whether *Explore* shows the panel of settings.
     pub side: bool,
-    /// How wide it was made, points of the screen.
+    /// Its width if set by the user, points of the screen.
     pub side_width: Option<f32>,
-    /// The panel of plots is shown, to explore.
+    /// Whether *Explore* shows the panel of plots.
     pub plots: bool,
-    /// How wide it was made, points of the screen.
+    /// Its width if set by the user, points of the screen.
     pub plots_width: Option<f32>,
-    /// The panel of settings is shown, to compare.
+    /// Whether *Compare* shows the panel of settings.
     pub compare_side: bool,
-    /// How wide it was made.
+    /// Its width if set by the user, points of the screen.
     pub compare_side_width: Option<f32>,
-    /// The panel of plots is shown, to compare.
+    /// Whether *Compare* shows the panel of plots.
     pub compare_plots: bool,
-    /// How wide it was made.
+    /// Its width if set by the user, points of the screen.
     pub compare_plots_width: Option<f32>,
-    /// Files that were opened and saved, newest first.
+    /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
 }
 
@@ -66,7 +66,7 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Of a window so arranged and so large, points of the screen.
+    /// Returns the preferences of a window with this arrangement and size, points of the screen.
     pub(super) fn of(arrangement: &Arrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
         let Arrangement { theme, layout, swapped, learns, panels: [explore, compare, _] } = arrangement;
         Self {
@@ -88,7 +88,7 @@ impl Preferences {
         }
     }
 
-    /// How the window is arranged; to explore, until it is laid out for what it was for last.
+    /// Returns the arrangement of the window, with the layout *Explore*; the caller then chooses the stored layout.
     pub(super) fn arrangement(&self) -> Arrangement {
         let panel = |shown, width| Panel { shown, width };
         let explore = Panels { side: panel(self.side, self.side_width), plots: panel(self.plots, self.plots_width) };
@@ -100,7 +100,7 @@ impl Preferences {
         Arrangement { swapped: self.swapped, learns: self.learns, panels, ..Arrangement::usual(self.theme) }
     }
 
-    /// With sizes that a window can have, whatever a file said.
+    /// Limits all sizes to those that a window can have, and removes invalid recent files.
     #[must_use]
     pub fn sound(mut self) -> Self {
         let usual = Self::default();
@@ -114,7 +114,7 @@ impl Preferences {
         self.plots_width = wide(self.plots_width, 260.0, 1200.0);
         self.compare_side_width = wide(self.compare_side_width, 220.0, 480.0);
         self.compare_plots_width = wide(self.compare_plots_width, 260.0, 2400.0);
-        // What is relative was said in a folder that nobody knows any more.
+        // Relative paths refer to an unknown folder.
         self.recent.retain(|file| file.is_absolute());
         self.recent.truncate(32);
         self

@@ -1,4 +1,4 @@
-//! What counts, in large type over the scene, while the window is for presenting.
+//! The main results in large type over the scene, in the layout *Present*.
 
 use egui::{Align, Layout, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
@@ -8,20 +8,20 @@ use super::{Command, Layout as WindowLayout, ViewChange, ViewState, status};
 use crate::picture::numbers::signed;
 use crate::session::Session;
 
-/// A smaller moment is shown as zero, N m.
-const ZERO: f64 = 0.005;
+/// Smaller moments are shown as zero, N m.
+const ZERO_BELOW_N_M: f64 = 0.005;
 
-/// The height of the largest digits in a scene, points.
+/// Returns the height of the largest digits in a scene, points.
 fn size(rect: Rect) -> f32 {
     (0.075 * rect.height()).clamp(38.0, 110.0)
 }
 
-/// Where it lies over a scene.
+/// Returns the rectangle that it covers in a scene.
 pub fn covers(rect: Rect) -> Rect {
     Rect::from_min_size(rect.min, vec2(6.2 * size(rect), 3.6 * size(rect)))
 }
 
-/// Draws it.
+/// Draws the results.
 pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (p, f, large) = (view_state.palette(), session.frame(), size(rect));
     let corner = covers(rect).shrink(0.4 * large);
@@ -32,8 +32,8 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let line = |ui: &mut Ui, text: RichText| ui.add(egui::Label::new(text).extend());
     line(&mut corner, RichText::new(title).font(bold(0.4 * large)).color(colour(p.ink)));
     let moment = f.wrench.total().moment;
-    let tone = if moment.abs() < ZERO { p.zero } else { p.reaction };
-    let number = format!("{} N m", signed(if moment.abs() < ZERO { 0.0 } else { moment }, 2));
+    let tone = if moment.abs() < ZERO_BELOW_N_M { p.zero } else { p.reaction };
+    let number = format!("{} N m", signed(if moment.abs() < ZERO_BELOW_N_M { 0.0 } else { moment }, 2));
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
     line(&mut corner, RichText::new("moment on the base, n_B").font(plain(0.32 * large)).color(colour(p.dim)));
     for named in status::statements(session).named() {
@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
     line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));
-    // How far the run is, along the lower edge.
+    // A progress bar of the run along the lower edge.
     let share = (f.time / session.length().max(1e-9)).clamp(0.0, 1.0) as f32;
     let low = rect.bottom() - 4.0;
     let done = Rect::from_min_max(pos2(rect.left(), low), pos2(rect.left() + share * rect.width(), rect.bottom()));

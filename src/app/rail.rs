@@ -1,5 +1,5 @@
-//! The tool bar on the left: which view, what the pointer does, what is shown of the machine, and what is found out
-//! about it. It stands beside the scene and covers nothing of it.
+//! The tool bar on the left: views, tools of the pointer, layers of the scene, and analyses. It is beside the scene and
+//! covers nothing of it.
 
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
@@ -10,22 +10,22 @@ use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::{Fork, Session};
 
-/// How wide it is, points.
-const WIDTH: f32 = 50.0;
-/// A button, and one in a low window, so that none is out of sight.
-const BUTTON: egui::Vec2 = vec2(42.0, 30.0);
-const LOW: f32 = 24.0;
-/// A word for a view.
-const WORD: f32 = 25.0;
-/// Between them.
-const SPACE: f32 = 2.0;
+/// Width, points.
+const WIDTH_PT: f32 = 50.0;
+/// Size of a button, and its minimum height, so that in a low window all stay visible, points.
+const BUTTON_SIZE_PT: egui::Vec2 = vec2(42.0, 30.0);
+const MIN_BUTTON_HEIGHT_PT: f32 = 24.0;
+/// Height of the button of a view, points.
+const VIEW_BUTTON_HEIGHT_PT: f32 = 25.0;
+/// Gap between buttons, points.
+const GAP_PT: f32 = 2.0;
 
 /// A button that is on or off.
 struct Toggle {
     icon: Icon,
     /// Its name.
     label: &'static str,
-    /// What it does.
+    /// Its effect.
     does: &'static str,
     switch: Switch,
 }
@@ -34,8 +34,8 @@ const fn tool(switch: Switch, icon: Icon, label: &'static str, does: &'static st
     Toggle { icon, label, does, switch }
 }
 
-/// What the pointer does.
-const HANDS: [Toggle; 3] = [
+/// Tools of the pointer.
+const POINTER_TOOLS: [Toggle; 3] = [
     tool(
         Switch::Holding,
         Icon::Pointer,
@@ -51,14 +51,14 @@ const HANDS: [Toggle; 3] = [
     ),
 ];
 
-/// What is shown of the machine.
+/// Layers of the scene.
 const LAYERS: [Toggle; 3] = [
     tool(Switch::Dexterity, Icon::Ellipse, "dexterity", "Shade the workspace by how well the end effector moves"),
     tool(Switch::Snapshots, Icon::Fan, "snapshots", "Poses along the motion, as in Fig. 5"),
     tool(Switch::Pins, Icon::Pin, "pins", "What pins and bearings carry"),
 ];
 
-/// What is found out about it.
+/// Analyses.
 const ANALYSES: [Toggle; 3] = [
     tool(Switch::Study, Icon::Bell, "tolerances", "What the bases of many machines feel, and the spectrum"),
     tool(Switch::Compare, Icon::Beside, "side by side", "The same task done in other ways"),
@@ -70,19 +70,19 @@ const ANALYSES: [Toggle; 3] = [
     ),
 ];
 
-/// Draws it.
+/// Draws the tool bar.
 pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 4, right: 4, top: 8, bottom: 6 });
-    Panel::left("tools").exact_size(WIDTH).resizable(false).frame(frame).show(ui, |ui| {
-        // A low window scrolls it.
+    Panel::left("tools").exact_size(WIDTH_PT).resizable(false).frame(frame).show(ui, |ui| {
+        // In a low window it scrolls.
         let room = ui.available_height();
         let bars = egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
         ScrollArea::vertical().auto_shrink(false).scroll_bar_visibility(bars).show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(0.0, SPACE);
-            let size = vec2(BUTTON.x, height(room));
+            ui.spacing_mut().item_spacing = vec2(0.0, GAP_PT);
+            let size = vec2(BUTTON_SIZE_PT.x, height(room));
             for view in ViewKind::ALL {
-                let size = vec2(BUTTON.x, WORD);
+                let size = vec2(BUTTON_SIZE_PT.x, VIEW_BUTTON_HEIGHT_PT);
                 if let Err(why) = Views::has(view, session.run()) {
                     let tip = format!("Not of this machine: {why}");
                     word_without(ui, &p, (view.name(), &tip), size);
@@ -94,13 +94,13 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                     commands.push(ViewChange::Kind(view).into());
                 }
             }
-            for group in [HANDS.as_slice(), &LAYERS, &ANALYSES] {
-                rule(ui, &p, BUTTON.x);
+            for group in [POINTER_TOOLS.as_slice(), &LAYERS, &ANALYSES] {
+                rule(ui, &p, BUTTON_SIZE_PT.x);
                 for tool in group {
                     toggle(ui, &p, tool, size, view_state, commands);
                 }
             }
-            rule(ui, &p, BUTTON.x);
+            rule(ui, &p, BUTTON_SIZE_PT.x);
             let tip = format!("Show everything{}", key("Show everything"));
             let fit = IconButton { size, ..IconButton::of(Icon::Corners, "show everything", &tip) };
             if fit.show_in(ui, &p, super::theme::colour(p.dim)).clicked() {
@@ -112,13 +112,13 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
     });
 }
 
-/// How high a button is where there is so much room for all.
+/// Returns the height of a button, if all have this space, points.
 fn height(room: f32) -> f32 {
-    let words = ViewKind::ALL.len() as f32 * (WORD + SPACE);
-    let rules = 4.0 * (RULE + SPACE);
-    // With those for the whole scene, the arrangement and the history.
-    let buttons = (HANDS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
-    ((room - words - rules) / buttons - SPACE).floor().clamp(LOW, BUTTON.y)
+    let words = ViewKind::ALL.len() as f32 * (VIEW_BUTTON_HEIGHT_PT + GAP_PT);
+    let rules = 4.0 * (RULE + GAP_PT);
+    // Including those of *show everything*, the arrangement and the history.
+    let buttons = (POINTER_TOOLS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
+    ((room - words - rules) / buttons - GAP_PT).floor().clamp(MIN_BUTTON_HEIGHT_PT, BUTTON_SIZE_PT.y)
 }
 
 fn toggle(
@@ -140,7 +140,7 @@ fn toggle(
     }
 }
 
-/// The key of an action in brackets, if it has one.
+/// Returns the key of an action in brackets, if it has one.
 fn key(action: &str) -> String {
     in_brackets(key_of(action))
 }

@@ -1,4 +1,4 @@
-//! What the window says: the last message, and what was refused.
+//! Messages of the window: the last message, and the last refused edit.
 
 use std::sync::Arc;
 
@@ -6,23 +6,23 @@ use crate::picture::scene::options::Refused;
 use crate::planning::reactionless::Decimal;
 use crate::session::{Edit, Refusal};
 
-/// What is said until the next command.
+/// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]
 pub struct Said {
-    /// The last thing to say, and whether it is bad news.
+    /// The last message, and whether it reports a problem.
     pub message: Option<(String, bool)>,
-    /// The message is of a branch that was left: a button leads back to it.
+    /// Whether the message concerns a branch that was left: a button then shows that branch.
     pub left_branch: bool,
-    /// What was asked for last and refused.
+    /// The last refused edit.
     pub refused: Option<RefusedEdit>,
 }
 
-/// An edit that was refused.
+/// A refused edit.
 #[derive(Clone, Debug)]
 pub struct RefusedEdit {
-    /// The curve that was asked for, and where it stops.
+    /// The requested curve, and where it stops.
     pub curve: Option<Arc<Refused>>,
-    /// The same with another b, rad, that would do, as it is shown.
+    /// The edit with a feasible b, rad, and this b as displayed.
     pub remedy: Option<(Edit, Decimal)>,
 }
 

@@ -1,4 +1,4 @@
-//! [`Saving`]: which of the changes of a session are in a file, and the questions about those that are not.
+//! [`Saving`]: which changes of a session are saved, and the questions about those that are not.
 
 use std::path::{Path, PathBuf};
 
@@ -9,62 +9,63 @@ use super::{Command, FileDialog, Purpose, Recovery, SessionCommand, ViewChange, 
 use crate::picture::scene::palette::faded;
 use crate::session::Session;
 
-/// How much of a session is in a file.
+/// Which changes of a session are saved.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Saving {
-    /// Counts up with every change of the session.
+    /// Number of changes of the session.
     pub changes: u64,
-    /// What the count was when it was opened or saved.
+    /// That number when the session was opened or saved last.
     pub saved: u64,
-    /// The window was asked to close.
+    /// The question before closing is open.
     pub asks: bool,
-    /// It may close without saving.
+    /// The window is to close.
     pub leaves: bool,
-    /// A session that a program left behind, and when, in words.
+    /// A session left by an earlier program run, and when, in words.
     pub found: Option<(PathBuf, String)>,
-    /// What was left behind and is open now, or is to be forgotten: its file is to go when a journal holds it again.
+    /// The file of a recovered or discarded session; it is removed once a journal holds the present session.
     pub recovered: Option<PathBuf>,
-    /// Files that were opened and saved, newest first.
+    /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
-    /// The file that may be replaced, as the person has agreed.
+    /// The file that the user has agreed to replace.
     pub replaces: Option<PathBuf>,
 }
 
-/// How many files are remembered.
-const RECENT: usize = 8;
+/// Maximum number of recent files.
+const MAX_RECENT_FILES: usize = 8;
 
 impl Saving {
-    /// Whether something has changed that is in no file of the person's own.
+    /// Whether there are changes that are in no file of the user.
     pub fn is_unsaved(&self) -> bool {
         self.changes != self.saved
     }
 
-    /// The session is another one, as its file has it.
+    /// Marks a newly opened session as saved.
     pub fn opened(&mut self) {
         self.changes += 1;
         self.saved = self.changes;
     }
 
-    /// Whether a question is open: until it is answered nothing else is done.
+    /// Whether a question is open: until it is answered, it alone receives the keys.
     pub fn has_question(&self) -> bool {
         self.asks || self.found.is_some()
     }
 
-    /// Remembers a file by the whole of its path; a name that is no file is not remembered.
+    /// Adds a file to the recent files, by its absolute path; ignores a file that does not exist.
     pub fn uses(&mut self, file: &Path) {
         let Some(file) = crate::files::whole(file) else { return };
         self.recent.retain(|other| *other != file);
         self.recent.insert(0, file);
-        self.recent.truncate(RECENT);
+        self.recent.truncate(MAX_RECENT_FILES);
     }
 
-    /// Forgets a file that is gone.
+    /// Removes a file from the recent files if it does not exist any more.
     pub fn misses(&mut self, file: &Path) {
         self.recent.retain(|other| other != file || crate::files::whole(file).is_some());
     }
 }
 
-/// Asks what to do with a session that was left behind, or with changes before the window closes.
+/// Shows the question about a session left by an earlier program run, or about unsaved changes before the window
+/// closes.
 pub(super) fn show(
     ctx: &egui::Context,
     saving: &Saving,
@@ -120,7 +121,7 @@ fn card<const N: usize>(
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.amber))).corner_radius(10).inner_margin(16);
     let area = Modal::default_area(Id::unique("question"));
-    // A question that appears takes the keys.
+    // A question that appears takes the keyboard focus.
     let mut appears = !ctx.memory(|m| m.areas().visible_last_frame(&area.layer()));
     let shade = colour(faded(p.background, 0.6));
     let shown = Modal::new(Id::unique("question")).area(area).frame(frame).backdrop_color(shade).show(ctx, |ui| {
@@ -140,7 +141,7 @@ fn card<const N: usize>(
         });
         given
     });
-    // The last answer changes nothing: so does Esc.
+    // The last answer changes nothing; Esc gives it.
     let leaves_it = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)).then_some(N - 1);
     commands
         .extend(shown.inner.or(leaves_it).and_then(|i| answers.into_iter().nth(i)).into_iter().flat_map(|(_, c)| c));

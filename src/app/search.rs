@@ -1,13 +1,13 @@
-//! Finding a name from a few of its letters.
+//! Search for a name by a few of its letters.
 
-/// How well a name answers what was typed, more is better; `None` if a word of it is not there. Each word has to be
-/// found with its letters in order: whole, at the beginnings of words, or scattered.
+/// Returns the score of a name for a search text, more is better; `None` if a word is not found. Each word has to be
+/// found with its letters in order: contiguous, at the beginnings of words, or scattered.
 pub fn score(sought: &str, name: &str) -> Option<i32> {
     let name: Vec<char> = name.to_lowercase().chars().collect();
     sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
 }
 
-/// The same of a name that is sought by other words too: those have to be found whole.
+/// Returns the score of a name with further search words; in those, words have to be found contiguously.
 pub fn score_with(sought: &str, name: &str, also: &str) -> Option<i32> {
     let [name, also] = [name, also].map(|text| text.to_lowercase().chars().collect::<Vec<_>>());
     let best = |word: String| {
@@ -22,12 +22,12 @@ fn score_of(word: &str, name: &[char]) -> Option<i32> {
     whole(&word, name).or_else(|| scattered(&word, name, &|i| starts(name, i)))
 }
 
-/// Whether a word begins there.
+/// Whether a word begins at this letter.
 fn starts(name: &[char], i: usize) -> bool {
     i == 0 || !name[i - 1].is_alphanumeric()
 }
 
-/// Letters side by side.
+/// Score of a word found contiguously.
 fn whole(word: &[char], name: &[char]) -> Option<i32> {
     let starts = |i: usize| starts(name, i);
     let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
@@ -37,17 +37,18 @@ fn whole(word: &[char], name: &[char]) -> Option<i32> {
     best.max()
 }
 
-/// Letters in order, those that begin a word or follow the one before counting more.
+/// Score of a word whose letters are found in order; letters at the beginning of a word, or next to the previous
+/// letter, count more.
 fn scattered(word: &[char], name: &[char], starts: &dyn Fn(usize) -> bool) -> Option<i32> {
     let (mut score, mut next, mut last) = (0, 0, None);
     for letter in word {
-        // The beginning of a word ahead is meant rather than a letter in the middle of this one.
+        // The beginning of a later word is preferred to a letter inside this word.
         let from = |at: usize| (at..name.len()).filter(|i| name[*i] == *letter);
         let beside = last.map(|last| last + 1).filter(|i| name.get(*i) == Some(letter));
         let at = beside.or_else(|| from(next).find(|i| starts(*i))).or_else(|| from(next).next())?;
         score += if beside.is_some() || starts(at) { 4 } else { 1 };
         (next, last) = (at + 1, Some(at));
     }
-    // A few letters strewn over a long name say little.
+    // A few letters scattered over a long name are not significant.
     (score >= 3 * word.len() as i32).then_some(score)
 }

@@ -24,15 +24,15 @@ use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 use crate::settings::number::{significant, subscript};
 
-/// How wide it is made by itself, points: a share of the window, between these.
-const SHARE: f32 = 0.17;
-const NARROWEST: f32 = 262.0;
-const WIDEST: f32 = 320.0;
+/// Default width: a fraction of the window width, within bounds, points.
+const WIDTH_FRACTION: f32 = 0.17;
+const MIN_WIDTH_PT: f32 = 262.0;
+const MAX_WIDTH_PT: f32 = 320.0;
 
-/// Room for the scroll bar, which grows where the pointer is near, points.
+/// Space for the scroll bar, which grows when the pointer is near, points.
 pub(super) const BAR: f32 = 14.0;
 
-/// Draws this panel; how wide it was made.
+/// Draws this panel; returns the width set by the user, if any.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -42,7 +42,7 @@ pub fn show(
 ) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 2, top: 12, bottom: 8 });
-    let usual = (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round();
+    let usual = (WIDTH_FRACTION * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, MAX_WIDTH_PT).round();
     let salt = ("side", usual as u32, view_state.arrangement.swapped);
     let panel = if view_state.arrangement.swapped { Panel::right(salt) } else { Panel::left(salt) };
     let panel = panel
@@ -92,7 +92,7 @@ fn pose_constant(
         note(ui, p, "its drives are coupled, so that holding b does not quite keep the moment from the base");
     }
     let period = map.period();
-    // Shown is b within one period; the turns of the machine stay as they are.
+    // The row shows b within one period; the number of whole periods is kept.
     let b = session.b_aim();
     let turns = (b / period).floor() * period;
     let mut shown = b - turns;
@@ -102,7 +102,7 @@ fn pose_constant(
     );
     let row =
         Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period, slide: 0.0..=period };
-    // Where b stops, the knob does; it does not go round to the other end.
+    // The knob stops where b stops; it does not jump to the other end.
     let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
         Edit::PoseB { b } if b != turns + asked => {
             session.serving_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
@@ -141,7 +141,7 @@ fn pose_constant(
     } else {
         let who = all_points(session);
         let text = match session.run().bands() {
-            // Two drives reach a point at one b alone.
+            // Two drives reach a point at single values of b.
             Some(common) if !map.reaches_area() => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
@@ -161,7 +161,7 @@ fn pose_constant(
             commands.push(ViewChange::Switch(Switch::TurnTask, turn).into());
         }
     }
-    // One line whatever the base, so that nothing below jumps.
+    // Always one line, so that nothing below moves.
     let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
     let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
     ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
@@ -187,10 +187,10 @@ fn pose_constant(
     });
 }
 
-/// Where the end effector is sent: to be typed, or dragged like any number.
+/// Draws the target of the end effector: two numbers to type or drag.
 fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let frame = session.frame();
-    // Led by hand, where it was sent, so that the number that is not typed keeps what it was.
+    // After a drag of the machine, the requested target, so that a coordinate that is not typed keeps its value.
     let at = if session.is_led() { frame.target.at } else { target_handle(frame) };
     let mut place = [at.re, at.im];
     ui.horizontal(|ui| {
@@ -211,7 +211,7 @@ fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
     });
 }
 
-/// The points of the task, in words.
+/// Returns the points of the task in words.
 fn all_points(session: &Session) -> String {
     match session.scenario().task.points().len() {
         2 => "A and B".into(),
@@ -254,7 +254,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                     }
                 }
                 send(commands, &changed, || {
-                    // The end that was not changed keeps its exact value.
+                    // A limit that was not changed keeps its exact value.
                     let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
                     let ends = [rad(0, *angle.limits.start()), rad(1, *angle.limits.end())];
                     Edit::at(&["limits", &angle.name], ends.to_vec())
@@ -264,14 +264,14 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
     }
 }
 
-/// A number that is added.
+/// Returns a number with its sign as an operator.
 fn signed_by(x: f64) -> String {
     format!("{} {:.3}", if x < 0.0 { '−' } else { '+' }, x.abs())
 }
 
 fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let gravity = session.scenario().machine.gravity();
-    // From zero, so that no gravity reads 0.00 and not −0.00.
+    // Subtracted from zero, so that zero gravity reads 0.00 and not −0.00.
     let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
     let row = Row { tip, slide: 0.0..=20.0, ..Row::of("gravity", "gravity").with(2, 0.05) };

@@ -1,4 +1,4 @@
-//! The [`AppState`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
+//! The [`AppState`]: a session, its view state, and the execution of commands. Every window, test and figure has one.
 
 mod beside;
 mod carry_out;
@@ -36,42 +36,42 @@ use crate::study::lengths::Seeking;
 /// A session on display.
 pub struct AppState {
     session: Session,
-    /// The views on display: framing follows where others take their place.
+    /// The views on display. The framing is renewed when they are replaced.
     views: Arc<Views>,
-    /// The machine before the change under way in that view.
+    /// The machine before the gesture under way in the design view.
     designed_from: Option<Machine>,
     view_state: ViewState,
-    /// What is left of the first minute, and whether it is to be shown at the next start.
+    /// The introduction while it is shown, and whether to show it at the next start.
     intro: Option<Intro>,
     hints: bool,
-    /// What of the session is in a file.
+    /// Which changes are saved, and the questions about those that are not.
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
-    /// Machines whose fronts are drawn beside that of the machine that is designed.
+    /// Machines whose Pareto fronts are drawn beside that of the machine being designed.
     fronts: Vec<FrontOf>,
-    /// The lengths that are sought, or were found.
+    /// Request of the search for lengths, under way or finished.
     seeking: Option<<Seeking as Query>::Input>,
-    /// The table that was opened last.
+    /// The table opened last.
     given: Option<Given>,
-    /// What is under way beside the window.
+    /// Work in the background.
     background: Background<Self>,
-    /// Wall time not yet turned into steps, s.
-    owed: f64,
+    /// Simulated time that is due but not yet run, s.
+    due_s: f64,
     pace: Pace,
-    /// What there is to say of a branch that the gesture under way has left.
-    parted: Option<String>,
-    dressed: Option<Theme>,
-    fonts: bool,
-    /// A signal is to be sought in the next pass.
-    looks: bool,
+    /// Message about the branch that the current gesture has left.
+    branch_message: Option<String>,
+    applied_theme: Option<Theme>,
+    has_fonts: bool,
+    /// The next pass moves the keyboard focus to the search for signals.
+    focuses_search: bool,
 }
 
 impl AppState {
     /// Opens a scenario.
     ///
     /// # Errors
-    /// If it cannot start.
+    /// If the scenario cannot start.
     pub fn new(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
         Ok(Self::around(Session::open(scenario)?, theme))
     }
@@ -93,18 +93,18 @@ impl AppState {
             fronts: Vec::new(),
             seeking: None,
             background,
-            owed: 0.0,
+            due_s: 0.0,
             pace: Pace::default(),
-            parted: None,
-            dressed: None,
-            fonts: false,
-            looks: false,
+            branch_message: None,
+            applied_theme: None,
+            has_fonts: false,
+            focuses_search: false,
         };
         app_state.foresee();
         app_state
     }
 
-    /// The same as a person likes it, with the first minute if that is still to come.
+    /// Applies the user's preferences, and starts the introduction if it is still due.
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
         self.view_state.arrangement = liked.arrangement();
@@ -121,30 +121,30 @@ impl AppState {
         self
     }
 
-    /// The same with a session that a program left behind: its file, and when that was written, in words.
+    /// Offers to recover a session left by an earlier program run: its file, and when it was written, in words.
     #[must_use]
     pub fn finding(mut self, left: Option<(PathBuf, String)>) -> Self {
         self.saving.found = left;
         self
     }
 
-    /// The same with somebody who works beside it.
+    /// Sets the worker threads for work in the background.
     #[must_use]
     pub fn with_workers(mut self, workers: impl Workers + Send + Sync + 'static) -> Self {
         self.background.hire(workers);
         self
     }
 
-    /// How it is liked, to be remembered; of a window so large, points.
+    /// Returns the preferences to be stored, for a window of this size, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
         Preferences::of(&self.view_state.arrangement, size, self.hints, &self.saving.recent)
     }
 
-    /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
-    /// A machine that cannot do that either waits where it stands.
+    /// Opens a scenario. If its task cannot be planned, opens its machine with the paper's task and shows the reason.
+    /// If that cannot be planned either, the machine waits in its start pose.
     ///
     /// # Errors
-    /// If not even that can start.
+    /// If the waiting session cannot start either.
     pub fn open_or_explain(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
         let refusal = match Self::new(scenario.clone(), theme) {
             Ok(app_state) => return Ok(app_state),
@@ -164,7 +164,7 @@ impl AppState {
         &self.session
     }
 
-    /// How it is shown.
+    /// The view state.
     pub fn view_state(&self) -> &ViewState {
         &self.view_state
     }
@@ -174,7 +174,7 @@ impl AppState {
         self.comparison.as_ref()
     }
 
-    /// What scenes are made from.
+    /// The stage from which scenes are made.
     pub fn stage(&self) -> &Stage {
         self.views.stage()
     }
@@ -184,22 +184,22 @@ impl AppState {
         &self.views
     }
 
-    /// What is derived of the session.
+    /// The queries about the session.
     pub(super) fn queries(&self) -> &Queries {
         &self.background.queries
     }
 
-    /// Files that were opened and saved, newest first.
+    /// Recently opened and saved files, newest first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.saving.recent
     }
 
-    /// What belongs to the session and is in none of its edits.
+    /// Returns the state of the display that no edit contains: the instant and the plots.
     pub fn left_off(&self) -> LeftOff {
         LeftOff { time: self.session.frame().time, plots: self.view_state.charts.clone() }
     }
 
-    /// What stands above the window: the scenario, marked where changes are in no file.
+    /// Returns the window title: the scenario, with ` *` if there are unsaved changes.
     pub fn title(&self) -> String {
         let scenario = self.session.scenario();
         let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
@@ -207,18 +207,17 @@ impl AppState {
         format!("{}{mark} – Stillbase", crate::settings::text::brief(name))
     }
 
-    /// What of the session is in a file: how many changes there were, and whether some are in no file of the person's
-    /// own.
+    /// Returns the number of changes so far, and whether some of them are not saved in a file of the user.
     pub fn changes(&self) -> (u64, bool) {
         (self.saving.changes, self.saving.is_unsaved())
     }
 
-    /// Whether the window may close as it is.
+    /// Whether the window may close without a question.
     pub fn may_leave(&self) -> bool {
         self.saving.leaves || !(self.saving.is_unsaved() || self.is_making())
     }
 
-    /// Whether a change is being made beside the window, and is in no count yet.
+    /// Whether a change is being made in the background that the count of changes does not contain yet.
     fn is_making(&self) -> bool {
         let change = self.background.change.as_ref();
         change.is_some_and(|(change, _)| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
@@ -229,22 +228,22 @@ impl AppState {
         self.saving.leaves
     }
 
-    /// The file of a session that was left behind, once it is not needed any more.
+    /// Takes the file of a recovered session once it is not needed any more.
     pub fn take_recovered(&mut self) -> Option<PathBuf> {
         self.saving.recovered.take()
     }
 
-    /// Whether something is under way beside the window.
+    /// Whether work is under way in the background.
     pub fn is_working(&self) -> bool {
         self.background.is_busy()
     }
 
-    /// What is under way beside the window, as far as it is spoken of.
+    /// Returns the activities in the background that are reported to the user.
     pub fn under_way(&self) -> Vec<Activity> {
         self.background.all_under_way().into_iter().map(|(activity, _)| activity).collect()
     }
 
-    /// Says how something went.
+    /// Shows the outcome of a command as the message.
     pub(super) fn tell(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
@@ -253,13 +252,13 @@ impl AppState {
         }
     }
 
-    /// Says something that the person did not ask for.
+    /// Shows a message that no command has caused.
     pub(super) fn announce(&mut self, news: &str) {
         self.view_state.said.message = Some((news.into(), false));
     }
 
-    /// How many times the motion of the base is shown: as often as it takes to be seen, from as much of the run as is
-    /// known.
+    /// Returns the factor by which the drawn motion of the base is enlarged, so that it can be seen. It depends on the
+    /// largest base motion of the run, as far as the run is computed.
     pub fn base_exaggeration(&self) -> f64 {
         if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() {
             return 1.0;
@@ -275,7 +274,7 @@ impl AppState {
         self.queries().ask::<Whole<SignalsOf>>(&self.session.scenario().machine)
     }
 
-    /// Forgets all that is derived, so that it is made afresh: what is shown stays the same.
+    /// Clears all cached queries, so that they are computed anew; the display stays the same.
     pub fn forget(&mut self) {
         self.queries().forget_all();
         self.session.run().queries().forget_all();
@@ -283,7 +282,7 @@ impl AppState {
         self.refresh();
     }
 
-    /// Shows the views of the run as it is now.
+    /// Updates the views for the current run.
     fn refresh_views(&mut self) {
         let (run, queries) = (self.session.run(), self.queries());
         let made = Views::made(queries, run, None);
@@ -294,7 +293,7 @@ impl AppState {
         if Views::has(self.view_state.view, run).is_err() {
             self.view_state.view = ViewKind::Flat;
         }
-        // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the hand.
+        // A camera that was not moved goes on showing everything. The view stays still while a joint limit is dragged.
         let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
         if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
@@ -302,7 +301,7 @@ impl AppState {
         self.views = views;
     }
 
-    /// Shows what follows from the session as it is now.
+    /// Updates everything that depends on the session.
     fn refresh(&mut self) {
         self.refresh_views();
         self.refresh_study();

@@ -1,4 +1,4 @@
-//! The line at the bottom: the verdict, and what to do next.
+//! The status line at the bottom: the verdict, and a hint on what to do next.
 
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
@@ -14,18 +14,18 @@ use crate::session::verdict::{Lamp, Statement, Statements, Verdict};
 use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
 
-/// Whether there is bad news.
+/// Whether a problem is to be shown.
 pub fn tells(session: &Session, view_state: &ViewState) -> bool {
     let bad = matches!(view_state.said.message, Some((_, true))) || session.run().waiting().is_some();
     (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
 }
 
-/// Where it stood last.
+/// Returns the rectangle of the problem message in the last pass.
 pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
     ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
 }
 
-/// Bad news, in full, over the lower edge of a scene, with the way out if there is one.
+/// Draws the problem message in full over the lower edge of a scene, with a button for the remedy if there is one.
 pub fn news(
     ctx: &egui::Context,
     scene: egui::Rect,
@@ -40,7 +40,7 @@ pub fn news(
         (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
-    // What is refused meanwhile does not hide why the run waits, nor the way out.
+    // A refusal meanwhile does not hide why the run waits, nor the remedy.
     let also = waits.zip(waiting.as_ref()).filter(|(waits, said)| text != *said && *text != waits.why.to_string());
     let text = match (&also, &waiting) {
         (None, Some(said)) if waits.is_some_and(|waits| *text == waits.why.to_string()) => said,
@@ -49,7 +49,7 @@ pub fn news(
     let p = view_state.palette();
     let frame =
         egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
-    // It leaves the panels free.
+    // It does not cover the panels.
     let width = (0.42 * ctx.content_rect().width()).clamp(320.0, (scene.width() - 40.0).max(320.0));
     let area = egui::Area::new(egui::Id::unique("news")).pivot(egui::Align2::CENTER_BOTTOM);
     area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
@@ -75,7 +75,7 @@ pub fn news(
     });
 }
 
-/// What should be zero: a dim dot for each figure, red where it is not.
+/// Draws a dot for each figure of the audit: dim within its limit, red beyond it.
 fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
@@ -103,12 +103,12 @@ fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
 }
 
-/// Two digits and the order of magnitude.
+/// Returns a number with two digits and its power of ten.
 fn power(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
 }
 
-/// What an audit that fails has to say, loudly.
+/// Returns the warning of a failed audit.
 fn fault(frame: &Frame) -> Option<String> {
     let figure = frame.fault()?;
     let limit = figure.limit.unwrap_or_default();
@@ -122,16 +122,16 @@ fn fault(frame: &Frame) -> Option<String> {
     ))
 }
 
-/// What can be said of machine, plan and run, of as much of the run as there is.
+/// Returns the statements about machine, plan and the run so far.
 pub fn statements(session: &Session) -> Statements {
     Statements::of(session.run(), session.frames().last().unwrap_or(session.frame()))
 }
 
-/// A statement with its lamp: a disc for good news, a triangle for bad, a ring where there is none yet.
+/// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
 pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
     let tone = tone_of(statement.lamp, p);
     let ink = if statement.lamp == Lamp::Bad { tone } else { p.ink };
-    // Painted, so that a screen reader is told of the lamp and its words as one.
+    // Painted, so that a screen reader announces lamp and words as one.
     let words = format!("{about}: {}", statement.words);
     let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
     let [disc, gap] = [0.8 * size, 0.4 * size];
@@ -152,7 +152,7 @@ fn tone_of(lamp: Lamp, p: &Palette) -> Rgba {
     }
 }
 
-/// The shape of a lamp, so that its colour says nothing alone.
+/// Draws a lamp; its shape tells the state without the colour.
 fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: Lamp, tone: egui::Color32) {
     let (middle, r) = (rect.center(), 0.5 * rect.height());
     match lamp {
@@ -198,16 +198,16 @@ pub fn show(
             let bad_news = matches!(view_state.said.message, Some((_, true)));
             if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
-                // A narrow window keeps its room for what to do next.
+                // A narrow window keeps the space for the hint.
                 facts.push(match ui.available_width() > 900.0 {
                     true => format!("{many}, {} m from the boundary", signed(distance.abs(), 3)),
                     false => many,
                 });
             }
-            let told = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
+            let label = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
             if !remarks.is_empty() {
                 let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
-                told.on_hover_text(long.join("\n"));
+                label.on_hover_text(long.join("\n"));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some((activity, done)) = under_way.filter(|_| !bad_news) {

@@ -1,5 +1,5 @@
-//! The study of tolerances at the bottom: what varies, what the bases of many machines feel, which tolerance is to
-//! blame, and the motion's frequencies.
+//! The study of tolerances at the bottom: tolerances, base moment of many machines, contribution of each tolerance to
+//! its variance, and spectrum of the motion.
 
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
@@ -15,7 +15,7 @@ use crate::session::scenario::{Amount, Change, Spread, Value};
 use crate::settings::number::counted;
 use crate::study::tolerance::Study;
 
-const HEIGHT: f32 = 268.0;
+const HEIGHT_PT: f32 = 268.0;
 
 /// Draws this panel.
 pub fn show(
@@ -27,7 +27,7 @@ pub fn show(
 ) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
-    let height = HEIGHT.min(0.45 * ui.available_height());
+    let height = HEIGHT_PT.min(0.45 * ui.available_height());
     Panel::bottom("study").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Tolerances").font(bold(13.5)));
@@ -59,7 +59,7 @@ pub fn show(
     });
 }
 
-/// Machines, what is typical, and how far first order can be trusted.
+/// Returns the title line: number of machines, yield, and validity of the first-order estimate.
 fn summary(study: &Study) -> String {
     let [machines, numbers] = [counted(study.samples, "machine"), counted(study.parameters, "number")];
     let mut text = format!("{machines}, varied in {numbers} each");
@@ -106,7 +106,7 @@ fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     });
 }
 
-/// What a key of a spread is called, its unit, and what the number is multiplied by.
+/// Returns name and unit of a tolerance, and the factor from its value to this unit.
 fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
     let (of, what) = match key.rsplit_once('.') {
         Some((of, "com")) => (of, "CM along"),
@@ -131,7 +131,7 @@ fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
     }
 }
 
-/// What varies, one row each, and the limit on |n_B|.
+/// Draws the tolerances, one row each, and the limit on |n_B|.
 fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>) {
     title(ui, p, "What varies", "deviation σ, half-width ±");
     let spreads = &study.spreads;
@@ -183,8 +183,8 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
-/// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one
-/// deviation to first order.
+/// Plots n_B over time minus that of the nominal machine: percentiles 5 to 95 and 25 to 75 over the machines, mean, and
+/// first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);
@@ -215,7 +215,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     name(&response.response, "Band of the base moment over time, N m");
 }
 
-/// Peaks of |n_B| over machines.
+/// Plots the histogram of peak |n_B| over the machines.
 fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let [_, half, most, nearly] = study.moment.values[..] else { return };
     title(ui, p, "Peak |n_B|", &format!("N m; 95 % below {most:.4}"));
@@ -243,7 +243,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     response.response.on_hover_text(words);
 }
 
-/// Which tolerance matters: shares of the first-order variance of n_B, summed over the motion.
+/// Draws the contributions of the tolerances: fractions of the first-order variance of n_B, summed over the motion.
 fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
     title(ui, p, "To blame", "share of variance of n_B");
     let width = ui.available_width();
@@ -266,7 +266,7 @@ fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
     });
 }
 
-/// Amplitude spectral densities of the run, both axes in powers of ten.
+/// Plots the amplitude spectral densities of the run, both axes logarithmic.
 fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
     title(ui, p, "Spectrum", "N m/√Hz, grey N/√Hz; Hz");
     let Some([fx, fy, n]) = &study.spectra else {

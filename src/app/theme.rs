@@ -5,7 +5,7 @@ use egui::{Color32, CornerRadius, Frame, Margin, Stroke, TextStyle, vec2};
 pub use crate::picture::paint::{bold, colour, install_fonts, plain};
 use crate::picture::scene::palette::{Palette, Theme, faded, palette};
 
-/// Dresses egui in a theme.
+/// Applies a theme to egui.
 pub fn apply(ctx: &egui::Context, theme: Theme) {
     let p: Palette = palette(theme);
     let egui_theme = match theme {
@@ -61,7 +61,7 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.spacing.button_padding = vec2(9.0, 4.0);
     style.spacing.slider_rail_height = 3.0;
     style.spacing.interact_size = vec2(28.0, 22.0);
-    // A list is as high as it says itself, where the window has room for it.
+    // A list has its own height where the window allows it.
     style.spacing.default_area_size.y = 1200.0;
     style.spacing.menu_margin = Margin::same(6);
     style.spacing.window_margin = Margin::same(14);
@@ -70,12 +70,12 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     ctx.set_style_of(egui_theme, style);
 }
 
-/// A card that lies over the scene.
+/// Returns the frame of a card over the scene.
 pub fn card(p: &Palette) -> Frame {
     Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14)
 }
 
-/// The other theme.
+/// Returns the other theme.
 pub fn other(theme: Theme) -> Theme {
     if theme == Theme::Dark { Theme::Light } else { Theme::Dark }
 }

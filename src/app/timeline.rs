@@ -12,10 +12,10 @@ use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
-/// How far below its mark hangs what belongs to it: clear of the bar.
-const BELOW: f32 = 32.0;
+/// Gap between a mark and its tooltip or card, points: clear of the bar.
+const POPUP_GAP_PT: f32 = 32.0;
 
-/// Laid out from the right; `behind` is how fast time passes if that is slower than asked for.
+/// Draws the time line, from the right; `behind` is the playback rate if it lags behind the requested one.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -39,7 +39,7 @@ pub fn show(
     if response.changed() {
         commands.push(SessionCommand::Seek(time).into());
     }
-    // The middle of the handle goes from end to end less its radius.
+    // The centre of the handle moves between the ends minus its radius.
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
     let asked = view_state.open.naming.filter(|time| session.bookmark_at(*time).is_some());
     let mut named = false;
@@ -53,22 +53,22 @@ pub fn show(
             named = true;
         }
     }
-    // It has gone meanwhile.
+    // The bookmark does not exist any more.
     if view_state.open.naming.is_some() && !named {
         commands.push(ViewChange::LeaveNaming.into());
     }
 }
 
-/// What the clock says; below it, if it is slow, how fast it goes.
+/// Draws the clock, and below it the playback rate if it lags.
 fn clock(ui: &mut Ui, p: &Palette, (time, length): (f64, f64), behind: Option<f64>) {
-    // A narrow window keeps its room for the slider.
+    // A narrow window keeps the space for the slider.
     let text = match ui.available_width() > 290.0 {
         true => format!("{time:.3} / {length:.3} s"),
         false => format!("{time:.3} s"),
     };
     let clock = ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
     let Some(rate) = behind else { return };
-    // It takes no room, so that nothing beside it moves.
+    // It takes no space, so that nothing beside it moves.
     let below =
         Rect::from_min_max(clock.rect.left_bottom() - vec2(30.0, 1.0), clock.rect.right_bottom() + vec2(0.0, 12.0));
     let words = RichText::new(pace(rate)).font(plain(10.5)).color(colour(p.ink));
@@ -87,8 +87,8 @@ fn pace(rate: f64) -> String {
     }
 }
 
-/// One mark: a triangle that stands on the line; a click goes there, the right button names a bookmark or
-/// takes it away, and lists branches.
+/// Draws a mark: a triangle above the line. A click shows its instant; the right button edits a bookmark or lists the
+/// branches.
 fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
     let tone = match group.tone {
         Tone::Own => p.amber,
@@ -108,21 +108,21 @@ fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut 
         ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.5, colour(p.amber)), egui::StrokeKind::Inside);
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &group.words));
-    Tooltip::for_enabled(&response).gap(BELOW).show(|ui| told(ui, p, group));
+    Tooltip::for_enabled(&response).gap(POPUP_GAP_PT).show(|ui| descriptions(ui, p, group));
     if response.clicked() {
         commands.push(SessionCommand::Seek(group.time).into());
     }
     match group.tone {
         Tone::Own if response.secondary_clicked() => commands.push(SessionCommand::NameBookmark(group.time).into()),
-        // The list has its branches.
+        // The list of changes contains the branches.
         Tone::Fork if response.secondary_clicked() => commands.push(ViewChange::Switch(Switch::History, true).into()),
         _ => {}
     }
     response
 }
 
-/// When and what, a line for each mark of a group.
-fn told(ui: &mut Ui, p: &Palette, group: &Group) {
+/// Draws time and description of each mark of a group.
+fn descriptions(ui: &mut Ui, p: &Palette, group: &Group) {
     let dim = |text: String| RichText::new(text).font(plain(12.5)).color(colour(p.dim));
     egui::Grid::new("mark told").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
         for (when, what) in &group.lines {
@@ -138,12 +138,12 @@ fn told(ui: &mut Ui, p: &Palette, group: &Group) {
     });
 }
 
-/// The name of a bookmark to be changed, in a card below its mark.
+/// Draws a card below a bookmark, to rename or remove it.
 fn naming(mark: &Response, p: &Palette, session: &Session, time: f64, commands: &mut Vec<Command>) {
     let Some(known) = session.bookmark_at(time) else { return };
     let id = egui::Id::unique(("bookmark name", (time * 1e6) as i64));
     let mut open = true;
-    let popup = Popup::from_response(mark).open_bool(&mut open).gap(BELOW).width(220.0);
+    let popup = Popup::from_response(mark).open_bool(&mut open).gap(POPUP_GAP_PT).width(220.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new(format!("BOOKMARK AT {time:.3} s")).font(bold(11.0)).color(colour(p.dim)));
         let typed = ui.data(|data| data.get_temp::<String>(id));

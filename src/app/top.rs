@@ -17,7 +17,8 @@ use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
-/// Draws this panel; `line` is what stands on the time line, and how fast time passes if that is slower than asked for.
+/// Draws this panel; `line` holds the marks of the time line, and the playback rate if it lags behind the requested
+/// one.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -44,7 +45,7 @@ pub fn show(
     });
 }
 
-/// A narrow window keeps its room for the time line.
+/// Whether the window is narrow, so that the time line needs the space.
 fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < 1200.0
 }
@@ -70,8 +71,8 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     name(&response.response.on_hover_text(tip), "Machine");
 }
 
-/// What is opened when a machine is chosen. Everything that was set stays; what was done to the other machine does not.
-/// Machines of another kind bring a task of their own.
+/// Returns the scenario to open for a chosen machine: its built-in scenario if there is one; otherwise the present
+/// scenario without its edits.
 pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
     let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
     Scenario::builtin(machine.name()).unwrap_or_else(alike)
@@ -94,7 +95,7 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
             if ui.selectable_label(chosen, label).clicked() {
                 commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
                     Some(name) => Command::Session(SessionCommand::Case(name)),
-                    // These bring the machine that they are about.
+                    // These scenarios bring their own machine.
                     None => Command::Session(SessionCommand::Open(Box::new(builtin.clone()))),
                 });
             }
@@ -149,7 +150,7 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
 }
 
-/// Laid out from the right.
+/// Draws the right end of the bar, from the right.
 fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let dim = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
@@ -158,7 +159,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     if help.clicked() {
         commands.push(ViewChange::Switch(Switch::Help, !view_state.open.help).into());
     }
-    // Where there is room it reads as what it is.
+    // Where there is space, the button has its full name.
     let words = if is_narrow(ui) { "Ctrl K" } else { "Search commands   Ctrl K" };
     let words = RichText::new(words).font(plain(12.0)).color(colour(p.dim));
     let find = egui::Button::new(words).fill(colour(p.background)).stroke((1.0, colour(p.line))).corner_radius(8);
@@ -177,7 +178,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     }
 }
 
-/// Asks for a file name.
+/// Draws the file dialog.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.open.dialog.clone() else { return };
     let ([_, verb, hint], title) = (dialog.purpose.words(), dialog.purpose.title());

@@ -1,4 +1,4 @@
-//! What a [`ViewChange`] does to a [`ViewState`].
+//! Application of a [`ViewChange`] to a [`ViewState`].
 
 use super::{Below, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
 use crate::picture::scene::Measure;
@@ -6,14 +6,14 @@ use crate::picture::scene::views::ViewKind;
 use crate::session::Session;
 
 impl Switch {
-    /// Whether only views of the machine have it.
+    /// Whether only views of the machine have this switch.
     pub fn is_of_machine(self) -> bool {
         matches!(self, Self::Dexterity | Self::Snapshots | Self::Holding | Self::Drawing | Self::Pushing)
     }
 }
 
 impl ViewState {
-    /// Whether something is on.
+    /// Whether a switch is on.
     pub fn is_on(&self, switch: Switch) -> bool {
         match switch {
             Switch::Side => self.arrangement.now().side.shown,
@@ -44,7 +44,7 @@ impl ViewState {
         }
     }
 
-    /// Whether something can be turned on and off as things are.
+    /// Whether a switch can be turned in the present state.
     pub fn has(&self, switch: Switch, session: &Session) -> bool {
         match switch {
             Switch::Exaggeration => session.scenario().base.moves(),
@@ -53,7 +53,7 @@ impl ViewState {
         }
     }
 
-    /// Turns something off that is on, and on otherwise.
+    /// Returns the command that turns a switch to its other state.
     pub fn other(&self, switch: Switch) -> Command {
         ViewChange::Switch(switch, !self.is_on(switch)).into()
     }
@@ -78,7 +78,7 @@ impl ViewState {
             Switch::Finder => self.open.finder = on.then(Finder::default),
             Switch::Equations => {
                 self.arrangement.learns = on;
-                // The front is out of sight.
+                // The Pareto front is hidden.
                 self.ghost = None;
                 if on {
                     self.arrangement.now_mut().plots.shown = true;
@@ -97,7 +97,7 @@ impl ViewState {
         }
     }
 
-    /// Shows something below the scene in the place of what is there, or takes it away.
+    /// Shows a panel below the scene in place of the present one, or closes it.
     fn put_below(&mut self, thing: Below, on: bool) {
         match on {
             true => self.below = Some(thing),

@@ -1,4 +1,4 @@
-//! How the session is shown, and what a person is about to do.
+//! The view state: how the session is displayed, and the state of gestures and dialogs.
 
 use std::sync::Arc;
 
@@ -20,18 +20,19 @@ use crate::study::front_point::FrontMeasure;
 /// Whether a view shows everything.
 #[derive(Clone, Debug, Default)]
 pub enum Framing {
-    /// It is to, from the next pass on.
+    /// To be framed in the next pass.
     #[default]
     Wanted,
-    /// It does, of what there was when it was asked for, in a scene of this size: a scene of another size is framed
-    /// anew, while what moves in it moves nothing else.
+    /// Framed to this content, in a scene of this size. A scene of another size is framed anew; motion of the content
+    /// does not change the view.
     Held(Arc<Content>, [f32; 2]),
-    /// A hand has moved it.
+    /// Moved by the user.
     Free,
 }
 
 impl Framing {
-    /// After another session was opened, or another machine taken: what was not moved by hand shows everything.
+    /// Requests a new framing after another session was opened or the machine changed, unless the user has moved the
+    /// view.
     pub fn renew(&mut self) {
         if matches!(self, Self::Held(..)) {
             *self = Self::Wanted;
@@ -39,62 +40,62 @@ impl Framing {
     }
 }
 
-/// How things are shown: no part of the session. Its parts live as long as a person's liking, a gesture, a dialog, a
-/// message; what stands here itself lives as long as the window.
+/// The view state, which is not part of the session. Its parts live as long as a preference, a gesture, a dialog or a
+/// message; its own fields live as long as the window.
 #[derive(Clone, Debug)]
 pub struct ViewState {
-    /// How the window is arranged: remembered from one start to the next.
+    /// Arrangement of the window: a preference of the user.
     pub arrangement: Arrangement,
-    /// What lies open over it.
+    /// Open dialogs, lists and cards.
     pub open: Open,
-    /// What it says.
+    /// Messages.
     pub said: Said,
-    /// What the pointer is over.
+    /// What is under the pointer.
     pub pointed: Pointed,
     /// The drag under way.
     pub gesture: Gesture,
-    /// What dragging in the scene does.
+    /// Tool of the pointer.
     pub tool: Tool,
-    /// Which of the linked views.
+    /// The view on display.
     pub view: ViewKind,
-    /// From where each view is seen, in the order of [`ViewKind::ALL`].
+    /// Camera of each view, in the order of [`ViewKind::ALL`].
     pub cameras: [Camera; ViewKind::ALL.len()],
-    /// Which of them show everything.
+    /// Framing of each view.
     pub framing: [Framing; ViewKind::ALL.len()],
-    /// What is on display below the scene.
+    /// The panel below the scene.
     pub below: Option<Below>,
-    /// What is to be shown in the panel of settings.
+    /// The object whose rows are to be shown in the panel of settings.
     pub revealed: Option<Handle>,
-    /// The setting that is to be shown there, by its path.
+    /// The setting that is to be shown in the list of all settings, by its path.
     pub looked_up: Option<String>,
-    /// The workspace is shaded by this measure.
+    /// The measure of dexterity that shades the workspace.
     pub dexterity: Option<Measure>,
-    /// Simulated seconds a second.
+    /// Requested playback rate, simulated seconds per second.
     pub speed: f64,
-    /// The run is played over and over.
+    /// Whether the run is played in a loop.
     pub loops: bool,
-    /// The second cursor, s.
+    /// Time of the second cursor, s.
     pub mark: Option<f64>,
-    /// What plots show.
+    /// The choice of plots.
     pub charts: Choice,
-    /// What pins carry is on display.
+    /// Whether pin forces are shown.
     pub pins: bool,
-    /// Snapshots along the motion are on display.
+    /// Whether snapshots along the motion are shown.
     pub snapshots: bool,
     /// The drives along the axes of joint space, counted from 0, where there are more than three.
     pub drives: [usize; 3],
-    /// b may leave the range that serves the points of the task, and turns them along.
+    /// Whether b may leave the interval feasible for the points of the task; the points then rotate with it.
     pub turn_task: bool,
-    /// The motion of the base is shown enlarged.
+    /// Whether the drawn motion of the base is enlarged.
     pub exaggerates_base: bool,
-    /// The machine of the front whose counterweights are shown, by its place.
+    /// Index of the point of the Pareto front whose counterweights are shown.
     pub ghost: Option<usize>,
-    /// What its machines are told apart by beside mass and inertia.
+    /// The measure that colours the points of the Pareto front.
     pub front_by: Option<FrontMeasure>,
 }
 
 impl ViewState {
-    /// A flat view of everything.
+    /// Returns the initial state: a flat view of everything.
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
             arrangement: Arrangement::usual(theme),
@@ -124,17 +125,17 @@ impl ViewState {
         }
     }
 
-    /// Colours.
+    /// Returns the colours of the theme.
     pub fn palette(&self) -> Palette {
         palette(self.arrangement.theme)
     }
 
-    /// The view in use.
+    /// Returns the camera of the view on display.
     pub fn camera(&self) -> &Camera {
         &self.cameras[self.view as usize]
     }
 
-    /// Lays the window out; again: as that layout is at first.
+    /// Chooses a layout; choosing the present one again restores its defaults.
     pub(super) fn lay_out(&mut self, layout: Layout) {
         self.arrangement.lay_out(layout);
         self.below = match layout {
@@ -145,7 +146,7 @@ impl ViewState {
         (self.open.history, self.open.naming) = (false, None);
     }
 
-    /// Moves the camera of the view in use.
+    /// Moves the camera of the view on display.
     pub(super) fn look(&mut self, look: Look) {
         let camera = self.camera_mut();
         match look {
@@ -155,15 +156,15 @@ impl ViewState {
         }
     }
 
-    /// The camera, for a hand that moves it.
+    /// Returns the camera for a movement by the user.
     pub(super) fn camera_mut(&mut self) -> &mut Camera {
         self.framing[self.view as usize] = Framing::Free;
         &mut self.cameras[self.view as usize]
     }
 }
 
-/// The edit that a slider of b asks for: while time runs, that the machine follows it; paused, that it is put on the
-/// plane b, or on the nearest one that serves the points of the task unless these may turn along.
+/// Returns the edit for a new b, rad. While time runs, the machine moves to it. Paused, the machine is put on the plane
+/// b. If the points of the task may not rotate with the plane, it is put on the nearest plane feasible for them.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };

@@ -1,4 +1,4 @@
-//! The viewport: the scene, its words, and what can be done to it with the pointer.
+//! The viewport: the scene, its labels, and the gestures on it.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::study::comparison::Comparison;
 
-/// Draws it and reads the pointer; where it is.
+/// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -55,7 +55,7 @@ pub fn show(
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
         framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
-        // The pointer works on the machine as it is drawn, enlarged motion of the base included.
+        // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let exaggeration = Exaggeration::Times(exaggeration);
         let shown = Shown::of(session.frame(), exaggeration);
         let spot = Spot { rect, camera: *view_state.camera() };
@@ -68,8 +68,8 @@ pub fn show(
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
             menu::show(&response, session, (view_state.pointed.hot, at), commands);
-            tell(&response, session, views, view_state);
-            // What misses the machine in the demonstration moves nothing.
+            show_card(&response, session, views, view_state);
+            // In the demonstration, a drag beside the machine does not move the view.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
                 move_camera(ui, &response, rect, view_state);
             }
@@ -103,7 +103,7 @@ pub fn show(
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
         let spot = Spot { rect, camera: *view_state.camera() };
-        // Bad news lies over the scene for as long as it lasts.
+        // The problem message covers the scene while it lasts.
         covered.extend(status::tells(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
         words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
@@ -130,11 +130,11 @@ pub fn show(
     shown.inner
 }
 
-/// Where hints speak of something: the target, the arm's tip and the ring of b, on the screen.
+/// Returns the rectangles of the objects that hints mention: target, end effector and the ring of b, on the screen.
 fn spoken_of(spot: &Spot, stage: &Stage, shown: &Shown<'_>) -> Vec<Rect> {
     let ring = stage.handle(Handle::Ring, shown).and_then(|knob| {
         let middle = spot.screen([shown.base.at.re, shown.base.at.im, knob[2]])?;
-        // Its name stands outside of it.
+        // Its label lies outside.
         let radius = 1.4 * (spot.screen(knob)? - middle).length();
         Some(Rect::from_center_size(middle, Vec2::splat(2.0 * radius)))
     });
@@ -143,30 +143,30 @@ fn spoken_of(spot: &Spot, stage: &Stage, shown: &Shown<'_>) -> Vec<Rect> {
     ring.into_iter().chain(target).collect()
 }
 
-/// How long the pointer is on a thing before it is told what that is, s.
-const TOLD_AFTER: f64 = 0.35;
+/// Delay before the card of an object is shown, s.
+const CARD_DELAY_S: f64 = 0.35;
 
-/// How many snapshots stand along a motion, as in Fig. 5.
-const SNAPSHOTS: usize = 9;
+/// Number of snapshots along a motion, as in Fig. 5.
+const SNAPSHOT_COUNT: usize = 9;
 
-/// Poses of the motion, as far as there is one, to be seen with everything else.
+/// Returns poses of the motion that the view is to contain; none while the run waits.
 fn motion(session: &Session) -> Vec<DriveAngles> {
     if session.run().waiting().is_some() { Vec::new() } else { snapshots(session) }
 }
 
-/// Poses at equal intervals of time: as planned, or as run where the machine was led by hand.
+/// Returns poses at equal time intervals: of the plan, or of the run if the machine was dragged.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {
-    let share = |i: usize| i as f64 / (SNAPSHOTS - 1) as f64;
+    let share = |i: usize| i as f64 / (SNAPSHOT_COUNT - 1) as f64;
     if session.is_led() {
         let frames = session.frames();
         let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
-        return (0..SNAPSHOTS).map(at).collect();
+        return (0..SNAPSHOT_COUNT).map(at).collect();
     }
     let run = session.run();
-    (0..SNAPSHOTS).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
+    (0..SNAPSHOT_COUNT).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
 }
 
-/// The runs that are laid over, at a time, s.
+/// Returns the frames of the runs shown in comparison, at a time, s.
 fn others(comparison: &Comparison, time: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
         Some(Other { name: (i + 1).to_string(), frame: *run.at(time)? })
@@ -174,14 +174,14 @@ fn others(comparison: &Comparison, time: f64) -> Vec<Other> {
     comparison.shown().filter_map(other).collect()
 }
 
-/// What pushes at the end effector, N, as far as it is known of the instant on display.
+/// Returns the force at the end effector, N; `None` if it is not known for the instant on display.
 fn force(session: &Session) -> Option<[f64; 2]> {
     let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
     Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
 }
 
-/// Says what is under the pointer, once that has been so for a while.
-fn tell(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
+/// Shows the card of the object under the pointer, after a delay.
+fn show_card(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
     let (ctx, id) = (&response.ctx, response.id.with("told of"));
     let tooltip = || Tooltip::always_open(ctx.clone(), response.layer_id, id, PopupAnchor::Pointer).gap(18.0);
     if let Some(Pick { handle: Handle::Link(i), .. }) = view_state.gesture.grabbed {
@@ -201,7 +201,7 @@ fn tell(response: &egui::Response, session: &Session, views: &Views, view_state:
         ctx.data(|data| data.get_temp::<Option<(Handle, f64)>>(id)).flatten().filter(|(before, _)| *before == thing);
     let since = before.map_or(now, |(_, since)| since);
     ctx.data_mut(|data| data.insert_temp(id, Some((thing, since))));
-    let waits = since + TOLD_AFTER - now;
+    let waits = since + CARD_DELAY_S - now;
     if waits > 0.0 {
         ctx.request_repaint_after_secs(waits as f32);
     } else if let Some(card) = Card::of(thing, session, views) {
@@ -210,7 +210,7 @@ fn tell(response: &egui::Response, session: &Session, views: &Views, view_state:
     }
 }
 
-/// What has been drawn so far, m.
+/// Returns the path drawn so far, m.
 fn drawn(tool: &Tool) -> Vec<[f64; 2]> {
     match tool {
         Tool::Draw(stroke) => stroke.clone(),
@@ -218,7 +218,7 @@ fn drawn(tool: &Tool) -> Vec<[f64; 2]> {
     }
 }
 
-/// A path drawn by hand: from where the button goes down to where it comes up.
+/// Handles the drawing of a path, from the press of the button to its release.
 fn draw(
     ui: &Ui,
     response: &egui::Response,

@@ -1,12 +1,12 @@
-//! [`Waiting`]: work beside the window that waits until the window is drawn.
+//! [`Waiting`]: a queue of background work that waits until the window is drawn.
 
 use std::mem::take;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::query::{Work, Workers};
 
-/// Workers who do not begin while the window is drawn: work that begins meanwhile, on the same processor, can hold up the
-/// drawing for a time slice of the system.
+/// Worker threads that start no work while the window is drawn. New work on the same processor could delay the drawing
+/// by a time slice of the operating system.
 pub(super) struct Waiting {
     workers: Box<dyn Workers + Send + Sync>,
     line: Mutex<Line>,
@@ -23,12 +23,12 @@ impl Waiting {
         Self { workers: Box::new(workers), line: Mutex::default() }
     }
 
-    /// What is started waits from now on.
+    /// Holds new work back from now on.
     fn close(&self) {
         self.line().is_closed = true;
     }
 
-    /// What waits begins.
+    /// Starts the work that was held back.
     pub fn open(&self) {
         let work = {
             let mut line = self.line();
@@ -56,17 +56,17 @@ impl Workers for Waiting {
         }
     }
 
-    /// The window waits for short work, which cannot wait for the window.
+    /// Short work is not held back, because the window waits for it.
     fn start_short(&self, work: Work) {
         self.workers.start_short(work);
     }
 }
 
-/// The window is drawn while it lives: work beside it that nobody waits for begins afterwards.
+/// A guard that lives while the window is drawn: background work that nobody waits for starts after it is dropped.
 pub struct Drawing(Option<Arc<Waiting>>);
 
 impl Drawing {
-    /// Where work is done at once, nothing waits.
+    /// Creates the guard; without a queue, work is done at once and nothing is held back.
     pub(super) fn begin(waiting: Option<&Arc<Waiting>>) -> Self {
         if let Some(waiting) = waiting {
             waiting.close();

@@ -1,4 +1,4 @@
-//! What the panels are made of: rows of numbers, section titles, notes, and names for screen readers.
+//! Parts of the panels: rows of numbers, section titles, notes, and names for screen readers.
 
 use std::cell::Cell;
 use std::ops::RangeInclusive;
@@ -16,10 +16,10 @@ use crate::settings::key;
 use crate::settings::quantity;
 use crate::settings::range::shortened;
 
-/// A payload that is hung on with a click, kg.
+/// The payload that is added with a click, kg.
 pub(super) const HELD: f64 = 0.3;
 
-/// Tells a screen reader what a widget is.
+/// Sets the name of a widget for screen readers.
 pub fn name(response: &Response, label: &str) {
     let label = label.to_owned();
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
@@ -30,7 +30,7 @@ pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
     ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
 }
 
-/// A heading, and what can be done below it.
+/// Draws a heading with a hint.
 pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(title).font(bold(13.5)).color(colour(p.ink)));
@@ -39,27 +39,27 @@ pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
     ui.add_space(2.0);
 }
 
-/// A name on the left, a number that can be dragged or typed and its unit on the right.
+/// A row: a name on the left, an editable number and its unit on the right.
 pub(super) struct Row<'a> {
     pub label: &'a str,
     pub unit: &'a str,
     pub tip: &'a str,
     pub decimals: usize,
-    /// By how much a drag of one point changes it.
+    /// Change of the value by a drag of one point.
     pub speed: f64,
-    /// What may be typed.
+    /// Valid range.
     pub range: RangeInclusive<f64>,
-    /// What a slider goes through.
+    /// Range of the slider.
     pub slide: RangeInclusive<f64>,
 }
 
-/// What a setting means, by its path.
+/// Returns the explanation of a setting, by its path.
 pub(super) fn tip_of(path: &str) -> &'static str {
     key_of(path).map_or("", |key| key.words)
 }
 
 impl<'a> Row<'a> {
-    /// The row of a setting, by its path: unit, range and tip are those of its key.
+    /// Returns the row of a setting, by its path; unit, range and tip are those of its key.
     pub fn of(label: &'a str, path: &str) -> Self {
         let key = key_of(path);
         let range = key.and_then(key::Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
@@ -67,12 +67,12 @@ impl<'a> Row<'a> {
         Self { label, unit, tip, decimals: 2, speed: 0.01, slide: range.clone(), range }
     }
 
-    /// The same with decimals, and how fast a drag changes it.
+    /// Sets the decimals, and the change by a drag of one point.
     pub fn with(self, decimals: usize, speed: f64) -> Self {
         Self { decimals, speed, ..self }
     }
 
-    /// The same with what a slider goes through.
+    /// Sets the range of the slider.
     pub fn sliding(self, slide: RangeInclusive<f64>) -> Self {
         Self { slide, ..self }
     }
@@ -96,7 +96,7 @@ impl Row<'_> {
         let before = *value;
         let refused = Cell::new(None);
         let read = |text: &str| {
-            // Nothing was typed: the value of the file stays exact.
+            // The text is unchanged: the value of the file stays exact.
             if text == shown {
                 return None;
             }
@@ -106,12 +106,12 @@ impl Row<'_> {
             .custom_parser(read)
             .speed(self.speed)
             .range(self.range.clone())
-            // A value of a file stays as it is until it is changed here.
+            // A value of a file stays as it is until it is edited.
             .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
         let mut response = ui.add(drag).on_hover_text(self.tip);
-        // Shift it knows itself.
+        // egui handles Shift itself.
         held(&mut response, value, before, &self.range, 1.0, self.round());
         if let Some(why) = refused.take() {
             ui.data_mut(|data| data.insert_temp(refused_id(), why));
@@ -120,7 +120,7 @@ impl Row<'_> {
         response
     }
 
-    /// A number that was typed, with units and arithmetic, if it is one and in range; what is wrong with it.
+    /// Parses a typed number, with units and arithmetic. Fails with the reason if it is not a number in range.
     fn read(&self, text: &str) -> Result<f64, String> {
         let number = quantity::read(text, self.unit).map_err(|why| why.to_string())?;
         if self.range.contains(&number) {
@@ -136,7 +136,7 @@ impl Row<'_> {
         format!("{}: \"{}\" changes nothing: {why}", self.label, shortened(text.trim(), 24))
     }
 
-    /// What a drag with Ctrl goes by.
+    /// Returns the step of a drag with Ctrl.
     fn round(&self) -> f64 {
         match self.unit {
             "rad" => 0.05,
@@ -146,12 +146,12 @@ impl Row<'_> {
         }
     }
 
-    /// The same with a slider below.
+    /// Draws the row with a slider below.
     pub fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
-        self.with_stopped_slider(ui, p, value, |asked| asked)
+        self.with_stopped_slider(ui, p, value, |requested| requested)
     }
 
-    /// The same with a slider that stops where `stops` says, whatever the pointer asks for.
+    /// Draws the row with a slider whose value is limited by `stops`.
     pub fn with_stopped_slider(
         &self,
         ui: &mut Ui,
@@ -163,19 +163,19 @@ impl Row<'_> {
         [number, self.stopped_slider(ui, value, false, stops)]
     }
 
-    /// A slider alone.
+    /// Draws the slider alone.
     pub fn slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool) -> Response {
-        self.stopped_slider(ui, value, logarithmic, |asked| asked)
+        self.stopped_slider(ui, value, logarithmic, |requested| requested)
     }
 
     fn stopped_slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool, stops: impl Fn(f64) -> f64) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
-        // The field's size follows the row's height.
+        // The slider's size follows from the row height.
         ui.spacing_mut().interact_size.y = 15.0;
         let before = *value;
-        let turned = |asked: Option<f64>| {
-            if let Some(asked) = asked {
-                *value = stops(asked);
+        let turned = |requested: Option<f64>| {
+            if let Some(requested) = requested {
+                *value = stops(requested);
             }
             *value
         };
@@ -185,48 +185,48 @@ impl Row<'_> {
         held(&mut slider, value, before, &self.slide, f64::from(FINE), self.round());
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
-        // In a drag it would cover what the drag is about.
+        // During a drag the tooltip would cover the scene.
         if slider.dragged() { slider } else { slider.on_hover_text(self.tip) }
     }
 }
 
-/// How much of its movement a drag with Shift makes.
+/// Fraction of the movement that a drag with Shift makes.
 pub(super) const FINE: f32 = 0.1;
 
 /// A number that is being dragged.
 #[derive(Clone, Copy)]
 struct Held {
-    /// Where the pointer has it.
-    asked: f64,
-    /// By how much it stays behind, since Shift was held.
+    /// Value at the pointer.
+    requested: f64,
+    /// Offset of the number behind the pointer since Shift was held.
     behind: f64,
-    /// Given up with Esc: nothing changes until the button comes up.
+    /// Cancelled with Esc: the number keeps its value until the release.
     given_up: bool,
 }
 
-/// What a drag makes of a number: with Shift a part of the movement, with Ctrl round numbers, after Esc nothing.
+/// Limits the drag of a number: slower with Shift, to round numbers with Ctrl, no change after Esc.
 fn held(response: &mut Response, value: &mut f64, before: f64, range: &RangeInclusive<f64>, fine: f64, round: f64) {
     let (ctx, id) = (response.ctx.clone(), response.id.with("held"));
-    // With Esc egui itself ends a drag, and yet a slider goes on after the pointer.
+    // On Esc egui itself ends a drag, but a slider goes on following the pointer.
     if !response.is_pointer_button_down_on() && !response.drag_stopped() {
         ctx.data_mut(|data| data.remove_temp::<Option<Held>>(id));
         return;
     }
-    let asked = *value;
+    let requested = *value;
     let now = ctx.data(|data| data.get_temp::<Option<Held>>(id)).flatten();
-    let mut now = now.unwrap_or(Held { asked, behind: 0.0, given_up: false });
+    let mut now = now.unwrap_or(Held { requested, behind: 0.0, given_up: false });
     let (shift, ctrl, esc) =
         ctx.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command, i.key_pressed(Key::Escape)));
     if shift {
-        now.behind += (1.0 - fine) * (asked - now.asked);
+        now.behind += (1.0 - fine) * (requested - now.requested);
     }
-    now.asked = asked;
+    now.requested = requested;
     if esc && !now.given_up {
         now.given_up = true;
         ctx.data_mut(|data| data.insert_temp(given_up_id(), true));
     }
     if now.behind != 0.0 {
-        *value = (asked - now.behind).clamp(*range.start(), *range.end());
+        *value = (requested - now.behind).clamp(*range.start(), *range.end());
     }
     if ctrl {
         *value = ((*value / round).round() * round).clamp(*range.start(), *range.end());
@@ -234,27 +234,27 @@ fn held(response: &mut Response, value: &mut f64, before: f64, range: &RangeIncl
     if now.given_up {
         *value = before;
     }
-    // A slider asks anew in every frame.
+    // A slider requests its value in every frame.
     response.flags.set(Flags::CHANGED, *value != before);
     ctx.data_mut(|data| data.insert_temp(id, Some(now)));
 }
 
-/// Where it waits for the end of the pass that a drag was given up.
+/// Key of the flag that a drag was cancelled, until the end of the pass.
 fn given_up_id() -> egui::Id {
     egui::Id::unique("given up")
 }
 
-/// Whether a drag of a number was given up in this pass.
+/// Whether the drag of a number was cancelled in this pass.
 pub(super) fn gave_up(ctx: &egui::Context) -> bool {
     ctx.data_mut(|data| data.remove_temp::<bool>(given_up_id())).unwrap_or_default()
 }
 
-/// Where what was typed and cannot be taken waits for the end of the pass.
+/// Key of the reason of a refused entry, until the end of the pass.
 fn refused_id() -> egui::Id {
     egui::Id::unique("refused entry")
 }
 
-/// Why what was typed in this pass cannot be taken.
+/// Takes the reason why an entry of this pass was refused.
 pub(super) fn refused_entry(ctx: &egui::Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(refused_id()))
 }
@@ -269,7 +269,7 @@ pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
     ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
 }
 
-/// Sends an edit when a widget has changed, and ends the gesture when it is let go.
+/// Sends an edit when a widget has changed, and ends the gesture at its release.
 pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
     if responses.iter().any(Response::changed) {
         commands.push(SessionCommand::Edit(edit()).into());
@@ -279,7 +279,7 @@ pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: im
     }
 }
 
-/// An edit that is an undo of its own.
+/// Sends an edit that is an undo entry of its own.
 pub(super) fn once(commands: &mut Vec<Command>, edit: Edit) {
     commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
 }

@@ -1,4 +1,4 @@
-//! A real window around an [`AppState`].
+//! A desktop window around an [`AppState`].
 
 mod chooser;
 mod error;

@@ -1,4 +1,4 @@
-//! [`Assessing`]: the query for what a table of numbers says, of a motion or of a machine that was measured.
+//! [`Assessing`]: the query that assesses a table: a motion, or a measured machine.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -13,78 +13,79 @@ use crate::study::advice::Advice;
 use crate::study::import::{GivenMotion, ImportError, Imported, Importing, Keep, Request};
 use crate::study::trim::{Motion, Recording, TrimRequest, Trimmed, Trimming, Way};
 
-/// The text of a table, and what it is called.
+/// The text of a table, and its name.
 #[derive(Debug, PartialEq)]
 pub struct Table {
-    /// Its file.
+    /// Its file name.
     pub name: String,
     /// Its text.
     pub text: String,
 }
 
-/// What a table is read as.
+/// Type of content of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableContent {
     /// Samples of the drives.
     Drives,
     /// Samples of the end effector.
     Tip,
-    /// A machine that moved, with what its base felt.
+    /// Motions of a machine with the measured reactions on its base.
     Measurement,
 }
 
-/// How a table is read, and what is asked of what it holds.
+/// Options for reading and assessing a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// As what; by default as what its columns say.
+    /// Type of content; by default that of the column names.
     pub content: Option<TableContent>,
-    /// Gaps in time may be bridged.
+    /// Whether gaps in time are bridged.
     pub gaps: bool,
-    /// Cut-off of smoothing, Hz.
+    /// Cut-off frequency of smoothing, Hz.
     pub smoothing: Option<f64>,
-    /// What the proposal keeps.
+    /// What the proposed motion keeps of the given one.
     pub keep: Option<Keep>,
-    /// Its pose constant, rad.
+    /// Pose constant b of the proposed motion, rad.
     pub b: Option<f64>,
-    /// Measured rates and accelerations are left alone.
+    /// Whether measured rates and accelerations are ignored.
     pub angles_only: bool,
-    /// Columns are taken as they are, whatever explains them better.
+    /// Whether columns are taken as they are, even if another sign, order or unit explains them better.
     pub as_given: bool,
 }
 
-/// A table that was opened, and what is asked of it.
+/// An open table with its options.
 #[derive(Clone, Debug)]
 pub struct Given {
-    /// Where it was read.
+    /// Its file.
     pub file: PathBuf,
-    /// What it holds.
+    /// Its content.
     pub table: Shared<Table>,
-    /// How it is read, and what is asked of it.
+    /// Its options.
     pub options: TableOptions,
-    /// The machine that a measurement is of: the one on display when the table was opened.
+    /// The measured machine: the one on display when the table was opened.
     pub measured: Shared<Machine>,
 }
 
-/// What a session can take of what a table says.
+/// A result that can be applied to the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taking {
-    /// The task of the motion that is proposed.
+    /// The task of the proposed motion.
     Proposal,
-    /// The task of the motion as it was given.
+    /// The task of the given motion.
     AsGiven,
-    /// What mends the machine.
+    /// The measured machine with the change that balances it.
     Change,
     /// The machine as it was measured.
     Measured,
 }
 
 impl Given {
-    /// What is asked of it for a session's machine, base and control; its task and its edits do not matter.
+    /// Returns the request for a session's machine, plant, base, control, step and design; its task and its edits do
+    /// not matter.
     pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
         let Scenario { machine, plant, base, control, design, .. } = scenario;
         let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let scenario = Scenario {
-            // What is proposed goes by the name of the table.
+            // The proposed scenario has the name of the table.
             name: part(self.file.file_stem()),
             title: part(self.file.file_name()),
             machine: machine.clone(),
@@ -100,53 +101,53 @@ impl Given {
     }
 }
 
-/// What is asked.
+/// A request to assess a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     /// The table.
     pub table: Shared<Table>,
-    /// The machine, its base and its control.
+    /// The session's machine, plant, base and control.
     pub scenario: Shared<Scenario>,
-    /// The machine that a measurement is of.
+    /// The measured machine.
     pub measured: Shared<Machine>,
-    /// How.
+    /// The options.
     pub options: TableOptions,
 }
 
-/// What a table says.
+/// Assessment of a table.
 #[derive(Debug)]
 pub enum Assessed {
-    /// Of a motion.
+    /// Assessment of a motion.
     Motion {
-        /// As it was read.
+        /// The given motion.
         motion: Arc<GivenMotion>,
-        /// In how many places a whole turn was taken out of each column.
+        /// Number of places where a whole turn was removed, for each column.
         unwrapped: Vec<usize>,
-        /// What it does to the base, and what is proposed.
+        /// Its base reactions, and the proposed motion.
         imported: Box<Result<Imported, ImportError>>,
     },
-    /// Of a machine.
+    /// Assessment of a measured machine.
     Measured(Box<Trimmed>),
 }
 
-/// Reads a table, then does what an import or a trim does with it.
+/// Query that reads a table, then runs the import of a motion or the trim of a machine.
 pub struct Assessing {
     asked: Asked,
     work: Option<Work>,
 }
 
-/// What goes on with a table that was read.
+/// The running import or trim of a table that has been read.
 enum Work {
     Motion { motion: Arc<GivenMotion>, unwrapped: Vec<usize>, importing: Box<Importing> },
     Measured(Box<Trimming>),
 }
 
-/// How much of the work it is to read a table.
-const READ: f64 = 0.02;
+/// Fraction of the work that is reading the table.
+const READING_SHARE: f64 = 0.02;
 
 impl Query for Assessing {
     type Input = Asked;
-    /// Or why the table cannot be read.
+    /// The assessment, or why the table cannot be read.
     type Answer = Result<Assessed, Advice>;
 
     fn begin(asked: Asked) -> Self {
@@ -158,12 +159,12 @@ impl Query for Assessing {
             None => match self.asked.read() {
                 Ok(work) => {
                     self.work = Some(work);
-                    Portion::More(READ)
+                    Portion::More(READING_SHARE)
                 }
                 Err(why) => Portion::Done(Err(why)),
             },
             Some(Work::Motion { motion, unwrapped, importing }) => match importing.go_on(goes_on) {
-                Portion::More(done) => Portion::More(done.max(READ)),
+                Portion::More(done) => Portion::More(done.max(READING_SHARE)),
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(imported) => {
                     let (motion, unwrapped) = (motion.clone(), std::mem::take(unwrapped));
@@ -171,7 +172,7 @@ impl Query for Assessing {
                 }
             },
             Some(Work::Measured(trimming)) => match trimming.go_on(goes_on) {
-                Portion::More(done) => Portion::More(done.max(READ)),
+                Portion::More(done) => Portion::More(done.max(READING_SHARE)),
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(trimmed) => Portion::Done(Ok(Assessed::Measured(trimmed.into()))),
             },

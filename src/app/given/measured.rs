@@ -1,4 +1,4 @@
-//! A machine that was measured, and what mends it.
+//! A measured machine, and the change that balances it.
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
@@ -12,10 +12,10 @@ use crate::picture::scene::palette::Palette;
 use crate::settings::number::{counted, shown as rounded};
 use crate::study::trim::{Change, NoTrim, Number, Trim, TrimReport, Trimmed};
 
-/// How wide the table of numbers is, points.
-const NUMBERS: f32 = 470.0;
+/// Width of the table of numbers, points.
+const NUMBERS_WIDTH_PT: f32 = 470.0;
 
-/// What was measured, and how large it is.
+/// Returns number and size of the measured data.
 pub(super) fn summary(trimmed: &Trimmed) -> String {
     let Ok(Trim { report, .. }) = &trimmed.outcome else { return String::new() };
     let [motions, rows] = [counted(report.motions, "motion"), counted(report.rows, "row")];
@@ -25,7 +25,7 @@ pub(super) fn summary(trimmed: &Trimmed) -> String {
     format!("{motions}, {rows}  ·  force {}  ·  moment {}", part(0, "N"), part(1, "N m"))
 }
 
-/// Draws what is known of its balance, and what mends it.
+/// Draws the identified balance of the machine, and the change that balances it.
 pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimmed, commands: &mut Vec<Command>) {
     let found = match &trimmed.outcome {
         Ok(found) => found,
@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimme
             return column(ui, "refused", rest, |ui| refused(ui, p, why, shown, commands));
         }
     };
-    column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, &found.report));
+    column(ui, "numbers", NUMBERS_WIDTH_PT, |ui| numbers(ui, p, &found.report));
     let rest = ui.available_width().max(TOLD);
     column(ui, "change", rest, |ui| {
         change(ui, p, shown, found, commands);

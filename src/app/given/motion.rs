@@ -1,4 +1,4 @@
-//! A motion of a person's own, and the nearest one without reactions.
+//! A given motion, and the nearest reactionless one.
 
 use std::f64::consts::TAU;
 
@@ -19,21 +19,21 @@ use crate::session::scenario::Scenario;
 use crate::settings::number::{counted, fixed};
 use crate::study::import::{GivenMotion, ImportError, Imported, Proposal};
 
-/// How wide the table of numbers is, points.
-const NUMBERS: f32 = 360.0;
-/// How wide the plot of n_B over time is, points.
-const MOMENTS: f32 = 300.0;
-/// Smaller numbers are shown as nothing.
-const DECIMALS: usize = 6;
+/// Width of the table of numbers, points.
+const NUMBERS_WIDTH_PT: f32 = 360.0;
+/// Width of the plot of n_B over time, points.
+const MOMENT_PLOT_WIDTH_PT: f32 = 300.0;
+/// Maximum number of decimals.
+const MAX_DECIMALS: usize = 6;
 
-/// What the samples are.
+/// Returns number, quantity and duration of the samples.
 pub(super) fn summary(motion: &GivenMotion) -> String {
     let of = if motion.coordinates == Coordinates::Drives { "the drives" } else { "the end effector" };
     let (samples, time) = (counted(motion.samples.count(), "sample"), fixed(motion.samples.duration(), 3));
     format!("{samples} of {of} over {time} s")
 }
 
-/// Draws what it does beside what is proposed.
+/// Draws the given motion beside the proposed one.
 pub(super) fn show(
     ui: &mut Ui,
     p: &Palette,
@@ -49,10 +49,10 @@ pub(super) fn show(
             return column(ui, "refused", rest, |ui| drop(ui.add(Label::new(words).wrap())));
         }
     };
-    column(ui, "numbers", NUMBERS, |ui| numbers(ui, p, imported));
+    column(ui, "numbers", NUMBERS_WIDTH_PT, |ui| numbers(ui, p, imported));
     let rest = ui.available_width().max(TOLD);
-    // What is told comes first where there is no room for both.
-    let plot = if rest > 2.0 * MOMENTS { MOMENTS } else { 0.0 };
+    // The text has priority over the plot where there is no room for both.
+    let plot = if rest > 2.0 * MOMENT_PLOT_WIDTH_PT { MOMENT_PLOT_WIDTH_PT } else { 0.0 };
     let rest = if plot > 0.0 { rest - plot - GAP } else { rest };
     column(ui, "proposal", rest, |ui| {
         proposal(ui, p, shown, imported, commands);
@@ -75,7 +75,7 @@ pub(super) fn show(
     }
 }
 
-/// n_B over time of both motions.
+/// Plots n_B over time of both motions.
 fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
     title(ui, p, "Base moment n_B", "N m over s; dashed as given");
     let given = imported.given.as_ref().map(|given| &given.moment);
@@ -103,7 +103,7 @@ fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
     let usual = if imported.content == "tip" { "minimum norm" } else { "as given" };
     let dim = |text: &str| RichText::new(text.to_owned()).font(plain(11.5)).color(colour(p.dim));
     let number = |ui: &mut Ui, x: Option<f64>, decimals: usize| {
-        let text = x.map_or_else(String::new, |x| signed(x, decimals.min(DECIMALS)));
+        let text = x.map_or_else(String::new, |x| signed(x, decimals.min(MAX_DECIMALS)));
         let is_nought = text.chars().all(|c| matches!(c, '0' | '.' | '−'));
         let text = RichText::new(text).font(plain(12.5)).color(colour(if is_nought { p.dim } else { p.ink }));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
@@ -116,7 +116,7 @@ fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
         }
         ui.end_row();
         for line in imported.lines() {
-            ui.label(RichText::new(below(&line.name)).font(plain(12.5)));
+            ui.label(RichText::new(with_subscripts(&line.name)).font(plain(12.5)));
             number(ui, line.given, line.decimals);
             number(ui, line.proposed, line.decimals);
             ui.label(dim(line.unit));
@@ -125,8 +125,8 @@ fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
     });
 }
 
-/// The same with the number of a drive below, as plots have it.
-fn below(name: &str) -> String {
+/// Replaces the drive number in `τ_1` by a subscript, as in the plots.
+fn with_subscripts(name: &str) -> String {
     let digits = ["₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"];
     let all = digits.iter().enumerate();
     all.fold(name.to_owned(), |name, (i, digit)| name.replace(&format!("τ_{i}"), &format!("τ{digit}")))
@@ -153,7 +153,7 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, co
     ui.add_space(4.0);
 }
 
-/// What can be done with both motions.
+/// Draws the buttons that apply or compare the motions.
 fn takes(ui: &mut Ui, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
     let Some(as_given) = &imported.as_given else { return };
     ui.horizontal_wrapped(|ui| {

@@ -1,4 +1,4 @@
-//! What the panel of a table is made of: what there is to show, its columns, and the buttons that take something.
+//! Parts of the panel of a table: its content, its columns, and the buttons that apply results.
 
 use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
@@ -9,13 +9,13 @@ use crate::picture::scene::palette::Palette;
 use crate::planning::curves::Coordinates;
 use crate::study::advice::{Advice, Remedy};
 
-/// How wide the column is at least that tells what is proposed, points.
+/// Minimum width of the column that describes the proposal, points.
 pub(super) const TOLD: f32 = 300.0;
 
-/// Between the columns, points.
+/// Gap between columns, points.
 pub(super) const GAP: f32 = 14.0;
 
-/// What there is to show: the table, what it says, and whether that is of the session as it is.
+/// Content of the panel: the table, its assessment, and whether the assessment belongs to the present session.
 #[derive(Clone, Copy)]
 pub(in crate::app) struct Shown<'a> {
     pub given: &'a Given,
@@ -24,7 +24,7 @@ pub(in crate::app) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// What the table is read as; none while that is not known.
+    /// Returns the type of content; `None` while it is not known.
     pub fn content(&self) -> Option<TableContent> {
         match self.answer {
             Some(Ok(Assessed::Measured(_))) => Some(TableContent::Measurement),
@@ -36,13 +36,13 @@ impl Shown<'_> {
         }
     }
 
-    /// b of the proposal, rad.
+    /// Returns b of the proposed motion, rad.
     pub fn proposed_b(&self) -> Option<f64> {
         let Some(Ok(Assessed::Motion { imported, .. })) = self.answer else { return None };
         imported.as_ref().as_ref().ok()?.proposal.as_ref().map(|proposal| proposal.b)
     }
 
-    /// Asks the same with another choice.
+    /// Requests an assessment with changed options.
     pub fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut TableOptions)) {
         let mut options = self.given.options.clone();
         change(&mut options);
@@ -50,13 +50,13 @@ impl Shown<'_> {
     }
 }
 
-/// One of the columns side by side; what does not fit is scrolled to.
+/// Draws one of the columns side by side; it scrolls if its content does not fit.
 pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui)) {
     let height = ui.available_height();
     ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::LEFT), |ui| {
         ui.set_width(width);
         ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
-            // Clear of the bar.
+            // Clear of the scroll bar.
             ui.set_max_width(width - 10.0);
             add(ui);
         });
@@ -64,12 +64,12 @@ pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui
     ui.add_space(GAP);
 }
 
-/// Rows of a table as high as their text.
+/// Makes the rows of a table as high as their text.
 pub(super) fn rows(ui: &mut Ui) {
     ui.spacing_mut().interact_size.y = 16.0;
 }
 
-/// A title within a column.
+/// Draws a title within a column.
 pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     ui.horizontal(|ui| {
         ui.set_height(18.0);
@@ -78,7 +78,7 @@ pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     });
 }
 
-/// A sentence that names controls of the window for the ways out.
+/// Returns the text of an advice, in which remedies are named by the controls of the window.
 pub(super) fn worded(advice: &Advice) -> String {
     let control = |remedy| match remedy {
         Remedy::Gaps => "“bridge gaps”",
@@ -91,7 +91,7 @@ pub(super) fn worded(advice: &Advice) -> String {
     advice.worded(control).to_string()
 }
 
-/// A button that takes something of what a table says, where that is of the session as it is.
+/// Draws a button that applies a result. It is disabled while the result does not belong to the present session.
 pub(super) fn take(
     ui: &mut Ui,
     (words, tip): (&str, &str),

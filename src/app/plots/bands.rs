@@ -1,4 +1,4 @@
-//! Which b reach the points of the task, or the target, where no planes say with which pose.
+//! The chart *Which b?* of machines without planes: intervals of b that reach the points of the task, or the target.
 
 use std::sync::Arc;
 
@@ -17,12 +17,12 @@ use crate::planning::pose_space::PoseSpace;
 use crate::query::{Queries, Same, Whole};
 use crate::session::Session;
 
-/// The most points that have a bar.
-const MOST: usize = 8;
-/// Bars narrower than this are a dot, rad.
-const DOT: f64 = 1e-3;
+/// Maximum number of points with a bar.
+const MAX_BARS: usize = 8;
+/// Bars narrower than this are drawn as dots, rad.
+const MIN_BAR_RAD: f64 = 1e-3;
 
-/// A bar for each point, with b across; a click chooses b.
+/// Draws a bar of the feasible b for each point, with b across; a click chooses b.
 pub fn bars(
     ui: &mut Ui,
     p: &Palette,
@@ -33,12 +33,12 @@ pub fn bars(
     commands: &mut Vec<Command>,
 ) {
     let now = session.frame();
-    if points.len() > MOST {
+    if points.len() > MAX_BARS {
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
     let serving = queries.ask_beside::<Whole<BOfPoints>>(&(Same(space.clone()), places)).last;
-    // While they are being found, those of other points do not stand for these.
+    // While the intervals are being computed, those of other points are not shown.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");
     let b_now = now.b_reference;
@@ -57,7 +57,7 @@ pub fn bars(
                 let y = -(i as f64) - 0.5;
                 let near = set.as_ref().map(|set| set.near(b_now).intervals).unwrap_or_default();
                 for [low, high] in &near {
-                    if high - low < DOT {
+                    if high - low < MIN_BAR_RAD {
                         let dot = vec![[0.5 * (low + high), y]];
                         plot.points(Points::new("b", dot).radius(4.0).color(colour(p.zero)).allow_hover(false));
                     } else {

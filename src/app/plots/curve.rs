@@ -1,4 +1,4 @@
-//! A plot with its curves, and what hands do on it: a click shows an instant, the wheel with Ctrl zooms.
+//! A plot with its curves, and its pointer gestures: a click shows an instant, the wheel with Ctrl zooms.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
@@ -15,23 +15,23 @@ use crate::picture::numbers::at_step;
 use crate::picture::paint::figure::items;
 use crate::picture::scene::palette::faded;
 
-/// From how far away a cursor can be taken hold of, points.
-const NEAR: f32 = 5.0;
+/// Distance within which a cursor can be grabbed, points.
+const GRAB_DISTANCE_PT: f32 = 5.0;
 
-/// What a drag has hold of.
+/// Object of a drag in a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Hold {
-    /// The time on display.
+    /// The cursor at the time on display.
     Now,
     /// The second cursor.
     Mark,
-    /// The plot, which goes along.
+    /// The plot, which pans.
     Plot,
-    /// A range from this time on, s.
+    /// A time range, from this time on, s.
     Range(f64),
 }
 
-/// Draws it; the time under the pointer, if it is here.
+/// Draws a plot; returns the time under the pointer, if the pointer is over it.
 pub fn show(
     ui: &mut Ui,
     shown: &Shown<'_>,
@@ -63,7 +63,7 @@ pub fn show(
             painter.rect_stroke(rect.shrink(0.5), 4.0, stroke, egui::StrokeKind::Inside);
         }
     }
-    // The numbers beside it are handles of its values, all else of time.
+    // The axis numbers handle the value range; all else handles time.
     let on_values = held(ui, &response).is_none() && values::hands(ui, (plot, drawn, &axes), &response, commands);
     if !on_values {
         if plot.against.is_none() {
@@ -85,7 +85,7 @@ pub fn show(
     over.map(time_at)
 }
 
-/// What a screen reader says: the title, and the values at the time on display.
+/// Describes the plot to a screen reader: the title, and the values at the time on display.
 fn describe(response: &Response, plot: &Plot<'_>, look: &Look<'_>) {
     let over = plot.against.map_or_else(|| "over time".into(), |signal| format!("over {}", signal.label));
     let label = format!("{} {over}, {}", plot.title, plot.unit());
@@ -105,7 +105,7 @@ fn hold_id() -> Id {
     Id::unique("hold on a plot")
 }
 
-/// What the present drag has hold of, if it is this plot's.
+/// Returns the object of the present drag, if the drag began in this plot.
 fn held(ui: &Ui, response: &Response) -> Option<Hold> {
     let (of, hold): (Id, Hold) = ui.data(|data| data.get_temp(hold_id()))?;
     (of == response.id).then_some(hold)
@@ -122,9 +122,10 @@ fn drag(
     let (session, view_state) = (shown.session, shown.view_state);
     let extent = extent(session);
     let shift = ui.input(|i| i.modifiers.shift);
-    let is_near =
-        |time: f64, pos: egui::Pos2| (axes.place([time, 0.0])[0] + response.rect.left() - pos.x).abs() <= NEAR;
-    // A second cursor may stand where the first one does: then it goes.
+    let is_near = |time: f64, pos: egui::Pos2| {
+        (axes.place([time, 0.0])[0] + response.rect.left() - pos.x).abs() <= GRAB_DISTANCE_PT
+    };
+    // If both cursors coincide, the second one is dragged.
     let hold_at = |pos: egui::Pos2| match view_state.mark {
         _ if shift => Hold::Range(time_at(pos)),
         Some(mark) if is_near(mark, pos) => Hold::Mark,

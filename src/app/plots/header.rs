@@ -1,4 +1,4 @@
-//! The line above a plot: its title and unit, and its curves by symbol with their values, each a switch.
+//! The line above a plot: title, unit, and the symbols of its curves with their values; a symbol switches its curve.
 
 use egui::accesskit::Role;
 use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
@@ -11,19 +11,19 @@ use crate::picture::charts::figure::{Look, pen};
 use crate::picture::numbers::{at_step, signed};
 use crate::study::comparison::Difference;
 
-/// Its height.
+/// Height of the line, points.
 pub const TITLE: f32 = 17.0;
-/// The height of a row of statistics.
+/// Height of a row of statistics, points.
 pub const ROW: f32 = 14.0;
 
-/// The width of a symbol in such a row.
-const SYMBOL: f32 = 28.0;
+/// Width of a symbol in a row of statistics, points.
+const SYMBOL_WIDTH_PT: f32 = 28.0;
 
-/// How much of a value there is room for: so many digits fewer, or none.
-const WORDIEST: usize = 0;
+/// Number of digits omitted where space is short: none at first, then more, until only symbols remain.
+const ALL_DIGITS: usize = 0;
 const SYMBOLS_ONLY: usize = 3;
 
-/// Draws it.
+/// Draws the line.
 pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, commands: &mut Vec<Command>) {
     let p = look.palette;
     ui.horizontal(|ui| {
@@ -34,12 +34,12 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, comman
         let values = |ui: &Ui, fewer: usize| -> f32 {
             plot.curves.iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
         };
-        // Where there is no room for all, digits go first, then the unit, which the values tell under the pointer.
+        // Where space is short, digits are omitted first, then the unit, which the values show under the pointer.
         let (heading, unit) = (plot.heading(), plot.unit());
         let room = ui.available_width() - wide(ui, &heading, bold(12.5));
         let unit_wide = wide(ui, &unit, plain(11.5));
         let fits = |fewer: &usize| values(ui, *fewer) + unit_wide <= room;
-        let fewer = (WORDIEST..SYMBOLS_ONLY).find(fits);
+        let fewer = (ALL_DIGITS..SYMBOLS_ONLY).find(fits);
         let fewer = fewer.or((values(ui, 2) <= room).then_some(2)).unwrap_or(SYMBOLS_ONLY);
         ui.add(Label::new(RichText::new(heading).font(bold(12.5))).truncate());
         if values(ui, fewer) + unit_wide <= room {
@@ -53,10 +53,10 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, comman
     });
 }
 
-/// A curve's symbol with its value at the cursor, or with what it differs by from the second one.
+/// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor.
 fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, fewer: usize) -> String {
     let (signal, thousandths) = (curve.signal, curve.times != 1.0);
-    // Of values in thousandths two digits do, and the plot says whose they are.
+    // Values in thousandths get two decimals; their index B is omitted, since the plot names it.
     let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
@@ -71,7 +71,7 @@ fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, few
     }
 }
 
-/// A curve's name, which switches it on and off.
+/// Draws the name of a curve, which switches the curve on and off.
 fn switch(
     ui: &mut Ui,
     plot: &Plot<'_>,
@@ -102,10 +102,10 @@ fn switch(
     }
 }
 
-/// What the curves come to in the time that is shown: a row each, in columns of one width.
+/// Draws the statistics of the curves over the time shown: a row each, in columns of equal width.
 pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>) {
     let p = look.palette;
-    let wide = (ui.available_width() - SYMBOL) / 4.0;
+    let wide = (ui.available_width() - SYMBOL_WIDTH_PT) / 4.0;
     let cell = |ui: &mut Ui, wide: f32, text: String, tone| {
         let label = Label::new(RichText::new(text).font(plain(10.0)).color(colour(tone))).truncate();
         ui.add_sized([wide, ROW], label.halign(Align::LEFT));
@@ -115,7 +115,7 @@ pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>) 
         ui.spacing_mut().interact_size.y = ROW;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            cell(ui, SYMBOL, curve.signal.symbol.clone(), pen(plot, i, look).0);
+            cell(ui, SYMBOL_WIDTH_PT, curve.signal.symbol.clone(), pen(plot, i, look).0);
             for (word, value) in [("min", s.least), ("max", s.greatest), ("mean", s.mean), ("rms", s.rms)] {
                 cell(ui, wide, format!("{word} {}", at_step(value, 5.0 * drawn.finest())), p.dim);
             }

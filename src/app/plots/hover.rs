@@ -15,13 +15,13 @@ fn id() -> Id {
     Id::unique("time under the pointer")
 }
 
-/// The frame nearest to where the pointer was in the last pass.
+/// Returns the frame nearest to the time under the pointer in the last pass.
 pub fn instant<'a>(ui: &Ui, session: &'a Session) -> Option<&'a Frame> {
     let time: f64 = ui.data(|data| data.get_temp(id()))?;
     Some(nearest(session, time))
 }
 
-/// Keeps where the pointer is for the next pass, which all plots show.
+/// Stores the time under the pointer for the next pass, in which all plots show it.
 pub fn remember(ui: &Ui, over: Option<f64>) {
     let known: Option<f64> = ui.data(|data| data.get_temp(id()));
     if known != over {
@@ -33,7 +33,7 @@ pub fn remember(ui: &Ui, over: Option<f64>) {
     }
 }
 
-/// The values of all curves at an instant, in a card.
+/// Draws the values of all curves at an instant, in a card.
 pub fn card(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, frame: &Frame) {
     let p = look.palette;
     let dim = |text: String| RichText::new(text).font(plain(11.5)).color(colour(p.dim));

@@ -1,4 +1,4 @@
-//! What else can be done with a plot: a button in its corner, and the right button of the mouse.
+//! The menu of a plot: opened by a button in its corner, or by the right mouse button.
 
 use egui::accesskit::Role;
 use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -13,14 +13,14 @@ use crate::picture::charts::choice::{Change, Plot};
 use crate::query::grown;
 use crate::study::samples::Samples;
 
-/// Draws the button, and the menu where it is open.
+/// Draws the button, and the menu while it is open.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, response: &Response, commands: &mut Vec<Command>) {
     let corner = pos2(response.rect.right() - 24.0, response.rect.top());
     let rect = Rect::from_min_size(corner, vec2(22.0, 16.0));
     let button = ui.interact(rect, response.id.with("menu"), Sense::click());
     let p = shown.view_state.palette();
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{}: menu", plot.title)));
-    // Out of sight until it is looked for; the keyboard finds it all the same.
+    // Hidden until the pointer is over the plot; the keyboard can focus it all the same.
     let open = Popup::is_id_open(ui.ctx(), Popup::default_response_id(&button));
     if response.contains_pointer() || button.contains_pointer() || button.has_focus() || open {
         let lit = button.hovered() || button.has_focus() || open;

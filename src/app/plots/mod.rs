@@ -1,4 +1,4 @@
-//! The panel on the right: signals over time with one cursor, and which b serves a target.
+//! The panel on the right: signals over time with a common cursor, and the chart *Which b?*.
 
 mod bands;
 mod curve;
@@ -26,25 +26,29 @@ pub use shown::Shown;
 pub use small::{base_plot, marks, small_axes, spaced};
 pub use written::written;
 
-/// How wide the panel is made by itself, points: a share of the window, between these.
-const SHARE: f32 = 0.233;
-const NARROWEST: f32 = 272.0;
-const WIDEST: f32 = 640.0;
+/// Default width of the panel: a fraction of the window width, within bounds, points.
+const WIDTH_FRACTION: f32 = 0.233;
+const MIN_WIDTH_PT: f32 = 272.0;
+const MAX_WIDTH_PT: f32 = 640.0;
 
-/// The same where runs are compared.
-const COMPARED: f32 = 0.38;
-const COMPARED_WIDEST: f32 = 1100.0;
+/// Fraction and upper bound in the layout that compares runs.
+const COMPARE_WIDTH_FRACTION: f32 = 0.38;
+const COMPARE_MAX_WIDTH_PT: f32 = 1100.0;
 
-/// Room for the scroll bar, which grows where the pointer is near, points.
-const BAR: f32 = 12.0;
+/// Space for the scroll bar, which grows when the pointer is near, points.
+const SCROLL_BAR_WIDTH_PT: f32 = 12.0;
 
-/// How wide the panel is made by itself in a window, points.
+/// Returns the default width of the panel in a window, points.
 fn usual(ui: &Ui, layout: Layout) -> f32 {
-    let (share, widest) = if layout == Layout::Compare { (COMPARED, COMPARED_WIDEST) } else { (SHARE, WIDEST) };
-    (share * ui.ctx().content_rect().width()).clamp(NARROWEST, widest).round()
+    let (share, widest) = if layout == Layout::Compare {
+        (COMPARE_WIDTH_FRACTION, COMPARE_MAX_WIDTH_PT)
+    } else {
+        (WIDTH_FRACTION, MAX_WIDTH_PT)
+    };
+    (share * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, widest).round()
 }
 
-/// Draws this panel; how wide it was made.
+/// Draws this panel; returns the width set by the user, if any.
 pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Option<f32> {
     let Shown { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
@@ -52,14 +56,16 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
     let usual = usual(ui, view_state.arrangement.layout);
     let most = (0.6 * ui.available_width()).max(usual);
     let width = view_state.arrangement.now().plots.width.unwrap_or(usual).min(most);
-    // By its own width: where the window changes that, what was remembered of another does not count.
+    // The identifier contains the default width: when the window changes it, the width that egui remembers does not
+    // apply.
     let salt = ("plots", usual as u32, view_state.arrangement.swapped);
     let panel = if view_state.arrangement.swapped { Panel::left(salt) } else { Panel::right(salt) };
     let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
-        search::show(ui, what, &plots, BAR as i8, commands);
-        let columns = ((ui.available_width() - BAR - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
+        search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
+        let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT) * ui.ctx().pixels_per_point())
+            .clamp(16.0, 8192.0) as usize;
         let (lines, is_whole) = prepared::drawn(what, &plots, columns);
         if !is_whole {
             ui.ctx().request_repaint();
@@ -69,9 +75,9 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
         let taken = (TITLE + BELOW + 13.0) * (plots.len() as f32 + 1.0) + statistics * rows as f32;
         let height = ((ui.available_height() - taken) / (plots.len() as f32 + 1.6)).max(56.0);
         let seen = hover::instant(ui, session);
-        // Where there is no room for all of them, they scroll.
+        // The plots scroll if they do not fit.
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.set_width(ui.available_width() - BAR);
+            ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH_PT);
             ui.spacing_mut().item_spacing.y = 3.0;
             let mut over = None;
             for (plot, drawn) in plots.iter().zip(&*lines) {

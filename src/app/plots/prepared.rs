@@ -1,4 +1,4 @@
-//! What plots show: samples that grow with the runs on display, and what is drawn of them.
+//! The data of the plots: samples that grow with the runs on display, and the lines drawn of them.
 
 use std::sync::Arc;
 
@@ -14,13 +14,13 @@ use crate::simulation::signals::Signal;
 use crate::study::comparison::Comparison;
 use crate::study::samples::Samples;
 
-/// Frames taken up in one repaint: of ten signals they take a few milliseconds.
-const AT_ONCE: usize = 4_000;
+/// Number of frames sampled in one repaint: a few milliseconds for ten signals.
+const FRAMES_PER_REPAINT: usize = 4_000;
 
-/// What is drawn of each plot.
+/// Query for the drawn lines of each plot.
 pub struct Drawing;
 
-/// All that the drawn lines depend on.
+/// The input of the drawn lines.
 #[derive(Clone, PartialEq)]
 pub struct Input {
     scenario: Shared<Scenario>,
@@ -28,7 +28,7 @@ pub struct Input {
     choice: Choice,
     pins: bool,
     samples: Grown<Samples>,
-    /// Runs that are laid over, with their places.
+    /// Runs shown in comparison, with their indices.
     others: Vec<(usize, Grown<Samples>)>,
     shown: [f64; 2],
     columns: usize,
@@ -53,7 +53,7 @@ impl Quick for Drawing {
     }
 }
 
-/// How much time there is to show of a session.
+/// Returns the time that the plots of a session can show.
 pub fn extent(session: &Session) -> Extent {
     let (now, end) = (session.frame().time, session.frames().last().map_or(0.0, |f| f.time).max(session.length()));
     match session.is_led() {
@@ -62,14 +62,14 @@ pub fn extent(session: &Session) -> Extent {
     }
 }
 
-/// What is drawn in so many columns of pixels, with its plots; whether all frames are in it.
+/// Returns the drawn lines of the plots for a number of pixel columns, and whether they contain all frames.
 pub fn drawn(what: &Shown<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<Drawn>>, bool) {
     let Shown { session, queries, view_state, .. } = *what;
     let wanted = wanted(plots);
     let others = laid_over(what.comparison);
     let others: Vec<(usize, Grown<Samples>)> =
-        others.map(|(place, frames)| (place, queries.grow(&wanted, frames, AT_ONCE))).collect();
-    let samples: Grown<Samples> = queries.grow(&wanted, session.frames(), AT_ONCE);
+        others.map(|(place, frames)| (place, queries.grow(&wanted, frames, FRAMES_PER_REPAINT))).collect();
+    let samples: Grown<Samples> = queries.grow(&wanted, session.frames(), FRAMES_PER_REPAINT);
     let is_whole = samples.is_whole && others.iter().all(|(_, other)| other.is_whole);
     let input = Input {
         scenario: session.run().shared_scenario(),
@@ -84,7 +84,7 @@ pub fn drawn(what: &Shown<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<D
     (queries.ask::<Whole<Drawing>>(&input), is_whole)
 }
 
-/// The signals of plots, each once.
+/// Returns the signals of the plots, without repetitions.
 fn wanted(plots: &[Plot<'_>]) -> Vec<Signal> {
     let mut wanted: Vec<Signal> = Vec::new();
     for signal in plots.iter().flat_map(|plot| plot.curves.iter().map(|curve| curve.signal).chain(plot.against)) {
@@ -95,7 +95,7 @@ fn wanted(plots: &[Plot<'_>]) -> Vec<Signal> {
     wanted
 }
 
-/// The frames of runs that are laid over, with their places.
+/// Returns the frames of the runs shown in comparison, with their indices.
 fn laid_over(comparison: Option<&Comparison>) -> impl Iterator<Item = (usize, &Sequence<Frame>)> {
     comparison.into_iter().flat_map(Comparison::shown).map(|(place, run)| (place, &run.frames))
 }

@@ -1,4 +1,4 @@
-//! The row below the plots: any signal found by what is typed, the second cursor, and plots that were put away.
+//! The row below the plots: search for a signal, the second cursor, and closed plots.
 
 use egui::{
     Align, Button, Context, Id, Key, Layout, Panel, Popup, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui,
@@ -13,29 +13,29 @@ use crate::picture::charts::choice::{Change, Plot};
 use crate::picture::charts::search::search;
 use crate::picture::numbers::at_step;
 
-/// What the signal that is sought is for.
+/// Purpose of the search for a signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Sought {
-    /// A plot of its own.
+    /// A new plot.
     #[default]
     Plot,
-    /// A curve of the plot of this name.
+    /// A curve in the plot of this name.
     Curve(String),
-    /// What the plot of this name is drawn over.
+    /// The abscissa of the plot of this name.
     Across(String),
 }
 
-/// What is typed so far, and which answer is chosen.
+/// Search text, and the selected result.
 #[derive(Clone, Debug, Default)]
 struct Typed {
     sought: Sought,
     text: String,
     place: usize,
-    /// The answers are on display.
+    /// Whether the results are on display.
     open: bool,
 }
 
-/// Whether the answers are on display.
+/// Whether the search results are on display.
 pub fn is_looking(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp::<Typed>(typed_id())).is_some_and(|typed| typed.open)
 }
@@ -48,18 +48,18 @@ fn typed_id() -> Id {
     Id::unique("text of the signal sought")
 }
 
-/// Puts the cursor into the field, for a plot of its own.
+/// Moves the keyboard focus to the field, for a new plot.
 pub fn focus(ctx: &Context) {
     start(ctx, Sought::Plot);
 }
 
-/// Puts the cursor into the field.
+/// Moves the keyboard focus to the field.
 pub fn start(ctx: &Context, sought: Sought) {
     ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { sought, ..Typed::default() }));
     ctx.memory_mut(|memory| memory.request_focus(id()));
 }
 
-/// Draws the row, so far from the right edge.
+/// Draws the row, with this margin on the right, points.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], right: i8, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right, top: 6, bottom: 0 });
     Panel::bottom("find a signal").resizable(false).show_separator_line(false).frame(frame).show(ui, |ui| {
@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], right: i8, comma
     });
 }
 
-/// What plots show besides: a way back to all time, the second cursor, plots that were put away.
+/// Draws buttons that show all time, remove the second cursor, and reopen closed plots.
 fn state(ui: &mut Ui, shown: &Shown<'_>, commands: &mut Vec<Command>) {
     let (view_state, session) = (shown.view_state, shown.session);
     let p = view_state.palette();
@@ -116,7 +116,7 @@ fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<
         Sought::Curve(plot) => format!("+ curve in {}", title(plot)),
         Sought::Across(plot) => format!("{} against …", title(plot)),
     };
-    // The arrows go through the answers, not through the text.
+    // The arrow keys move through the results, not through the text.
     let focused = ui.memory(|memory| memory.has_focus(id()));
     let pressed = |key| focused && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
@@ -174,7 +174,7 @@ fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<
         typed = Typed::default();
         ui.memory_mut(|memory| memory.surrender_focus(id()));
     } else {
-        // A press on an answer takes the focus away, and is one only with its release.
+        // A press on a result takes the focus away; it is a click only with its release.
         let (pressing, pressed) =
             ui.input(|i| (i.pointer.any_down() || i.pointer.any_released(), i.pointer.any_pressed()));
         let here = response.contains_pointer() || answers.is_some_and(|answers| answers.response.contains_pointer());

@@ -1,4 +1,4 @@
-//! What the plots are of.
+//! The subject of the plots.
 
 use std::sync::Arc;
 
@@ -9,23 +9,23 @@ use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 use crate::study::comparison::Comparison;
 
-/// What is on display.
+/// The data shown by the plots.
 pub struct Shown<'a> {
     pub session: &'a Session,
-    /// What is derived of it.
+    /// The queries about the session.
     pub queries: &'a Queries,
     pub signals: &'a Arc<Vec<Signal>>,
     pub comparison: Option<&'a Comparison>,
     pub view_state: &'a ViewState,
 }
 
-/// The frame at a time, s, or the nearest before it.
+/// Returns the frame at a time, s, or the last one before it.
 pub fn instant(session: &Session, time: f64) -> &Frame {
     let frames = session.frames();
     &frames[frames.partition_point(|f| f.time <= time + 1e-9).saturating_sub(1)]
 }
 
-/// The frame nearest to a time, s.
+/// Returns the frame nearest to a time, s.
 pub fn nearest(session: &Session, time: f64) -> &Frame {
     instant(session, time + 0.5 * session.scenario().step)
 }

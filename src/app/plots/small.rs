@@ -1,4 +1,4 @@
-//! Small plots of the panels: how they look, and what is marked on their axes.
+//! Small plots of the panels: style and axis marks.
 
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Plot};
@@ -7,10 +7,10 @@ use crate::app::theme::{bold, colour, plain};
 use crate::picture::numbers::round_up;
 use crate::picture::scene::palette::{Palette, faded};
 
-/// Size of the figures at axes.
-const FIGURES: f32 = 10.5;
+/// Font size of the axis numbers, points.
+const AXIS_FONT_PT: f32 = 10.5;
 
-/// Over the plots of which b serves: what they show.
+/// Draws the title of the chart *Which b?*.
 pub fn which_b_title(ui: &mut Ui, p: &Palette, words: &str) {
     ui.horizontal(|ui| {
         ui.set_height(16.0);
@@ -19,7 +19,7 @@ pub fn which_b_title(ui: &mut Ui, p: &Palette, words: &str) {
     });
 }
 
-/// A plot as the panels have it: without grid across, and without hands.
+/// Returns a plot in the style of the panels: without vertical grid lines, and without dragging and zooming.
 pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     Plot::new(id.to_owned())
         .height(height)
@@ -40,17 +40,17 @@ pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
         .set_margin_fraction(egui::Vec2::ZERO)
 }
 
-/// The axes of the plots that follow have figures as small as those of the signals.
+/// Sets the small font of the signal plots for the axes that follow.
 pub fn small_axes(ui: &mut Ui) {
-    ui.style_mut().text_styles.insert(TextStyle::Body, plain(FIGURES));
+    ui.style_mut().text_styles.insert(TextStyle::Body, plain(AXIS_FONT_PT));
 }
 
-/// Values to mark on an axis.
+/// Returns axis marks at these values.
 pub fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
     values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
 }
 
-/// Some three to five round values between bounds.
+/// Returns round values between bounds, about three to five.
 pub fn spaced(low: f64, high: f64) -> Vec<f64> {
     let step = round_up((high - low) / 5.0);
     let first = (low / step).ceil() as i64;

@@ -1,4 +1,4 @@
-//! Hands on the numbers beside a plot: they go closer to its values, and along them.
+//! Gestures on the axis numbers beside a plot: zooming and panning of its values.
 
 use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 
@@ -7,14 +7,15 @@ use crate::picture::charts::choice::{Change, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::figure::{Axes, LEFT};
 
-/// The least and the most that is shown, beside what shows all values.
-const SPAN: [f64; 2] = [1e-3, 30.0];
-/// How much closer a notch of the wheel goes.
-const CLOSER: f64 = 0.004;
+/// Minimum and maximum of the visible value range, as fractions of the range of all values.
+const MIN_SPAN: f64 = 1e-3;
+const MAX_SPAN: f64 = 30.0;
+/// Logarithm of the zoom factor for each point of scrolling.
+const LOG_ZOOM_PER_PT: f64 = 0.004;
 
 const TIP: &str = "Drag: along the values\nCtrl wheel, or Alt wheel on the plot: closer\nDouble click: all of them";
 
-/// Reads them; whether they have the pointer.
+/// Handles the gestures; returns whether the pointer is on the numbers or drags them.
 pub fn hands(
     ui: &Ui,
     (plot, drawn, axes): (&Plot<'_>, &Drawn, &Axes),
@@ -29,7 +30,7 @@ pub fn hands(
     };
     let [low, high] = drawn.y;
     let [_, top, _, bottom] = axes.sides;
-    // What it was when the drag began.
+    // The value range at the start of the drag.
     let mut held: Option<Option<[f64; 2]>> = ui.data(|data| data.get_temp(id));
     let origin = ui.input(|i| i.pointer.press_origin());
     if response.drag_started_by(PointerButton::Primary) && origin.is_some_and(|at| numbers.contains(at)) {
@@ -53,7 +54,7 @@ pub fn hands(
     }
     let Some(pos) = response.hover_pos() else { return false };
     let on = numbers.contains(pos);
-    let factor = closer(ui, on);
+    let factor = wheel_zoom(ui, on);
     if (factor - 1.0).abs() > 1e-6 {
         ask(zoomed(drawn, axes.y_at(pos.y - rect.top()), factor));
     }
@@ -67,8 +68,8 @@ pub fn hands(
     on
 }
 
-/// How many times as close the wheel asks to go. The plain wheel scrolls the panel.
-fn closer(ui: &Ui, on_numbers: bool) -> f64 {
+/// Returns the zoom factor of the wheel. The plain wheel scrolls the panel.
+fn wheel_zoom(ui: &Ui, on_numbers: bool) -> f64 {
     ui.input_mut(|i| {
         if on_numbers && i.zoom_delta() != 1.0 {
             return f64::from(i.zoom_delta());
@@ -77,22 +78,23 @@ fn closer(ui: &Ui, on_numbers: bool) -> f64 {
             return 1.0;
         }
         let by = f64::from(std::mem::take(&mut i.smooth_scroll_delta.y));
-        (CLOSER * by).exp()
+        (LOG_ZOOM_PER_PT * by).exp()
     })
 }
 
-/// The values so many times as close about one that stays where it is; none where that shows all of them.
+/// Returns the value range zoomed by a factor about a value, which keeps its position; `None` if the range is not
+/// finite.
 fn zoomed(drawn: &Drawn, about: f64, factor: f64) -> Option<[f64; 2]> {
     let [low, high] = drawn.y;
     let all = drawn.all[1] - drawn.all[0];
-    let span = ((high - low) / factor.max(1e-6)).clamp(SPAN[0] * all, SPAN[1] * all);
+    let span = ((high - low) / factor.max(1e-6)).clamp(MIN_SPAN * all, MAX_SPAN * all);
     let share = ((about - low) / (high - low)).clamp(0.0, 1.0);
     let from = about.clamp(low, high) - share * span;
     let values = [from, from + span];
     values.iter().all(|x| x.is_finite()).then_some(values)
 }
 
-/// Whether a place is on the numbers of a plot.
+/// Whether a position is on the axis numbers of a plot.
 pub fn are_at(response: &Response, pos: Pos2) -> bool {
     pos.x < response.rect.left() + LEFT - 2.0
 }

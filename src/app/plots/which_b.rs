@@ -1,4 +1,4 @@
-//! Which b serves a target, or the points of the task.
+//! The chart *Which b?*: values of b that reach a target, or the points of the task.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::planning::reactionless::PlanePoint;
 use crate::query::{Queries, Quick, Same, Whole};
 use crate::session::Session;
 
-/// The branches of the self-motion of each of some points on planes.
+/// Query for the branches of the self-motion on the planes, for each of some points.
 pub struct Branches;
 
 impl Quick for Branches {
@@ -32,7 +32,7 @@ impl Quick for Branches {
     }
 }
 
-/// Which b: q_1 against b of each point where there are planes, else a bar of its b; a click chooses b.
+/// Draws the chart: with planes, q_1 against b of each point; otherwise a bar of its feasible b. A click chooses b.
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
@@ -57,7 +57,7 @@ pub fn show(
     }
 }
 
-/// Fig. 3: q_1 against b for A and B, or for the target.
+/// Draws Fig. 3: q_1 against b for A and B, or for the target.
 fn lines(
     ui: &mut Ui,
     p: &Palette,
@@ -80,7 +80,7 @@ fn lines(
         .zip(&*branches)
         .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (name.as_str(), branch)))
         .map(|(name, branch)| {
-            // The whole turn nearest to the present b.
+            // Shifted by whole periods to be nearest to the present b.
             let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
             let lift = map.period() * ((now.b_reference - middle) / map.period()).round();
             let point = |x: &PlanePoint| {
@@ -118,7 +118,7 @@ fn lines(
             }
             let last = points.len() - 1;
             for (name, line) in lines {
-                // Of many points only the ends have room for a name.
+                // Of many points, only the first and the last are named.
                 let named = points.len() <= 4 || name == points[0].0 || name == points[last].0;
                 if let Some(end) = line.last().filter(|_| named) {
                     let text = RichText::new(name).font(plain(11.5));

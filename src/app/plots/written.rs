@@ -1,4 +1,4 @@
-//! A plot as a file.
+//! Export of a plot to a file.
 
 use super::prepared::{Drawing, extent};
 use super::shown::Shown;
@@ -12,16 +12,16 @@ use crate::query::{Whole, grown};
 use crate::simulation::signals::Signal;
 use crate::study::samples::Samples;
 
-/// Width and height of a picture of a plot.
-const SIZE: [f32; 2] = [720.0, 320.0];
+/// Width and height of a picture of a plot, points.
+const PICTURE_SIZE_PT: [f32; 2] = [720.0, 320.0];
 
-/// What makes the content of a file.
+/// Computes the content of a file.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 
-/// What the file of a plot holds, to be made beside the window: it may take a while.
+/// Returns the function that computes the file of a plot; it is run in the background, since it may take long.
 ///
 /// # Errors
-/// If there is no such plot any more.
+/// If the plot does not exist any more.
 pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, String> {
     let Shown { session, signals, view_state, .. } = *what;
     let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
@@ -34,7 +34,7 @@ pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, 
     let mark = view_state.mark.map(|time| super::shown::instant(session, time));
     let palette = view_state.palette();
     let look = Look { palette: &palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
-    let figure = Figure::of(plot, drawn, SIZE, &look);
+    let figure = Figure::of(plot, drawn, PICTURE_SIZE_PT, &look);
     Ok(match file {
         PlotFile::Csv => {
             let range = extent(session).shown(view_state.charts.range);
@@ -46,16 +46,16 @@ pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, 
     })
 }
 
-/// The signals whose values a plot shows.
+/// Returns the signals whose values a plot shows.
 pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
     plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal)).cloned().collect()
 }
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {
-    let mut canvas = Canvas::new(SIZE.map(|side| 2 * side as u32), 2.0).map_err(|why| why.to_string())?;
+    let mut canvas = Canvas::new(PICTURE_SIZE_PT.map(|side| 2 * side as u32), 2.0).map_err(|why| why.to_string())?;
     let mut dressed = false;
     let picture = canvas.draw(|ui| {
-        // Type is there from the second pass on.
+        // Fonts are available from the second pass on.
         if std::mem::replace(&mut dressed, true) {
             whole(ui.painter(), figure);
         } else {

@@ -1,4 +1,4 @@
-//! Every setting there is, by its key: to be found, read and typed.
+//! All settings by key, to search, read and edit.
 
 use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
@@ -16,25 +16,25 @@ use crate::settings::key::{Holds, Key};
 use crate::settings::quantity::{self, Misread};
 use crate::settings::range::shortened;
 
-/// Above the list.
+/// Title of the list.
 const TITLE: &str = "All settings";
 
-/// What the title above a part says already.
-const HEADED: [&str; 7] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance.", "design."];
+/// Prefixes of keys that the title of their part already names.
+const PREFIXES_IN_TITLES: [&str; 7] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance.", "design."];
 
-/// The most rows that are shown at once.
-const SHOWN: usize = 24;
+/// Maximum number of rows.
+const MAX_ROWS: usize = 24;
 
 fn sought_id() -> egui::Id {
     egui::Id::unique("settings sought")
 }
 
-/// Set for the one pass in which the list is scrolled to.
+/// Key of the flag that is set for the pass in which the list is scrolled to.
 fn wanted_id() -> egui::Id {
     egui::Id::unique("settings wanted")
 }
 
-/// Unfolds the list with what contains a path.
+/// Unfolds the list and searches it for a path.
 pub fn look_up(ctx: &egui::Context, path: &str) {
     ctx.data_mut(|data| {
         data.insert_temp(fold_id(TITLE), true);
@@ -43,7 +43,7 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
     });
 }
 
-/// Draws it.
+/// Draws the list.
 pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Command>) {
     fold(ui, p, (TITLE, "by key"), None, commands, |ui, commands| {
         let id = sought_id();
@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Comm
         let (mut count, mut part) = (0, "");
         for setting in facts.settings().iter().filter(|setting| setting.text.contains(&word)) {
             count += 1;
-            if count > SHOWN {
+            if count > MAX_ROWS {
                 continue;
             }
             let of = part_of(setting.key);
@@ -73,13 +73,14 @@ pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Comm
         }
         match count {
             0 => note(ui, p, "no key contains this"),
-            n if n > SHOWN => note(ui, p, &format!("and {} more: search for them", n - SHOWN)),
+            n if n > MAX_ROWS => note(ui, p, &format!("and {} more: search for them", n - MAX_ROWS)),
             _ => {}
         }
     });
 }
 
-/// What was typed for a key: numbers with units and arithmetic in the unit of the key, anything else as in a file.
+/// Parses the text typed for a key: numbers with units and arithmetic in the unit of the key, anything else as in a
+/// file.
 fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
     if text.trim().is_empty() {
         return Ok(DEFAULT.into());
@@ -89,7 +90,7 @@ fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
         key.holds,
         Holds::Number(_) | Holds::Whole(_) | Holds::PerDrive(_) | Holds::List(..) | Holds::Bounds(_)
     );
-    // Words, such as none, are for the key to take or not.
+    // Words, such as none, are checked by the key.
     if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
         return Ok(value);
     }
@@ -142,7 +143,7 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
-                let name = HEADED.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path.as_str());
+                let name = PREFIXES_IN_TITLES.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path.as_str());
                 ui.add(Label::new(RichText::new(name).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
             });
         });

@@ -1,4 +1,4 @@
-//! The section *Base* of the panel on the left: what the machine stands on.
+//! The section *Base* of the panel on the left: the base of the machine.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The section *Control* of the panel on the left: what the motors are told.
+//! The section *Control* of the panel on the left: control law, gains and sampling.
 
 use egui::Ui;
 
@@ -11,10 +11,10 @@ use crate::session::Session;
 use crate::settings::word::Choice;
 use crate::simulation::control::{Control, ControlLaw};
 
-/// Steps between samples that are offered; a rate must fit the simulation's step.
+/// Selectable sample periods, steps: a rate must fit the time step.
 const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
 
-/// Counts of encoders that are offered.
+/// Selectable encoder resolutions, counts.
 const COUNTS: [f64; 6] = [1024.0, 4096.0, 16384.0, 65536.0, 262_144.0, 1_048_576.0];
 
 /// Draws this section.

@@ -1,4 +1,4 @@
-//! What the sections of the panel are made of: heads that fold, switches, and numbers with a normal value.
+//! Parts of the sections: heads that fold, switches, and numbers with a default value.
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
@@ -28,23 +28,23 @@ impl Section {
         }
     }
 
-    /// A key, by its parts, set to a value; the word `default` takes it out.
+    /// Returns the edit that sets a key, given by its parts; the word `default` removes the key.
     pub fn set(self, path: &[&str], value: impl Into<Value>) -> Edit {
         Edit::at(&[&[self.word()], path].concat(), value)
     }
 
-    /// A key back to normal.
+    /// Returns the edit that restores the default of a key.
     pub fn back(self, path: &[&str]) -> Edit {
         self.set(path, DEFAULT)
     }
 
-    /// All keys back to normal.
+    /// Returns the edit that restores the defaults of all keys.
     pub fn all_back(self) -> Edit {
         self.back(&[])
     }
 }
 
-/// A section that opens and closes; it begins open if something in it is not as usual. `back` takes all of it back.
+/// Draws a section that folds; at first it is open if `back` is given, the edit that restores all its defaults.
 pub fn fold(
     ui: &mut Ui,
     p: &Palette,
@@ -56,7 +56,7 @@ pub fn fold(
     let id = place::fold_id(title);
     let chosen = ui.data(|d| d.get_temp::<bool>(id));
     let mut open = chosen.unwrap_or(back.is_some());
-    // Folded, they stand together.
+    // Folded sections are close together.
     ui.add_space(if open { 8.0 } else { 2.0 });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -78,14 +78,14 @@ pub fn fold(
             ui.add(egui::Label::new(RichText::new(summary).font(plain(11.0)).color(ink)).truncate());
         });
     });
-    // What began open stays so when everything is normal again.
+    // A section that was open at first stays open when all its values are defaults again.
     ui.data_mut(|d| d.insert_temp(id, open));
     if open {
         body(ui, commands);
     }
 }
 
-/// A small button that takes something back; whether it was clicked.
+/// Draws a small button that restores a default; returns whether it was clicked.
 pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
     let sign = RichText::new("↺").font(plain(13.0)).color(colour(p.amber));
     let response = ui.add(Button::new(sign).frame(false).min_size(egui::vec2(14.0, 18.0)));
@@ -93,7 +93,7 @@ pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
     response.on_hover_text(tip).clicked()
 }
 
-/// A switch that sends an edit; whether it is on.
+/// Draws a switch that sends an edit; returns whether it is on.
 pub fn switch(
     ui: &mut Ui,
     (label, tip): (&str, &str),
@@ -108,8 +108,8 @@ pub fn switch(
     on
 }
 
-/// A switch for a setting that counts as on while it is not zero. While the pointer is down it stays on, so that a
-/// slider that passes zero does not hide itself.
+/// Draws a switch that is on while its setting is not zero. While the pointer is down it stays on, so that a slider
+/// that passes zero does not hide itself.
 pub fn switch_nonzero(
     ui: &mut Ui,
     words: (&str, &str),
@@ -125,7 +125,7 @@ pub fn switch_nonzero(
     switch(ui, words, on, commands, to)
 }
 
-/// Some choices beside each other.
+/// Draws choices side by side.
 pub fn segments<T: Copy + PartialEq>(
     ui: &mut Ui,
     p: &Palette,
@@ -150,7 +150,7 @@ pub fn segments<T: Copy + PartialEq>(
     });
 }
 
-/// A label and a list to choose from.
+/// Draws a label and a list to choose from.
 pub fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     (label, tip): (&str, &str),
@@ -181,7 +181,7 @@ pub fn choose<T: Clone + PartialEq>(
     taken
 }
 
-/// How a number is set besides typing.
+/// Whether a number has a slider, and its scale.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Slide {
     No,
@@ -189,16 +189,16 @@ pub enum Slide {
     Logarithmic,
 }
 
-/// A number that has a normal value.
+/// A number with a default value.
 pub struct NumberField<'a> {
     pub row: Row<'a>,
     pub now: f64,
     pub normal: f64,
-    /// The normal value stands beside it.
+    /// Whether the default value is shown beside it.
     pub beside: bool,
-    /// What takes it back; none: setting the normal value does.
+    /// The edit that restores the default; `None`: the edit that sets the default value.
     pub back: Option<Edit>,
-    /// Its name for screen readers, where several fields have the same label.
+    /// Its name for screen readers, if several fields have the same label.
     pub called: Option<String>,
 }
 

@@ -1,5 +1,5 @@
-//! The section *Plant* of the panel on the left, what differs in the machine that moves: payload, friction, torque
-//! limits, links, lengths, a force.
+//! The section *Plant* of the panel on the left: differences of the simulated machine from the model, namely payload,
+//! friction, torque limits, links, lengths, a force.
 
 use egui::Ui;
 
@@ -13,7 +13,7 @@ use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
 use crate::simulation::plant::{Each, LinkDifference, PlantDifferences};
 
-/// How much differs.
+/// Returns the number of differences.
 fn count(plant: &PlantDifferences) -> usize {
     let PlantDifferences { torque_limits, force, payload, friction, length, link } = plant;
     let single = [*torque_limits, *force != [0.0; 2], payload.is_some(), *friction != Default::default()];
@@ -117,14 +117,14 @@ fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette,
     });
 }
 
-/// A number for all drives, or one for each.
+/// A number common to all drives, or one for each.
 #[derive(Clone, Copy)]
 pub struct Gain<'a> {
     pub label: &'a str,
     /// Path of its setting, by its parts.
     pub path: &'a [&'a str],
     pub decimals: usize,
-    /// Where the slider ends.
+    /// Upper end of the slider.
     pub most: f64,
     pub normal: f64,
 }
@@ -198,7 +198,7 @@ fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<
     });
 }
 
-/// The link or length that a list shows: the one chosen last, or else the first that differs.
+/// Returns the link or length on display in a list: the one chosen last, or else the first that differs.
 fn chosen(ui: &Ui, what: &str, first: Option<&String>, exists: impl Fn(&str) -> bool) -> String {
     let taken = ui.data(|d| d.get_temp::<String>(place::chosen_id(what)));
     taken.filter(|name| name.is_empty() || exists(name)).or_else(|| first.cloned()).unwrap_or_default()

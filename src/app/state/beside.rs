@@ -1,4 +1,4 @@
-//! What works beside the window for what is on display: outlines, the run ahead, studies, runs side by side.
+//! Background work for the display: outlines, the run ahead, studies, runs side by side.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::session::scenario::Scenario;
 use crate::study::comparison::{Compared, Comparison, Ways};
 use crate::study::tolerance::{Studied, Study, Studying};
 
-/// The most steps that are run ahead to see how far the base will move.
-const MOST_AHEAD: f64 = 20_000.0;
+/// Maximum number of steps that are run ahead to find the motion of the base.
+const MAX_STEPS_AHEAD: f64 = 20_000.0;
 
 impl AppState {
-    /// Does what is to be done after work that has ended; whether any has.
+    /// Runs the follow-up of all finished background work; returns whether there was any.
     pub(super) fn finish(&mut self) -> bool {
         let mut any = false;
         while let Some(then) = self.background.ended() {
@@ -27,7 +27,7 @@ impl AppState {
         any
     }
 
-    /// Takes what has been done beside the window; whether anything has.
+    /// Takes over all finished background work; returns whether there was any.
     pub(super) fn collect(&mut self) -> bool {
         let any = self.finish();
         if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
@@ -38,10 +38,11 @@ impl AppState {
         any
     }
 
-    /// Has what the machine reaches outlined, where that is yet to be found and takes long; whether it has come.
+    /// Requests the outline of the workspace in the background if it is still missing; returns whether it has just
+    /// arrived.
     pub(super) fn outline(&mut self) -> bool {
         let Some(space) = self.views.unoutlined() else {
-            // What was being outlined is wanted no more.
+            // The outline is not needed any more.
             self.queries().give_up::<Outlining>();
             return false;
         };
@@ -52,17 +53,17 @@ impl AppState {
         true
     }
 
-    /// Runs ahead to where the planned motion ends, to know how far the base will move.
+    /// Runs ahead to the end of the planned motion in the background, to find how far the base will move.
     pub(super) fn foresee(&mut self) {
         let run = self.session.run();
-        if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MOST_AHEAD {
+        if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MAX_STEPS_AHEAD {
             let _ = self.queries().ask_beside::<Ahead>(&Same(Arc::new(run.clone())));
         } else {
             self.queries().forget::<Ahead>();
         }
     }
 
-    /// Studies the run on display; only the newest counts.
+    /// Requests the study of tolerances for the run on display; a newer request replaces an older one.
     pub(super) fn refresh_study(&mut self) {
         if self.view_state.below != Some(Below::Tolerances) {
             self.queries().forget::<Studying>();
@@ -71,12 +72,12 @@ impl AppState {
         }
     }
 
-    /// What there is to show of that study, or why there is none.
+    /// Returns the study of tolerances, or why there is none.
     pub(super) fn study(&self) -> Option<Arc<Result<Study, String>>> {
         let Asked { last, state } = self.queries().newest::<Studying>()?;
         match state {
             State::Broken => Some(Arc::new(Err(fault("the study")))),
-            // It is not begun again until something changes.
+            // A stopped study is not started again until something changes.
             State::Stopped if last.is_none() => {
                 Some(Arc::new(Err("cancelled: to change something draws machines again".into())))
             }
@@ -84,7 +85,7 @@ impl AppState {
         }
     }
 
-    /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
+    /// Runs the task on display in its different ways, if the table shows another task. Does nothing during a drag.
     pub(super) fn refresh_comparison(&mut self) {
         if self.view_state.below != Some(Below::Runs) {
             self.comparison = None;
@@ -117,7 +118,7 @@ impl AppState {
         }
     }
 
-    /// Keeps the session's own run in the table of runs, while that is on display.
+    /// Adds the session's run to the table of runs, if the table is on display.
     pub(super) fn keep_run(&mut self) {
         if self.comparison.is_some() {
             let mut scenario = self.session.to_scenario();
@@ -135,7 +136,7 @@ impl AppState {
         }
     }
 
-    /// Runs a branch to be kept beside the ways of the task.
+    /// Runs a branch and adds it to the table of runs.
     pub(super) fn compare_branch(&mut self, branch: usize) {
         let Some(mut scenario) = self.session.branch(branch) else { return };
         if let Some(fork) = self.session.forks().get(branch) {
@@ -146,7 +147,7 @@ impl AppState {
         self.keep(scenario, Some("added the branch to the runs side by side"));
     }
 
-    /// Runs a scenario to be kept beside the ways of the task.
+    /// Runs a scenario in the background and adds it to the table of runs; `news` is the message on success.
     pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
         let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
         self.background.run(Activity::Kept, work, move |app_state, run| {
@@ -163,13 +164,13 @@ impl AppState {
         self.collect();
     }
 
-    /// Ends the program's work: a session that is being saved is saved whole, all else is stopped.
+    /// Ends the background work: waits until a session under way is saved, and stops everything else.
     pub(in crate::app) fn close(&mut self) {
         self.background.wait_for(Activity::Saving);
         self.background = Background::default();
     }
 
-    /// Stops what is under way; what was shown stays.
+    /// Stops an activity and returns the message for it. The display stays as it is.
     pub(super) fn cancel(&mut self, activity: Activity) -> String {
         if activity.can_stop() {
             self.background.stop(activity);
@@ -180,12 +181,12 @@ impl AppState {
         activity.cancelled().into()
     }
 }
-/// What is said of work that broke off.
+/// Returns the message for background work that panicked.
 pub(super) fn fault(what: &str) -> String {
     format!("{what} broke off: this is a fault of the program")
 }
 
-/// Whether two scenarios differ in their tasks at most.
+/// Whether two scenarios agree in machine, plant, control, base and step.
 fn same_but_task(a: &Scenario, b: &Scenario) -> bool {
     a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
 }

@@ -1,4 +1,4 @@
-//! Commands, carried out.
+//! Execution of commands.
 
 use super::AppState;
 use crate::app::background::Opening;
@@ -9,8 +9,8 @@ use crate::app::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChang
 use crate::picture::scene::views::ViewKind;
 
 impl AppState {
-    /// Carries out one command, after those before it. A command that cannot be carried out changes nothing; a message
-    /// says why. What is of the session waits while that is being changed.
+    /// Carries out one command, after those before it. A command that fails changes nothing, and a message says why.
+    /// Session commands wait while the session is being changed in the background.
     pub fn carry_out(&mut self, command: impl Into<Command>) {
         self.collect();
         self.catch_up();
@@ -30,7 +30,8 @@ impl AppState {
         self.refresh();
     }
 
-    /// Does what had to wait for a change of the session, up to the next that takes long.
+    /// Carries out the commands that waited for a change of the session, until one of them starts a change in the
+    /// background.
     pub(super) fn catch_up(&mut self) {
         while self.background.change.is_none() {
             let Some(command) = self.background.later.pop_front() else { return };
@@ -41,7 +42,7 @@ impl AppState {
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Session(command) => self.do_to_session(command),
-            // Where none was opened yet, one is asked for.
+            // Without an open table, the file dialog asks for one.
             Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, Purpose::Open));
                 Ok(None)
@@ -50,7 +51,7 @@ impl AppState {
                 let designs =
                     matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
                 self.view_state.apply(change);
-                // What is designed stands still.
+                // The run pauses while its machine is designed.
                 if designs {
                     self.session.pause();
                 }
@@ -72,7 +73,7 @@ impl AppState {
             SessionCommand::EndGesture => {
                 self.session.end_gesture();
                 self.designed_from = None;
-                let said = self.parted.take();
+                let said = self.branch_message.take();
                 self.view_state.said.left_branch |= said.is_some();
                 return Ok(said);
             }
@@ -140,7 +141,7 @@ impl AppState {
             WindowCommand::Fronts(change) => self.change_fronts(change),
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;
-                self.looks = true;
+                self.focuses_search = true;
             }
             WindowCommand::Refuse(why) => return Err(why),
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
@@ -152,7 +153,7 @@ impl AppState {
                 self.intro = None;
             }
             WindowCommand::Tour(begins) => {
-                // One guide at a time; what was not done of the hints may come again.
+                // The tour replaces the hints; hints not yet followed may return.
                 self.intro = self.intro.take().filter(|_| !begins);
                 self.view_state.open.help &= !begins;
                 self.view_state.open.tour = begins.then(|| Tour::begin(&self.session));
@@ -165,7 +166,7 @@ impl AppState {
         Ok(None)
     }
 
-    /// Asks for the name of a bookmark; where there is none it is put there.
+    /// Opens the field for the name of the bookmark at `time`, s; creates the bookmark if there is none.
     pub(super) fn name_bookmark(&mut self, time: f64) -> Result<(), String> {
         if self.session.bookmark_at(time).is_none() {
             let name = self.session.free_name();

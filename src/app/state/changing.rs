@@ -1,4 +1,4 @@
-//! Changes of the session, made beside the window, and what follows from them.
+//! Changes of the session made in the background, and their consequences.
 
 use super::AppState;
 use crate::app::background::Changed;
@@ -9,8 +9,8 @@ use crate::session::scenario::MAX_BRANCHES;
 use crate::session::{Edit, Refusal};
 
 impl AppState {
-    /// Changes a copy of the session, which shares its frames, and shows that once it is made: most are by the next
-    /// repaint, and what was shown stays until then.
+    /// Changes a copy of the session in the background, and shows it once it is finished. The copy shares its frames;
+    /// most changes are finished by the next repaint.
     pub(super) fn change(&mut self, change: Change) {
         let mut next = self.session.clone();
         self.background.change = Some((change.clone(), 0));
@@ -37,8 +37,8 @@ impl AppState {
         }
     }
 
-    /// Notes the message for a change that has left a branch. The tuple is the state before the change: the number of
-    /// branches left so far, the instant on display, s, and whether the run was led by hand.
+    /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
+    /// branches left so far, the time on display, s, and whether the machine was dragged.
     pub(super) fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
         let (now, gone) = self.session.partings();
         if !matches!(change, Change::Edit(_)) || now == partings {
@@ -48,13 +48,13 @@ impl AppState {
             true => "what you led by hand is kept as a branch".into(),
             false => format!("what came after {shown:.3} s is kept as a branch"),
         };
-        self.parted = Some(match gone {
+        self.branch_message = Some(match gone {
             Some(gone) => format!("{kept} (H); the oldest of {MAX_BRANCHES} is gone: {gone}"),
             None => format!("{kept} (H)"),
         });
     }
 
-    /// After a change of the session, or its refusal.
+    /// Updates the state after a change of the session or its refusal.
     pub(super) fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
         if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
             self.view_state.said.refused = Some(RefusedEdit::of(edit, refusal));
@@ -62,7 +62,7 @@ impl AppState {
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
             match change {
-                // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
+                // A push sends many edits a second while it lasts: too many to run ahead after each.
                 Change::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
                 Change::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
                 Change::Edit(_) => {

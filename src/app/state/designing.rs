@@ -1,4 +1,4 @@
-//! What becomes of edits in the design view, and the counterweights that are taken there.
+//! Edits in the design view, and the counterweights applied there.
 
 use super::AppState;
 use crate::app::change::Change;
@@ -14,7 +14,8 @@ use crate::study::fronts::{FrontOf, Fronts};
 use crate::study::lengths::{LengthSearch, Seeking};
 
 impl AppState {
-    /// An edit with what follows from it where a machine that is designed is kept balanced.
+    /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if that is
+    /// chosen.
     pub(super) fn designed(&mut self, edit: Edit) -> Result<Edit, String> {
         let Edit::Set { change } = &edit else { return Ok(edit) };
         if self.view_state.view != ViewKind::Design {
@@ -28,7 +29,7 @@ impl AppState {
         if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
     }
 
-    /// Stops the search for fronts that are on display no more; what is known may be shown again.
+    /// Stops the search for Pareto fronts that are not on display any more. Known fronts stay cached.
     pub(super) fn refresh_fronts(&mut self) {
         if self.view_state.view != ViewKind::Design || self.view_state.arrangement.learns {
             studio::leave(self.queries());
@@ -37,7 +38,7 @@ impl AppState {
         }
     }
 
-    /// Changes which fronts are drawn beside that of the machine that is designed.
+    /// Changes which Pareto fronts are drawn beside that of the machine being designed.
     pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
         let Scenario { machine, design, .. } = self.session.scenario();
         match change {
@@ -53,7 +54,8 @@ impl AppState {
         }
     }
 
-    /// What is sought with the brief as it is; none where the machine is none without its counterweights.
+    /// Returns the request of a search for lengths with the present brief, or `None` if the machine is not valid
+    /// without its counterweights.
     fn sought(&self, objective: Objective) -> Option<<Seeking as Query>::Input> {
         let Scenario { machine, design, .. } = self.session.scenario();
         let bare = machine.without_counterweights().ok()?;
@@ -61,13 +63,13 @@ impl AppState {
         Some((Shared(bare.into()), asked))
     }
 
-    /// Seeks lengths anew.
+    /// Starts a new search for lengths.
     pub(super) fn seek(&mut self, objective: Objective) {
         self.queries().forget::<Seeking>();
         self.seeking = self.sought(objective);
     }
 
-    /// Goes on with the search for lengths, until what it is of has changed.
+    /// Continues the search for lengths, or drops it if its request has changed.
     pub(super) fn refresh_seeking(&mut self) {
         let Some(seeking) = self.seeking.take() else { return };
         self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
@@ -77,7 +79,7 @@ impl AppState {
         }
     }
 
-    /// Takes the lengths that were found.
+    /// Applies the lengths found to the machine.
     pub(super) fn take_lengths(&mut self) -> Result<(), String> {
         let found = self.seeking.as_ref().and_then(|seeking| self.queries().known::<Seeking>(seeking));
         let found = found.as_deref().and_then(|found| found.as_ref().ok()).ok_or("no lengths were found yet")?;
@@ -86,14 +88,14 @@ impl AppState {
         Ok(())
     }
 
-    /// Takes the counterweights of a machine of the front, by its place.
+    /// Applies the counterweights of point `i` of the Pareto front.
     pub(super) fn take_of_front(&mut self, i: usize) {
         if let Some(machine) = studio::of_front(self.queries(), &self.session, i) {
             self.take_weights(&machine);
         }
     }
 
-    /// Takes the counterweights and ratios of rotors with which the drives give least to the base.
+    /// Applies the counterweights and rotor ratios with which the drives give the base the least momentum.
     pub(super) fn take_stillest(&mut self) -> Result<(), String> {
         let scenario = self.session.scenario();
         let placed = scenario.design.stillest(&scenario.machine).map_err(|why| why.to_string())?;
@@ -101,7 +103,7 @@ impl AppState {
         Ok(())
     }
 
-    /// Takes the counterweights of another machine.
+    /// Applies the counterweights of another machine.
     fn take_weights(&mut self, of: &Machine) {
         let edit = weights_of(self.session.scenario(), of);
         self.change(Change::Edit(edit));

@@ -1,4 +1,4 @@
-//! The table of numbers that was opened: what it says of the session, and what of that the session takes.
+//! The open table of numbers: its assessment for the session, and applying results to the session.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::study::advice::Advice;
 use crate::study::trim::taken_by;
 
 impl AppState {
-    /// Shows what a table says of the session on display.
+    /// Opens a table and shows its assessment for the session on display.
     pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
         self.saving.uses(&file);
         let measured = Shared(Arc::new(self.session.scenario().machine.clone()));
@@ -23,7 +23,7 @@ impl AppState {
         self.view_state.open.dialog = None;
     }
 
-    /// Finds what the table on display says of the session's machine. Not during a drag.
+    /// Requests the assessment of the table on display for the session's machine. Does nothing during a drag.
     pub(super) fn refresh_given(&mut self) {
         if self.view_state.gesture.grabbed.is_some() {
             return;
@@ -35,7 +35,7 @@ impl AppState {
         }
     }
 
-    /// What a table says, and whether that is of the session as it is.
+    /// Returns the assessment of the table, and whether it belongs to the present session.
     pub(super) fn assessed(&self) -> Option<(Arc<Result<Assessed, Advice>>, bool)> {
         let Asked { last, state } = self.queries().newest::<Assessing>()?;
         match state {
@@ -45,10 +45,10 @@ impl AppState {
         }
     }
 
-    /// Takes something of what a table says.
+    /// Applies a result of the assessment to the session.
     ///
     /// # Errors
-    /// If there is no such thing.
+    /// If there is no such result.
     pub(super) fn take_given(&mut self, taking: Taking) -> Result<(), String> {
         let found = self.assessed().filter(|(_, is_known)| *is_known).map(|(found, _)| found);
         let scenario = self.session.scenario();

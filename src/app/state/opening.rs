@@ -1,4 +1,4 @@
-//! Sessions and files, opened in place of the present session.
+//! Opening of sessions and files in place of the present session.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 impl AppState {
-    /// Opens a session in place of the present one; only the newest counts.
+    /// Opens a source in the background; a newer request replaces an older one.
     pub(super) fn open(&mut self, source: Source, opening: Opening) {
         self.background.stop(Activity::Opening);
         let work = move |ticket: &Ticket| source.open(&mut |done| ticket.goes_on(done));
@@ -54,7 +54,7 @@ impl AppState {
         self.saving.opened();
         match file {
             Some(File::Own(file)) => self.saving.uses(&file),
-            // It is in no file of the person's own yet.
+            // The session is in no file of the user yet.
             Some(File::LeftBehind(file)) => {
                 self.saving.changes += 1;
                 self.saving.recovered = Some(file);
@@ -63,7 +63,7 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
-        // A measurement is of the machine that is opened now.
+        // A measurement refers to the newly opened machine.
         if let Some(given) = &mut self.given {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
@@ -79,7 +79,7 @@ impl AppState {
         self.tell(Ok(news));
     }
 
-    /// Opens one of the paper's cases. A machine that was chosen in the window stays, and the message says so.
+    /// Opens one of the paper's cases, with the machine chosen in the window; the message names that machine.
     pub(super) fn open_case(&mut self, name: &str) {
         let Some(case) = Scenario::builtin(name) else { return };
         let present = &self.session.scenario().machine;

@@ -9,21 +9,21 @@ use crate::app::{
 };
 use crate::picture::scene::views::ViewKind;
 
-/// How soon progress is shown again, s.
-const SHOWN_AGAIN: f32 = 0.1;
+/// Time between two repaints that show progress, s.
+const PROGRESS_INTERVAL_S: f32 = 0.1;
 
 impl AppState {
-    /// The window is drawn while this lives: work that nobody waits for begins afterwards, so that it does not hold up the
-    /// drawing.
+    /// Returns a guard that lives while the window is drawn. Background work that nobody waits for starts after it is
+    /// dropped, so that it does not delay the drawing.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         self.background.drawing()
     }
 
-    /// One pass of the user interface; commands are carried out at its end.
+    /// Runs one pass of the user interface; its commands are carried out at the end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.dress(ui.ctx());
-        // Panels lie on the cleared window and fill nothing; what fades out at their edges needs to know its colour.
+        // Panels have no fill of their own; content that fades out at their edges needs the background colour.
         let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
         let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);
         ui.scope_builder(egui::UiBuilder::new().ui_stack_info(info), |ui| self.panels(ui));
@@ -46,7 +46,7 @@ impl AppState {
             ui.ctx().request_repaint();
         }
         let mut commands = Vec::new();
-        // A question has the keys for itself.
+        // While a question is open, it alone receives the keys.
         if !self.saving.has_question() {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
@@ -96,7 +96,7 @@ impl AppState {
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
-            if std::mem::take(&mut self.looks) {
+            if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
             let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
@@ -121,7 +121,7 @@ impl AppState {
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::gave_up(ui.ctx()) {
-            // Before its gesture ends.
+            // Cancelling comes before the end of the gesture.
             commands.insert(0, Command::Session(SessionCommand::GiveUp));
         }
         if commands
@@ -147,20 +147,20 @@ impl AppState {
         if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
             ui.ctx().request_repaint();
         } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
-            ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
+            ui.ctx().request_repaint_after_secs(PROGRESS_INTERVAL_S);
         }
     }
 
     fn dress(&mut self, ctx: &egui::Context) {
         self.background.wakes(ctx);
-        if !self.fonts {
+        if !self.has_fonts {
             theme::install_fonts(ctx);
             ctx.add_plugin(order::Order::default());
-            self.fonts = true;
+            self.has_fonts = true;
         }
-        if self.dressed != Some(self.view_state.arrangement.theme) {
+        if self.applied_theme != Some(self.view_state.arrangement.theme) {
             theme::apply(ctx, self.view_state.arrangement.theme);
-            self.dressed = Some(self.view_state.arrangement.theme);
+            self.applied_theme = Some(self.view_state.arrangement.theme);
         }
     }
 }

@@ -1,16 +1,16 @@
-//! Wall time, turned into steps of the run on display.
+//! Conversion of wall time into steps of the run on display.
 
 use super::AppState;
 
-/// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
-const MOST_OWED: f64 = 0.1;
+/// Maximum wall time that one repaint makes up for, s: after a pause of the program, time does not jump.
+const MAX_CATCH_UP_S: f64 = 0.1;
 
 impl AppState {
-    /// Lets wall time pass, s.
+    /// Advances the run by a wall time, s, at the playback rate.
     pub fn pass(&mut self, wall: f64) {
-        // While the session is being changed, time stands: what is made has to fit what is shown.
+        // While the session is being changed, time stands still: the new session must match the display.
         if self.background.is_changing() {
-            self.owed = 0.0;
+            self.due_s = 0.0;
             self.pace.rest();
             return;
         }
@@ -19,18 +19,18 @@ impl AppState {
             self.session.play();
         }
         if !self.session.is_moving() {
-            self.owed = 0.0;
+            self.due_s = 0.0;
             self.pace.rest();
             return;
         }
         let dt = self.session.scenario().step;
-        self.owed += wall.clamp(0.0, MOST_OWED) * self.view_state.speed;
-        let wanted = (self.owed / dt).floor();
-        self.owed -= wanted * dt;
+        self.due_s += wall.clamp(0.0, MAX_CATCH_UP_S) * self.view_state.speed;
+        let wanted = (self.due_s / dt).floor();
+        self.due_s -= wanted * dt;
         let (steps, before) = (wanted.min(self.pace.most_steps()), self.session.frame().step);
         self.session.tick(steps as u64);
         let done = self.session.frame().step.abs_diff(before) as f64;
-        // What ends on the way is not slow.
+        // A run that has ended meanwhile is not slow.
         if self.session.is_moving() {
             self.pace.count(wall, done * dt, done, self.view_state.speed);
         } else {
@@ -38,19 +38,19 @@ impl AppState {
         }
     }
 
-    /// What the last [`pass`](Self::pass) has taken, s, from who reads a clock: steps that take long are done in smaller
-    /// portions, so that the picture stays smooth.
+    /// Reports the time that the last [`pass`](Self::pass) took, s, measured by the caller. Slow steps are spread over
+    /// several repaints, so that the picture stays smooth.
     pub fn took(&mut self, seconds: f64) {
         self.pace.took(seconds);
     }
 
-    /// Simulated seconds a second, where that is less than asked for.
+    /// Returns the playback rate, simulated seconds per second, if it lags behind the requested one.
     pub fn behind(&self) -> Option<f64> {
         self.pace.behind()
     }
 
-    /// Where time goes back to, if it does, s: to the start in the first minute; while the run is played over and over to
-    /// the start or to the beginning of the range that was chosen in the plots. After so much more wall time, s.
+    /// Returns the time to start over from, s, if the run is to start over. In the introduction that is 0; in a loop it
+    /// is the start of the run or of the range chosen in the plots. `wall` is the wall time that has passed, s.
     fn starts_over(&mut self, wall: f64) -> Option<f64> {
         if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
             return Some(0.0);

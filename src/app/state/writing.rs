@@ -1,4 +1,4 @@
-//! Files, written beside the window: sessions, plots, machines and recordings.
+//! Writing of files in the background: sessions, plots, machines and recordings.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,11 @@ use crate::exchange::cut::Cut;
 use crate::exchange::form::Form;
 use crate::query::Ticket;
 
-/// What a file is to hold, made beside the window.
+/// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 
 impl AppState {
-    /// Whether a file is replaced where it is there; it may not be without the person's word for that.
+    /// Returns whether the user has agreed to replace the file. Fails if the file exists and the user has not agreed.
     fn may_replace(&mut self, file: &Path) -> Result<bool, String> {
         let agreed = self.saving.replaces.take().is_some_and(|agreed| agreed == file);
         match file.exists() && !agreed {
@@ -22,8 +22,8 @@ impl AppState {
         }
     }
 
-    /// Starts to write a file, if it is free or may be replaced, and nothing else of its kind is being written. What is
-    /// done at once says at once how it went, with the dialog still open where it failed.
+    /// Starts to write a file, if it does not exist or may be replaced, and no other of its kind is being written. If
+    /// the work ends at once, its message is shown at once, and the dialog stays open after a failure.
     fn write<W>(
         &mut self,
         path: &Path,
@@ -56,7 +56,7 @@ impl AppState {
         Ok(())
     }
 
-    /// Writes what a file is to hold; of a session, so many changes and their file count as saved then.
+    /// Writes `content` to a file. For a session, `of` holds the number of changes that are then saved, and their file.
     fn write_content(
         &mut self,
         path: &Path,
@@ -84,7 +84,7 @@ impl AppState {
 
     /// Writes a plot to a file.
     pub(super) fn write_plot(&mut self, path: &Path, plot: &str, file: PlotFile) -> Result<(), String> {
-        self.write_content(path, ANOTHER, None, |app_state| {
+        self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
             let Self { session, view_state, comparison, .. } = app_state;
             let (queries, signals, comparison) = (app_state.queries(), &app_state.signals(), comparison.as_ref());
             let what = plots::Shown { session, queries, signals, comparison, view_state };
@@ -96,10 +96,10 @@ impl AppState {
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let form = Form::of(&ending).map_err(|e| format!("{}: {e}", path.display()))?;
-        self.write_content(path, ANOTHER, None, |app_state| {
+        self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
             let scenario = app_state.session.scenario();
             let pose = &app_state.session.frame().q.0[..scenario.machine.drives()];
-            // Of the material that the design view has counterweights of.
+            // The material is that of the counterweights in the design view.
             let cut = Cut { density: scenario.design.density, ..Cut::default() };
             let text = form.written(&scenario.machine, pose, &cut).map_err(|e| e.to_string())?;
             Ok(Box::new(move || Ok(text.into_bytes())))
@@ -115,10 +115,10 @@ impl AppState {
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
                 let options = crate::recording::Options { pictures: None, force };
-                let mut told = |progress: crate::recording::Progress| {
+                let mut report = |progress: crate::recording::Progress| {
                     ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64)
                 };
-                let done = crate::recording::record(&[scenario], path, &options, &mut told);
+                let done = crate::recording::record(&[scenario], path, &options, &mut report);
                 let done = done.map_err(|e| e.to_string())?;
                 let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
                 Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
@@ -132,10 +132,10 @@ impl AppState {
     }
 }
 
-/// What is said where another file is being saved.
-const ANOTHER: &str = "one file is being saved: want that to end first";
+/// Message when another file is being saved.
+const FILE_BEING_SAVED: &str = "one file is being saved: want that to end first";
 
-/// The whole name of a file, so that it can be found again.
+/// Returns the absolute path of a file, so that the user can find it.
 fn whole(path: &Path) -> String {
     crate::files::whole(path).unwrap_or_else(|| path.into()).display().to_string()
 }

@@ -1,4 +1,4 @@
-//! What a designer asks for: whether the balance is kept, and what counterweights are made of.
+//! The design brief: whether the balance is kept, and bounds on counterweights, payloads and rotor ratios.
 
 use egui::{Align, Layout, RichText, Ui};
 
@@ -16,7 +16,7 @@ use crate::session::scenario::{Scenario, Value};
 use crate::settings::change::DEFAULT;
 use crate::settings::word::{Choice, Words};
 
-/// Draws it.
+/// Draws the brief.
 pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, commands: &mut Vec<Command>) {
     let (spec, brief) = (scenario.machine.spec(), &scenario.design);
     let has_weights = !spec.counterweights.is_empty();
@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     rotors(ui, p, &spec.drives, brief, commands);
 }
 
-/// Ratios of rotors that may be chosen, so that those that turn the other way take what the drives give to the base.
+/// Draws the intervals for rotor ratios: rotors that turn the other way can compensate the momentum of the drives.
 fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &Brief, commands: &mut Vec<Command>) {
     let geared = drives.iter().filter_map(|drive| Some((drive, drive.rotor.filter(|rotor| rotor.inertia > 0.0)?)));
     let mut any = false;
@@ -107,7 +107,7 @@ fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &Brief, commands: &
     }
 }
 
-/// From which payload to which the balance is to serve.
+/// Draws the interval of payloads that the balance is to cover; `held` is the present payload, kg.
 fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, held: f64, commands: &mut Vec<Command>) {
     let path = "design.payload";
     ui.horizontal(|ui| {
@@ -133,11 +133,11 @@ fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, held: f64, command
     });
 }
 
-/// The lock on the balance.
+/// Draws the switch that keeps the machine balanced.
 fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced: bool, commands: &mut Vec<Command>) {
     let (what, tone) = match (keeps, is_balanced) {
         (false, _) => ("off", p.dim),
-        // As after an undo.
+        // For example after an undo.
         (true, false) => ("from the next change on", p.reaction),
         (true, true) if has_weights => ("the counterweights follow", p.zero),
         (true, true) => ("the centres of mass follow", p.zero),
@@ -157,7 +157,7 @@ fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced
     });
 }
 
-/// What it costs to move the centre of mass of each link, as the paper has it.
+/// Draws the choice of the penalties for moving the centres of mass, as in the paper.
 fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
     let path = "design.penalties";
     ui.horizontal(|ui| {
@@ -177,7 +177,7 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
     });
 }
 
-/// A bound that may be left out, shown in a unit that is so much of the setting's own.
+/// Draws an optional bound; `scale` is the unit shown, in units of the setting.
 pub(super) fn bounded(
     ui: &mut Ui,
     p: &Palette,
@@ -205,7 +205,7 @@ pub(super) fn bounded(
     });
 }
 
-/// The switch of a setting that may be left out: with its usual value, or none.
+/// Draws the switch of an optional setting, which sets its usual value or removes it.
 pub(super) fn optional(
     ui: &mut Ui,
     (label, tip): (&str, &str),

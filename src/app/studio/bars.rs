@@ -1,4 +1,4 @@
-//! What is out of balance: every line of (7) and (8) as a bar, with the links that it comes from.
+//! The imbalance: every line of (7) and (8) as a bar, composed of the contributions of the links.
 
 use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -11,13 +11,13 @@ use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, mix};
 use crate::session::Session;
 
-/// Heights of a row and of its bar, and the room on the left for its symbol and on the right for what is left, points.
-const ROW: f32 = 38.0;
-const HEIGHT: f32 = 18.0;
-const SYMBOL: f32 = 62.0;
-const LEFT: f32 = 76.0;
+/// Heights of a row and of its bar, and widths on the left for the symbol and on the right for the residual, points.
+const ROW_HEIGHT_PT: f32 = 38.0;
+const BAR_HEIGHT_PT: f32 = 18.0;
+const SYMBOL_WIDTH_PT: f32 = 62.0;
+const RESIDUAL_WIDTH_PT: f32 = 76.0;
 
-/// Draws it.
+/// Draws the bars.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
     let p = &view_state.palette();
     heading(ui, p, "(7) and (8)", "part of each link; below: what is left");
@@ -31,13 +31,13 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     }
 }
 
-/// The link in hand, under the pointer or spoken of, by its number.
+/// Returns the index of the link that is dragged, under the pointer, or mentioned by a panel.
 pub(super) fn hot_link(view_state: &ViewState, session: &Session) -> Option<usize> {
     let hot = view_state.gesture.grabbed.map(|pick| pick.handle).or(view_state.pointed.hot).or(view_state.pointed.lit);
     hot.and_then(|handle| link_of(handle, session))
 }
 
-/// The link that a thing of the scene belongs to, by its number.
+/// Returns the index of the link to which an object of the scene belongs.
 fn link_of(handle: Handle, session: &Session) -> Option<usize> {
     let spec = session.scenario().machine.spec();
     match handle {
@@ -51,12 +51,12 @@ fn link_of(handle: Handle, session: &Session) -> Option<usize> {
 }
 
 fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usize>) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT), Sense::hover());
     let painter = ui.painter();
     let top = rect.top() + 3.0;
-    let middle = top + 0.5 * HEIGHT;
+    let middle = top + 0.5 * BAR_HEIGHT_PT;
     painter.text(pos2(rect.left(), middle), Align2::LEFT_CENTER, &term.symbol, bold(13.0), colour(p.ink));
-    let below = rect.top() + HEIGHT + 12.0;
+    let below = rect.top() + BAR_HEIGHT_PT + 12.0;
     painter.text(pos2(rect.left(), below), Align2::LEFT_CENTER, term.meaning, plain(10.5), colour(p.dim));
     let tone = colour(if term.is_balanced { p.zero } else { p.reaction });
     let size = term.left[0].hypot(term.left[1]);
@@ -67,7 +67,10 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usi
     };
     painter.text(pos2(rect.right(), middle), Align2::RIGHT_CENTER, &text, bold(12.5), tone);
     painter.text(pos2(rect.right(), below), Align2::RIGHT_CENTER, term.unit, plain(10.5), colour(p.dim));
-    let bar = Rect::from_min_max(pos2(rect.left() + SYMBOL, top), pos2(rect.right() - LEFT, top + HEIGHT));
+    let bar = Rect::from_min_max(
+        pos2(rect.left() + SYMBOL_WIDTH_PT, top),
+        pos2(rect.right() - RESIDUAL_WIDTH_PT, top + BAR_HEIGHT_PT),
+    );
     let zero = bar.center().x;
     let greatest = term.greatest();
     if greatest > 0.0 {
@@ -80,7 +83,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usi
             ends[side] = next;
             draw(ui, p, session, segment, (*link, *part), (term, hot));
         }
-        // What is left stands where one side outweighs the other.
+        // The residual is drawn on the side that predominates.
         if !term.is_balanced {
             let outweighed = zero - (term.left[0] * per) as f32;
             let from = if term.left[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
@@ -100,7 +103,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usi
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
 }
 
-/// What one link brings.
+/// Draws the contribution of one link.
 fn draw(
     ui: &Ui,
     p: &Palette,

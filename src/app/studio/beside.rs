@@ -1,4 +1,4 @@
-//! Fronts of other machines beside that of the machine on display: kept ones, and built-in machines.
+//! Pareto fronts of other machines beside that of the machine on display: kept ones, and those of built-in machines.
 
 use egui::{Align, Button, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
@@ -12,12 +12,12 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::study::fronts::MachineFront;
 
-/// The places of all machines of the fronts beside, added mass, kg, and Σ D_k, kg m².
+/// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
 pub(super) fn places(facts: &Facts) -> impl Iterator<Item = [f64; 2]> {
     facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|told| told.measures())
 }
 
-/// Draws their curves, each with its number.
+/// Draws the fronts, each with its number.
 pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
     for (i, MachineFront { name, outcome }) in facts.beside().iter().enumerate() {
         let Ok(told) = outcome else { continue };
@@ -34,7 +34,7 @@ pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
     }
 }
 
-/// What they are, and what adds to them.
+/// Draws the list of these fronts, and the buttons that add one.
 pub(super) fn list(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {

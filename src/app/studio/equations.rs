@@ -1,4 +1,4 @@
-//! The equations of the paper, with today's numbers in them.
+//! The equations of the paper with present numbers.
 
 use egui::style::ScrollAnimation;
 use egui::{Align, Label, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -17,10 +17,10 @@ use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::study::equations::{Equation, Line, When};
 
-/// The most room for names of lines, points.
-const GUTTER: f32 = 48.0;
+/// Maximum width of the names of lines, points.
+const MAX_NAME_WIDTH_PT: f32 = 48.0;
 
-/// Draws them: numbers to go to on top, and below all of them to scroll through.
+/// Draws the equations: an index of their numbers on top, and a scrolling list below.
 pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewState) {
     let p = &view_state.palette();
     note(ui, p, &when(lesson, session));
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewSt
         let mut heights = Heights::of(ui);
         for (i, equation) in lesson.equations.iter().enumerate() {
             let top = ui.cursor().min;
-            // What is out of sight only takes its room.
+            // Equations out of sight only take their space.
             let known = heights.known(i);
             let there = known.map(|height| Rect::from_min_size(top, vec2(ui.available_width(), height)));
             match there {
@@ -52,12 +52,12 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewSt
             }
         }
         heights.keep(ui);
-        // The last one can be brought to the top too.
+        // Space, so that the last one can be scrolled to the top too.
         ui.add_space(0.5 * ui.clip_rect().height());
     });
 }
 
-/// How high each equation was when it was drawn last in a panel of this width.
+/// Heights of the equations when they were drawn last in a panel of this width, points.
 struct Heights {
     width: f32,
     all: Vec<f32>,
@@ -92,7 +92,7 @@ impl Heights {
     }
 }
 
-/// The instant in words.
+/// Returns the instant in words.
 fn when(lesson: &Lesson, session: &Session) -> String {
     let instant = match lesson.when {
         When::Plan(time) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
@@ -105,7 +105,7 @@ fn when(lesson: &Lesson, session: &Session) -> String {
     }
 }
 
-/// What an equation's state looks like.
+/// Returns the colour for the state of an equation.
 fn tone(equation: &Equation, p: &Palette) -> Rgba {
     match equation.holds() {
         Some(true) => p.zero,
@@ -114,7 +114,7 @@ fn tone(equation: &Equation, p: &Palette) -> Rgba {
     }
 }
 
-/// Numbers of all equations; the one that is clicked is gone to.
+/// Draws the numbers of all equations; returns the index of the clicked one.
 fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
     let mut wanted = None;
     ui.set_max_width(ui.available_width() - BAR);
@@ -133,7 +133,7 @@ fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
     wanted
 }
 
-/// Whether both sides are alike, in a few words.
+/// Returns in a few words whether both sides agree.
 fn verdict(equation: &Equation) -> String {
     let Some(worst) = equation.worst() else { return "not for this machine".into() };
     match equation.holds() {
@@ -181,13 +181,13 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &Pen<'_>) {
     }
 }
 
-/// Room for the names of lines.
+/// Returns the width for the names of lines, points.
 fn gutter(ui: &Ui, lines: &[Line]) -> f32 {
     let names = lines.iter().filter(|line| !line.name.is_empty());
-    names.map(|line| terms::label(ui, line) + 4.0).fold(0.0, f32::max).min(GUTTER)
+    names.map(|line| terms::label(ui, line) + 4.0).fold(0.0, f32::max).min(MAX_NAME_WIDTH_PT)
 }
 
-/// A symbol or a sentence with symbols as a row of its own.
+/// Draws a symbol or a sentence with symbols as a row.
 fn symbols(ui: &mut Ui, text: &str, (size, tone): (f32, egui::Color32)) {
     let galley = set(ui, text, (size, tone), ui.available_width());
     let (rect, _) = ui.allocate_exact_size(galley.size(), Sense::hover());

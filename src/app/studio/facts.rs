@@ -1,4 +1,4 @@
-//! [`Facts`]: what the panels say of a machine, asked for each picture of them.
+//! [`Facts`]: values shown by the panels of the design view, queried for each repaint.
 
 use std::sync::Arc;
 
@@ -18,42 +18,42 @@ use crate::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
 use crate::study::lengths::Seeking;
 use crate::study::measures::Measures;
 
-/// How many machines the front has.
-const POINTS: usize = 25;
-/// Payloads at which the balance is looked at.
-const PAYLOADS: usize = 41;
+/// Number of points of a Pareto front.
+const FRONT_POINTS: usize = 25;
+/// Number of payloads at which the balance is evaluated.
+const PAYLOAD_POINTS: usize = 41;
 
-/// Of the machine on display.
+/// Values of the machine on display.
 pub struct Facts {
-    /// One of each line of (7) and (8).
+    /// The lines of (7) and (8).
     pub(super) terms: Arc<Vec<Term>>,
     sums: Arc<Sums>,
-    /// What balance has cost beside the machine without its counterweights.
+    /// Cost of the balance, in comparison with the machine without its counterweights.
     pub(super) measures: Option<Arc<Measures>>,
-    /// What is left of balance over the payloads that are asked for.
+    /// Residual of the balance over the payloads of the brief.
     pub(super) payloads: Option<Arc<Vec<Residual>>>,
-    /// What less inertia costs in mass; none while the equations are on display.
+    /// Pareto front of added mass and inertia; `None` while the equations are on display.
     front: Option<Asked<Points>>,
-    /// A search for lengths of this machine, if there is one.
+    /// The search for lengths of this machine, if there is one.
     pub(super) sought: Option<Sought>,
-    /// Fronts of other machines; none while the equations are on display.
+    /// Pareto fronts of other machines; `None` while the equations are on display.
     beside: Option<Asked<Vec<MachineFront>>>,
-    /// What tells the machines of the front apart, of each of them.
+    /// The measure that colours the points of the front.
     pub(super) told: Option<Arc<Told>>,
-    /// Its equations; none while the front is on display.
+    /// Its equations; `None` while the front is on display.
     pub(super) lesson: Option<Arc<Lesson>>,
 }
 
-/// The machines of a front, from light to quick, or why there are none.
+/// The points of a Pareto front, by increasing mass, or why there are none.
 type Points = Result<Vec<Point>, String>;
 
-/// What a machine adds up to.
+/// Sums over a machine.
 struct Sums {
     /// λ of the drives.
     lambda: Vec<f64>,
-    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
+    /// Total mass of the counterweights, kg, and Σ D_k, kg m².
     now: [f64; 2],
-    /// It without its counterweights.
+    /// The machine without its counterweights.
     bare: Option<Machine>,
 }
 
@@ -72,7 +72,7 @@ impl Quick for Sums {
     }
 }
 
-/// The lines of (7) and (8) of a machine.
+/// Query for the lines of (7) and (8) of a machine.
 struct Terms;
 
 impl Quick for Terms {
@@ -84,7 +84,7 @@ impl Quick for Terms {
     }
 }
 
-/// What balance has cost a machine beside the bare one, in a motion of both.
+/// Query for the cost of the balance of a machine in comparison with the bare one, in a motion of both.
 struct Cost;
 
 impl Quick for Cost {
@@ -96,7 +96,7 @@ impl Quick for Cost {
     }
 }
 
-/// What is left of a machine's balance over payloads, kg, from one to another.
+/// Query for the residual of a machine's balance over an interval of payloads, kg.
 struct OverPayloads;
 
 impl Quick for OverPayloads {
@@ -104,11 +104,11 @@ impl Quick for OverPayloads {
     type Answer = Vec<Residual>;
 
     fn answer((machine, ends): &Self::Input) -> Vec<Residual> {
-        over_payloads(machine, *ends, PAYLOADS).unwrap_or_default()
+        over_payloads(machine, *ends, PAYLOAD_POINTS).unwrap_or_default()
     }
 }
 
-/// A front with what its machines add up to.
+/// Query for the points of a Pareto front with Σ D_k of their machines.
 struct FrontPoints;
 
 impl Quick for FrontPoints {
@@ -123,98 +123,99 @@ impl Quick for FrontPoints {
     }
 }
 
-/// What tells the machines of a front apart.
+/// A measure of the machines of a Pareto front.
 pub(super) struct Told {
     pub by: FrontMeasure,
-    /// Of each machine; none where it has none.
+    /// Its value for each machine; `None` where a machine has none.
     pub values: Vec<Option<f64>>,
 }
 
-/// The search for it, one machine in a portion.
-struct Telling {
+/// Query for the measure of each machine, one machine per portion.
+struct MeasureQuery {
     of: <Self as Query>::Input,
-    told: Vec<Option<f64>>,
+    values: Vec<Option<f64>>,
 }
 
-impl Query for Telling {
-    /// The front, by what, and in which motion.
+impl Query for MeasureQuery {
+    /// The front, the measure, and the motion.
     type Input = (Same<Points>, FrontMeasure, Option<Same<Motion>>);
     type Answer = Told;
 
     fn begin(of: Self::Input) -> Self {
-        Self { of, told: Vec::new() }
+        Self { of, values: Vec::new() }
     }
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
         let (front, by, motion) = &self.of;
         let points = front.0.as_deref().unwrap_or_default();
-        match points.get(self.told.len()) {
+        match points.get(self.values.len()) {
             Some(point) => {
-                self.told.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
-                Portion::More(self.told.len() as f64 / points.len() as f64)
+                self.values.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
+                Portion::More(self.values.len() as f64 / points.len() as f64)
             }
-            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.told) }),
+            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.values) }),
         }
     }
 }
 
-/// A machine of the front.
+/// A point of a Pareto front.
 pub(super) struct Point {
-    /// With its counterweights.
+    /// The machine with its counterweights.
     pub placed: Placed,
     /// Σ D_k, kg m².
     pub inertia: f64,
 }
 
-/// One line of (7) or (8), as bars.
+/// One line of (7) or (8), shown as a bar.
 pub(super) struct Term {
     /// Its symbol.
     pub symbol: String,
-    /// What it means that nothing is left of it.
+    /// Meaning of a zero residual.
     pub meaning: &'static str,
     pub unit: &'static str,
-    /// What is left of it along the axes, and across them.
+    /// Residual along the axes, and across them.
     pub left: [f64; 2],
     pub is_balanced: bool,
-    /// What the links bring with all that they carry, by number, the largest first; nothing of those that bring nothing.
+    /// Contributions of the links with all that they carry, by link index, the largest first; negligible ones are left
+    /// out.
     pub parts: Vec<(usize, f64)>,
 }
 
 impl Term {
-    /// The larger of the two sums of what pulls one way.
+    /// Returns the larger of the sums of positive and of negative contributions.
     pub fn greatest(&self) -> f64 {
         let sum = |sign: f64| self.parts.iter().map(|(_, part)| (sign * part).max(0.0)).sum::<f64>();
         sum(1.0).max(sum(-1.0))
     }
 }
 
-/// Below this share of a line's largest part a link brings nothing to it.
-const NOTHING: f64 = 1e-9;
+/// Contributions below this fraction of the largest are treated as zero.
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Facts {
-    /// Of the machine on display, with its front, and with those of others beside it.
+    /// Queries the values of the machine on display, with its Pareto front and those of other machines.
     pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontOf]) -> Self {
         let mut facts = Self::of(queries, session);
         facts.beside = (!others.is_empty()).then(|| {
             let machines = others.to_vec();
-            let request = FrontsRequest { machines, count: POINTS, motion: None, workspace: false };
+            let request = FrontsRequest { machines, count: FRONT_POINTS, motion: None, workspace: false };
             queries.ask_beside::<Fronts>(&request)
         });
         let Some(bare) = &facts.sums.bare else { return facts };
-        let front = queries.ask_beside::<FrontSearch>(&asked(bare, &session.scenario().design));
+        let front = queries.ask_beside::<FrontSearch>(&front_request(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
-        // One that waits does not move.
+        // A run that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
         facts.told = by.zip(points.clone()).and_then(|(by, points)| {
-            let told = queries.ask_beside::<Telling>(&(Same(points.clone()), by, motion)).last?;
-            // Those of another front tell nothing of this one.
+            let told = queries.ask_beside::<MeasureQuery>(&(Same(points.clone()), by, motion)).last?;
+            // Values of another front do not apply to this one.
             (told.by == by && told.values.len() == points.as_deref().map_or(0, <[Point]>::len)).then_some(told)
         });
         facts.front = Some(Asked { last: points, state: front.state });
         facts
     }
 
-    /// The same with its equations.
+    /// Queries the values of the machine on display, with its equations.
     pub fn learned(queries: &Queries, session: &Session) -> Self {
         let lesson = Lesson::of(queries, session, session.scenario().design.penalties);
         Self { lesson, ..Self::of(queries, session) }
@@ -245,12 +246,12 @@ impl Facts {
         &self.sums.lambda
     }
 
-    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
+    /// Returns the total mass of the counterweights, kg, and Σ D_k, kg m².
     pub(super) fn now(&self) -> [f64; 2] {
         self.sums.now
     }
 
-    /// The machines of the front, from light to quick; none before the first front is found.
+    /// Returns the points of the front, by increasing mass; empty before the first front is found.
     pub(super) fn front(&self) -> Result<&[Point], &str> {
         match self.front.as_ref().and_then(|front| front.last.as_deref()) {
             Some(Ok(points)) => Ok(points),
@@ -259,12 +260,12 @@ impl Facts {
         }
     }
 
-    /// The fronts of other machines, as far as they are known.
+    /// Returns the Pareto fronts of other machines, as far as they are known.
     pub(super) fn beside(&self) -> &[MachineFront] {
         self.beside.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
     }
 
-    /// How much of them is found, while that is under way.
+    /// Returns the fraction of them that is computed, while the work is under way.
     pub(super) fn beside_under_way(&self) -> Option<f64> {
         match self.beside.as_ref()?.state {
             State::UnderWay(share) => Some(share),
@@ -272,7 +273,7 @@ impl Facts {
         }
     }
 
-    /// How much of the front of the machine on display is found, while that is under way.
+    /// Returns the fraction of the front of the machine on display that is computed, while the work is under way.
     pub(super) fn front_under_way(&self) -> Option<f64> {
         match self.front.as_ref()?.state {
             State::UnderWay(share) => Some(share),
@@ -280,7 +281,7 @@ impl Facts {
         }
     }
 
-    /// The counterweights of one of them.
+    /// Returns the counterweights of a point of the front, by its index.
     pub fn weights(&self, i: usize) -> Vec<Offered> {
         let point = self.front().ok().and_then(|points| points.get(i));
         let spec = point.map(|point| point.placed.machine.spec());
@@ -294,23 +295,23 @@ impl Facts {
     }
 }
 
-/// One machine of the front that is on display; of the machine and the brief as they are.
+/// Returns a machine of the Pareto front for the present machine and brief, by its index.
 pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
     let sums = queries.ask::<Whole<Sums>>(&session.scenario().machine);
-    let front = queries.ask::<FrontSearch>(&asked(sums.bare.as_ref()?, &session.scenario().design));
+    let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &session.scenario().design));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
-/// Stops what is being found for a view that is left.
+/// Stops the queries of the design view.
 pub fn leave(queries: &Queries) {
     queries.give_up::<FrontSearch>();
     queries.give_up::<Fronts>();
-    queries.give_up::<Telling>();
+    queries.give_up::<MeasureQuery>();
 }
 
-/// What a front is asked for with.
-fn asked(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
-    (bare.clone(), brief.weighing(bare), POINTS)
+/// Returns the request for a Pareto front.
+fn front_request(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
+    (bare.clone(), brief.weighing(bare), FRONT_POINTS)
 }
 
 fn terms(machine: &Machine) -> Vec<Term> {
@@ -319,7 +320,7 @@ fn terms(machine: &Machine) -> Vec<Term> {
         let links = (0..machine.links().len()).map(|link| (link, breakdown.of_link(term, link).re));
         let mut parts: Vec<(usize, f64)> = links.collect();
         let most = parts.iter().fold(0.0_f64, |most, (_, part)| most.max(part.abs()));
-        parts.retain(|(_, part)| part.abs() > NOTHING * most);
+        parts.retain(|(_, part)| part.abs() > ROUNDING_TOLERANCE * most);
         parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let (symbol, meaning, unit) = match term.condition {
             Condition::Force(k) => (format!("g{}", subscript(k + 1)), "no force", "kg m"),
@@ -329,11 +330,11 @@ fn terms(machine: &Machine) -> Vec<Term> {
         Term { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
     };
     let mut terms: Vec<Term> = breakdown.terms.iter().map(term).collect();
-    // What is rounding beside the other lines is no bar.
+    // Contributions that are rounding errors in comparison with the other lines are not drawn.
     for unit in ["kg m", "kg m²"] {
         let alike = || terms.iter().filter(|term| term.unit == unit);
         let most = alike().map(Term::greatest).fold(0.0, f64::max);
-        for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < NOTHING * most) {
+        for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < ROUNDING_TOLERANCE * most) {
             term.parts.clear();
         }
     }

@@ -1,4 +1,4 @@
-//! What less inertia costs in mass: counterweights to choose from, each as light as its inertia lets it be.
+//! The Pareto front of added mass and inertia: counterweights to choose from, each the lightest for its inertia.
 
 use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
@@ -14,21 +14,21 @@ use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded, mix};
 use crate::study::front_point::FrontMeasure;
 
-const HEIGHT: f32 = 210.0;
-/// After so long it is said that the machines are being looked for, s.
-const SPOKEN_OF: f32 = 0.4;
-/// A point is chosen from so near, points of the screen.
-const NEAR: f32 = 14.0;
-/// Counterweights below this are none, kg.
-const NOTHING: f64 = 1e-6;
+const PLOT_HEIGHT_PT: f32 = 210.0;
+/// Delay before progress of the search is shown, s.
+const PROGRESS_DELAY_S: f32 = 0.4;
+/// Distance within which a point is selected, points of the screen.
+const SELECT_DISTANCE_PT: f32 = 14.0;
+/// Counterweights lighter than this are treated as absent, kg.
+const MIN_ADDED_MASS_KG: f64 = 1e-6;
 
-/// Draws it.
+/// Draws the front.
 pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.add_space(8.0);
     let under_way = facts.front_under_way();
-    // What comes soon in place of others is not spoken of.
-    let lasts = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), SPOKEN_OF);
+    // Progress of a short search is not shown.
+    let lasts = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
     match under_way.filter(|_| lasts >= 1.0) {
         Some(share) => heading(ui, p, "Counterweights", &format!("looking for them: {:.0} %", 100.0 * share)),
         None => heading(ui, p, "Counterweights", "hover shows, click takes"),
@@ -38,13 +38,13 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         Ok(points) => points,
         Err(why) => return note(ui, p, why),
     };
-    if points.iter().all(|point| point.placed.added_mass < NOTHING) {
+    if points.iter().all(|point| point.placed.added_mass < MIN_ADDED_MASS_KG) {
         return note(ui, p, "The links balance each other: nothing needs to be added.");
     }
     let [mass, inertia] = facts.now();
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
-    // Taken counterweights are shown among the others, where they are within reach of them.
-    let shown = mass > NOTHING;
+    // Counterweights in use are shown among the others.
+    let shown = mass > MIN_ADDED_MASS_KG;
     let everything: Vec<[f64; 2]> = all.iter().copied().chain(beside::places(facts)).collect();
     let of = |i: usize| everything.iter().map(move |at| at[i]);
     let ends = |i: usize, now: f64| {
@@ -54,13 +54,13 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    let told = facts.told.as_ref().and_then(|told| Told::of(told.by, &told.values));
+    let told = facts.told.as_ref().and_then(|told| ColourScale::of(told.by, &told.values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| by(ui, view_state, commands));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| measure_choice(ui, view_state, commands));
     });
     small_axes(ui);
-    let response = base_plot("front", p, HEIGHT)
+    let response = base_plot("front", p, PLOT_HEIGHT_PT)
         .show_axes([true, true])
         .show_grid([true, true])
         .x_grid_spacer(move |_| marks(&spaced(left, right), right - left))
@@ -97,7 +97,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     let near = response.response.hover_pos().and_then(|pos| {
         let off = |at: &[f64; 2]| response.transform.position_from_point(&PlotPoint::new(at[0], at[1])).distance(pos);
         let nearest = all.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-        nearest.filter(|(_, at)| off(at) < NEAR).map(|(i, _)| i)
+        nearest.filter(|(_, at)| off(at) < SELECT_DISTANCE_PT).map(|(i, _)| i)
     });
     if near != view_state.ghost {
         commands.push(ViewChange::Ghost(near).into());
@@ -121,11 +121,11 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
-    say(ui, points, (near, told.as_ref()), view_state, facts, commands);
+    summary(ui, points, (near, told.as_ref()), view_state, facts, commands);
     beside::list(ui, facts, p, commands);
 }
 
-/// Digits that tell the marks of an axis of a length apart.
+/// Returns the number of decimals for the marks of an axis of this length.
 fn decimals(length: f64) -> usize {
     (1.0 - length.log10()).ceil().clamp(0.0, 6.0) as usize
 }
@@ -139,23 +139,23 @@ fn words(all: &[[f64; 2]]) -> String {
     format!("Counterweights to choose from, added mass against Σ D: from {} to {}", end(all.first()), end(all.last()))
 }
 
-/// What tells the machines apart beside mass and inertia.
-struct Told<'a> {
+/// A measure of the machines beside mass and inertia, shown by colour.
+struct ColourScale<'a> {
     by: FrontMeasure,
     values: &'a [Option<f64>],
-    /// From the least to the greatest.
+    /// Minimum and maximum.
     ends: [f64; 2],
 }
 
-impl<'a> Told<'a> {
-    /// None if no machine has it.
+impl<'a> ColourScale<'a> {
+    /// Returns `None` if no machine has a value.
     fn of(by: FrontMeasure, values: &'a [Option<f64>]) -> Option<Self> {
         let least = values.iter().flatten().fold(f64::INFINITY, |least, x| least.min(*x));
         let most = values.iter().flatten().fold(f64::NEG_INFINITY, |most, x| most.max(*x));
         (least <= most).then_some(Self { by, values, ends: [least, most] })
     }
 
-    /// The colour of a machine.
+    /// Returns the colour of a machine.
     fn tone(&self, i: usize, p: &Palette) -> Option<Rgba> {
         let [least, most] = self.ends;
         let value = (*self.values.get(i)?)?;
@@ -168,7 +168,7 @@ impl<'a> Told<'a> {
         format!("{} {}", signed(value, decimals), self.by.words()[1])
     }
 
-    /// What the colours mean.
+    /// Draws the colour scale.
     fn scale(&self, ui: &mut Ui, p: &Palette) {
         let text = |ui: &mut Ui, words: String| ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
         text(ui, self.words(self.ends[0]));
@@ -184,13 +184,13 @@ impl<'a> Told<'a> {
     }
 }
 
-/// From blue to amber, which every kind of eye tells apart.
+/// Returns a colour between blue and amber, which are distinguishable with any colour vision.
 fn tone(p: &Palette, share: f32) -> Rgba {
     mix(p.drives[0], p.amber, share)
 }
 
-/// What colours tell.
-fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+/// Draws the choice of the measure shown by colour.
+fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let mut by = view_state.front_by;
     let words = |by: Option<FrontMeasure>| by.map_or("nothing more", |by| by.words()[0]);
     let list = egui::ComboBox::from_id_salt("front-by").selected_text(words(by)).width(150.0).show_ui(ui, |ui| {
@@ -205,11 +205,11 @@ fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     }
 }
 
-/// What the machine under the pointer, or on display, comes to, and the two ends of the front to take.
-fn say(
+/// Draws the values of the machine under the pointer, or on display, and the buttons for ends and middle of the front.
+fn summary(
     ui: &mut Ui,
     points: &[Point],
-    (near, told): (Option<usize>, Option<&Told<'_>>),
+    (near, told): (Option<usize>, Option<&ColourScale<'_>>),
     view_state: &ViewState,
     facts: &Facts,
     commands: &mut Vec<Command>,
@@ -220,7 +220,7 @@ fn say(
         Some(point) => (point.placed.added_mass, point.inertia),
         None => facts.now().into(),
     };
-    let mut text = match at.is_none() && mass < NOTHING {
+    let mut text = match at.is_none() && mass < MIN_ADDED_MASS_KG {
         true => "no counterweights yet".to_owned(),
         false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
     };

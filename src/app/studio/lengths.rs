@@ -1,4 +1,4 @@
-//! Lengths that are sought with the counterweights: between which ends, what the machine has to reach, and what was found.
+//! The search for lengths with the counterweights: bounds, required reach and workspace, and the result.
 
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
@@ -16,10 +16,10 @@ use crate::session::scenario::Scenario;
 use crate::settings::number::counted;
 use crate::study::lengths::{Found, NoLengths};
 
-/// A search for lengths, and what it has come to.
+/// A search for lengths, and its result.
 pub type Sought = Asked<Result<Found, NoLengths>>;
 
-/// Draws it.
+/// Draws the search.
 pub fn show(ui: &mut Ui, scenario: &Scenario, sought: Option<&Sought>, p: &Palette, commands: &mut Vec<Command>) {
     let title = RichText::new("Lengths").font(bold(13.5)).color(colour(p.ink));
     ui.add_space(4.0);
@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, sought: Option<&Sought>, p: &Palet
     });
 }
 
-/// Whether a length is sought, and between which ends.
+/// Draws whether a length may change, and its bounds.
 fn ends(ui: &mut Ui, p: &Palette, name: &str, metres: f64, ends: Option<[f64; 2]>, commands: &mut Vec<Command>) {
     let (path, tip) = (["design", "length", name], tip_of("design.length.*"));
     ui.horizontal(|ui| {
@@ -79,7 +79,7 @@ fn ends(ui: &mut Ui, p: &Palette, name: &str, metres: f64, ends: Option<[f64; 2]
     });
 }
 
-/// What a search has come to.
+/// Draws the result of a search.
 fn found<'a>(
     ui: &mut Ui,
     p: &Palette,

@@ -1,4 +1,4 @@
-//! [`Lesson`]: the equations of the machine on display with its numbers.
+//! [`Lesson`]: the equations with the numbers of the machine on display.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::query::{Queries, Quick, Whole};
 use crate::session::Session;
 use crate::study::equations::{Equation, State, When, equations};
 
-/// Of a machine at an instant.
+/// The equations of a machine at an instant.
 pub struct Lesson {
     /// In the order of the paper.
     pub(super) equations: Vec<Equation>,
@@ -27,10 +27,10 @@ impl Quick for Lesson {
 }
 
 impl Lesson {
-    /// Of the machine and the instant on display.
+    /// Queries the equations for the machine and the instant on display.
     pub fn of(queries: &Queries, session: &Session, penalties: Preset) -> Option<Arc<Self>> {
         let (machine, state) = (&session.scenario().machine, State::of(session.run(), session.frame()));
-        // A run that waits may be of a machine with fewer drives.
+        // The frame of a waiting run may belong to a machine with fewer drives.
         match state.q.len() == machine.drives() {
             true => Some(queries.ask::<Whole<Self>>(&(machine.clone(), state, penalties))),
             false => queries.last::<Whole<Self>>(),

@@ -1,4 +1,4 @@
-//! What the machine comes to: mass, λ, workspace, and what its task costs.
+//! Totals of the machine: mass, λ, workspace, and cost of its task.
 
 use egui::{Align, Layout, RichText, Ui};
 
@@ -12,7 +12,7 @@ use crate::session::Session;
 const BETA: &str = "What is left of what the machine without counterweights does in the same motion of its drives: \
                     0 is nothing, 1 as much";
 
-/// Draws it.
+/// Draws the totals.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     ui.add_space(8.0);
     heading(ui, p, "What it comes to", "");

@@ -1,5 +1,5 @@
-//! The panels of the design view: the table of links on the left, what they do to the balance on
-//! the right, or the equations of the paper.
+//! The panels of the design view: the table of links on the left; its balance, or the equations of the paper, on the
+//! right.
 
 mod asked;
 mod bars;
@@ -25,24 +25,25 @@ use crate::session::Session;
 
 pub use facts::{Facts, leave, of_front};
 
-/// How wide the panels are made by themselves, points.
-const TABLE: f32 = 336.0;
-const BALANCE: f32 = 372.0;
-/// What the scene has at least, and the narrower one of them.
-const SCENE: f32 = 250.0;
-const LEAST: f32 = 280.0;
+/// Default widths of the panels, points.
+const TABLE_WIDTH_PT: f32 = 336.0;
+const BALANCE_WIDTH_PT: f32 = 372.0;
+/// Minimum width of the scene, and of the panel on the right, points.
+const MIN_SCENE_WIDTH_PT: f32 = 250.0;
+const MIN_BALANCE_WIDTH_PT: f32 = 280.0;
 
 /// Draws both panels.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
-    let balance = (ui.available_width() - TABLE - SCENE).clamp(LEAST, BALANCE);
+    let balance =
+        (ui.available_width() - TABLE_WIDTH_PT - MIN_SCENE_WIDTH_PT).clamp(MIN_BALANCE_WIDTH_PT, BALANCE_WIDTH_PT);
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 12, bottom: 8 });
     let (one, other) = match view_state.arrangement.swapped {
         true => (Panel::right("links"), Panel::left("balance")),
         false => (Panel::left("links"), Panel::right("balance")),
     };
     if view_state.arrangement.now().side.shown {
-        one.exact_size(TABLE).frame(frame).show(ui, |ui| {
+        one.exact_size(TABLE_WIDTH_PT).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
@@ -69,7 +70,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     }
 }
 
-/// The way out of the program for the machine.
+/// Draws the link that exports the machine.
 fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     ui.add_space(8.0);

@@ -1,4 +1,4 @@
-//! What is left of balance over what the end effector may hold.
+//! The residual of the balance over the payload.
 
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoints, VLine};
@@ -10,9 +10,9 @@ use crate::app::widgets::{heading, name, note};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 
-const HEIGHT: f32 = 96.0;
+const PLOT_HEIGHT_PT: f32 = 96.0;
 
-/// Draws it, if a range of payloads is asked for; `held` is what the end effector holds now, kg.
+/// Draws the plot, if the brief has an interval of payloads; `held` is the present payload, kg.
 pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
     let Some(payloads) = &facts.payloads else { return };
     let Some((first, last)) = payloads.first().zip(payloads.last()) else { return };
@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
     let ([left, right], top) = ([first.payload, last.payload], (1.1 * worst[0]).max(1e-6));
     ui.label(RichText::new("greatest |g|, kg m").font(plain(11.0)).color(colour(p.dim)));
     small_axes(ui);
-    let response = base_plot("payloads", p, HEIGHT)
+    let response = base_plot("payloads", p, PLOT_HEIGHT_PT)
         .show_axes([true, true])
         .show_grid([true, true])
         .x_grid_spacer(move |_| marks(&spaced(left, right), right - left))

@@ -1,4 +1,4 @@
-//! The table of links: what they weigh, where their centres of mass are, and their counterweights.
+//! The table of links: masses, centres of mass, and counterweights.
 
 use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
@@ -13,22 +13,22 @@ use crate::session::scenario::{Change, Value, to_value};
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 
-/// Widths of the columns, points: the link's name, and each number.
-const NAME: f32 = 34.0;
-const NUMBER: f32 = 58.0;
-const GAP: f32 = 4.0;
-const HEIGHT: f32 = 24.0;
+/// Widths of the columns for the link's name and for each number, gap, and height of a row, points.
+const NAME_WIDTH_PT: f32 = 34.0;
+const NUMBER_WIDTH_PT: f32 = 58.0;
+const GAP_PT: f32 = 4.0;
+const ROW_HEIGHT_PT: f32 = 24.0;
 
-/// Draws it.
+/// Draws the table.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     heading(ui, p, "Links", "drag, type, right-click to bound; tick to fix");
-    ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
+    ui.spacing_mut().item_spacing = vec2(GAP_PT, 2.0);
     ui.spacing_mut().button_padding.x = 4.0;
     ui.horizontal(|ui| {
-        cell(ui, NAME, Align::Min, |ui| head(ui, p, "link"));
+        cell(ui, NAME_WIDTH_PT, Align::Min, |ui| head(ui, p, "link"));
         for words in ["mass kg", "CM m", "disc kg", "at m"] {
-            cell(ui, NUMBER, Align::Max, |ui| head(ui, p, words));
+            cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| head(ui, p, words));
         }
     });
     let (spec, brief) = (session.scenario().machine.spec(), &session.scenario().design);
@@ -37,8 +37,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
         place::of(ui, Handle::Link(i), p, |ui| {
             ui.horizontal(|ui| {
                 let drive = session.scenario().machine.resolved_links()[i].drive;
-                cell(ui, NAME, Align::Min, |ui| {
-                    let (dot, _) = ui.allocate_exact_size(vec2(10.0, HEIGHT), Sense::hover());
+                cell(ui, NAME_WIDTH_PT, Align::Min, |ui| {
+                    let (dot, _) = ui.allocate_exact_size(vec2(10.0, ROW_HEIGHT_PT), Sense::hover());
                     ui.painter().circle_filled(dot.center(), 4.0, colour(p.drive(drive)));
                     ui.add(egui::Label::new(RichText::new(&link.name).font(bold(12.5))).truncate());
                 });
@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 });
                 let Some((n, weight)) = weight.map(|n| (n, &spec.counterweights[n])) else {
                     for _ in 0..2 {
-                        cell(ui, NUMBER, Align::Max, |ui| head(ui, p, "–"));
+                        cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| head(ui, p, "–"));
                     }
                     return fixed(ui, &link.name, brief, commands);
                 };
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 let path = |key: &str| format!("counterweight.{place}.{key}");
                 let label = format!("mass of the counterweight of link {}", link.name);
                 number(ui, (&label, &path("mass"), 3), weight.mass, (brief, p, &mut *commands), |mass| {
-                    // A disc of the same plate.
+                    // A disc of the same thickness and density.
                     let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
                     let both = Change::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
                     Edit::of("counterweight", Change::from_iter([(place.clone(), Value::from(both))]))
@@ -81,7 +81,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     details(ui, session, p, commands);
 }
 
-/// What else one link has: inertia and length. Which link is chosen here.
+/// Draws inertia and length of one link, and the choice of this link.
 fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let links = &session.scenario().machine.spec().links;
     let id = ui.scope_id().with("link in detail");
@@ -115,7 +115,7 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     ui.data_mut(|data| data.insert_temp(id, at));
 }
 
-/// Whether a link stays as it is while the balance is kept.
+/// Draws the box that fixes a link while the balance is kept.
 fn fixed(ui: &mut Ui, link: &str, brief: &Brief, commands: &mut Vec<Command>) {
     let mut is_fixed = brief.fixed.contains(link);
     let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip_of("design.fixed.*"));
@@ -131,7 +131,7 @@ fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R
         Align::Max => Layout::right_to_left(Align::Center),
         _ => Layout::left_to_right(Align::Center),
     };
-    ui.allocate_ui_with_layout(vec2(width, HEIGHT), layout, |ui| {
+    ui.allocate_ui_with_layout(vec2(width, ROW_HEIGHT_PT), layout, |ui| {
         ui.set_min_width(width);
         add(ui)
     });
@@ -148,7 +148,7 @@ fn number(
     (brief, p, commands): (&Brief, &Palette, &mut Vec<Command>),
     edit: impl Fn(f64) -> Edit,
 ) {
-    cell(ui, NUMBER, Align::Max, |ui| {
+    cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| {
         let mut value = now;
         let row = Row::of(label, path).with(decimals, 0.002);
         let response = row.number(ui, &mut value);
@@ -157,7 +157,8 @@ fn number(
     });
 }
 
-/// Whether a number stays, may change, or may change so far while the balance is kept: a line under it, and a menu.
+/// Draws the state of a number as a line under it, and its menu: fixed, free, or free within bounds while the balance
+/// is kept.
 fn holding(
     ui: &Ui,
     response: &Response,

@@ -1,4 +1,4 @@
-//! What the panel beside the machine shows: its balance, or the equations of the paper.
+//! The tabs of the panel on the right: balance, or equations of the paper.
 
 use egui::{Button, RichText, Ui, vec2};
 
@@ -11,7 +11,7 @@ const TABS: [(bool, &str, &str); 2] = [
     (true, "Equations", "Every equation of the paper with today's numbers in it"),
 ];
 
-/// Draws the choice.
+/// Draws the tabs.
 pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.horizontal(|ui| {

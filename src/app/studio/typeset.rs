@@ -1,4 +1,4 @@
-//! Symbols with indices set as type.
+//! Typesetting of symbols with indices.
 
 use std::sync::Arc;
 
@@ -8,17 +8,17 @@ use egui::{Align, Color32, Galley, Ui};
 use crate::app::theme::plain;
 use crate::study::equations::{Level, pieces};
 
-/// How much smaller an index is.
-const SMALL: f32 = 0.74;
+/// Size of an index, as a fraction of its symbol.
+const INDEX_SCALE: f32 = 0.74;
 
-/// A symbol in a size and colour, broken within so many points.
+/// Lays out a symbol in a size and colour, wrapped at a width, points.
 pub fn set(ui: &Ui, symbol: &str, (size, tone): (f32, Color32), width: f32) -> Arc<Galley> {
     let mut job = LayoutJob::default();
     for (text, level) in pieces(symbol) {
         let (size, valign) = match level {
             Level::Line => (size, Align::Center),
-            Level::Index => (SMALL * size, Align::BOTTOM),
-            Level::Raised => (SMALL * size, Align::TOP),
+            Level::Index => (INDEX_SCALE * size, Align::BOTTOM),
+            Level::Raised => (INDEX_SCALE * size, Align::TOP),
         };
         let font_id = plain(size);
         job.append(text, 0.0, TextFormat { font_id, color: tone, valign, ..TextFormat::default() });
@@ -27,7 +27,7 @@ pub fn set(ui: &Ui, symbol: &str, (size, tone): (f32, Color32), width: f32) -> A
     ui.painter().layout_job(job)
 }
 
-/// Plain text, broken within so many points.
+/// Lays out plain text, wrapped at a width, points.
 pub fn words(ui: &Ui, text: &str, (size, tone): (f32, Color32), width: f32) -> Arc<Galley> {
     ui.painter().layout(text.to_owned(), plain(size), tone, width)
 }

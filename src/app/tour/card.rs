@@ -2,7 +2,7 @@
 
 use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 
-use super::{STEPS, Shows, Step, Tour};
+use super::{STEPS, Step, StepButton, Tour};
 use crate::app::theme::{bold, card, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewChange, ViewState, WindowCommand};
@@ -11,7 +11,7 @@ use crate::picture::scene::views::ViewKind;
 use crate::session::Session;
 
 impl Tour {
-    /// Its card, over the lower left corner of the scene.
+    /// Draws the card, over the lower left corner of the scene.
     pub fn show(
         &self,
         ctx: &egui::Context,
@@ -35,29 +35,29 @@ impl Tour {
                 });
                 ui.add(egui::Label::new(RichText::new(step.words).font(plain(12.5)).color(colour(p.ink))).wrap());
                 ui.add_space(4.0);
-                self.asked(ui, step, &p);
+                self.exercise(ui, step, &p);
                 ui.add_space(4.0);
-                self.buttons(ui, (step.shows)(session), view_state, &p, commands);
+                self.buttons(ui, (step.button)(session), view_state, &p, commands);
             });
         });
     }
 
-    fn asked(&self, ui: &mut Ui, step: &Step, p: &Palette) {
+    fn exercise(&self, ui: &mut Ui, step: &Step, p: &Palette) {
         let (words, tone) =
-            if self.done { (format!("Done: {}", step.asks), p.zero) } else { (step.asks.to_owned(), p.amber) };
+            if self.done { (format!("Done: {}", step.exercise), p.zero) } else { (step.exercise.to_owned(), p.amber) };
         ui.add(egui::Label::new(RichText::new(words).font(bold(12.5)).color(colour(tone))).wrap());
     }
 
     fn buttons(
         &self,
         ui: &mut Ui,
-        shows: Option<Shows>,
+        button: Option<StepButton>,
         view_state: &ViewState,
         p: &Palette,
         commands: &mut Vec<Command>,
     ) {
         ui.horizontal(|ui| {
-            if let Some((words, what)) = shows.filter(|_| !self.done)
+            if let Some((words, what)) = button.filter(|_| !self.done)
                 && ui.button(words).clicked()
             {
                 if !view_state.view.shows_machine() {
@@ -94,7 +94,7 @@ impl Tour {
         });
     }
 
-    /// What of a scene it lies over.
+    /// Returns the rectangle that it covers in a scene.
     pub fn covers(ctx: &egui::Context, rect: egui::Rect) -> egui::Rect {
         let usual = egui::Rect::from_min_size(rect.left_bottom() + vec2(0.0, -190.0), vec2(446.0, 190.0));
         ctx.memory(|m| m.area_rect(id())).unwrap_or(usual)

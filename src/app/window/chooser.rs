@@ -1,4 +1,4 @@
-//! [`Chooser`]: the system's own dialogs for files, where there are some.
+//! [`Chooser`]: the file dialogs of the system, if there are any.
 
 mod portal;
 
@@ -12,52 +12,52 @@ use crate::app::{AppState, FileDialog, PlotFile, Purpose, SessionCommand, ViewCh
 use crate::exchange::form;
 use crate::query::{Job, Poll};
 
-/// Asks for files by a dialog of the system, beside the window.
+/// Shows file dialogs of the system in the background.
 #[derive(Default)]
 pub struct Chooser {
-    /// The system has none.
-    none: bool,
-    asked: Option<(FileDialog, Job<Answer>)>,
-    /// Where a file was chosen last.
+    /// Whether the system has no file dialog.
+    is_unavailable: bool,
+    pending: Option<(FileDialog, Job<Answer>)>,
+    /// Folder of the file chosen last.
     folder: Option<PathBuf>,
 }
 
-/// What comes of a dialog of the system.
+/// Result of a dialog of the system.
 enum Answer {
     /// A file was chosen.
     Chosen(PathBuf),
-    /// It was closed without.
+    /// The dialog was closed without a file.
     Closed,
-    /// There is none.
+    /// The system has no file dialog.
     NoDialog,
 }
 
 impl Chooser {
-    /// Takes over the dialog that the window would show. Where the system has none the window's own is shown, as it is
-    /// when a file is asked for once more while a dialog of the system hides somewhere.
+    /// Shows the system's dialog in place of the window's own. The own dialog is shown if the system has none, or if a
+    /// file is requested again while the system's dialog is open.
     pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
-        let Some((dialog, job)) = self.asked.take() else {
-            if let Some(dialog) = app_state.view_state().open.dialog.clone().filter(|_| !self.none) {
+        let Some((dialog, job)) = self.pending.take() else {
+            if let Some(dialog) = app_state.view_state().open.dialog.clone().filter(|_| !self.is_unavailable) {
                 app_state.carry_out(ViewChange::Dialog(None));
                 let last = app_state.recent().first().and_then(|file| file.parent());
                 let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
-                let (answer, wake) = (asked(&dialog, folder, window), ctx.clone());
+                let (answer, wake) = (system_dialog(&dialog, folder, window), ctx.clone());
                 let wait = move |_: &_| match portal::is_there() {
                     true => pollster::block_on(answer)
                         .map_or(Answer::Closed, |file| Answer::Chosen(file.path().to_path_buf())),
                     false => Answer::NoDialog,
                 };
-                self.asked = Some((dialog, Job::start(&Threads::Background, move || wake.request_repaint(), wait)));
+                self.pending = Some((dialog, Job::start(&Threads::Background, move || wake.request_repaint(), wait)));
             }
             return;
         };
         match job.poll() {
-            Poll::Working => self.asked = Some((dialog, job)),
+            Poll::Working => self.pending = Some((dialog, job)),
             Poll::Done(Answer::Chosen(file)) => {
                 self.folder = file.parent().map(Path::to_path_buf);
-                // It has asked, too, whether a file that is there is to be replaced.
+                // The system's dialog has asked whether an existing file may be replaced.
                 app_state.carry_out(SessionCommand::Replace(file.clone()));
-                // What is opened has the name that it has.
+                // A file to open keeps its name.
                 let file = match dialog.purpose {
                     Purpose::Open => file,
                     _ => with_ending(file, endings(&dialog.purpose)[0]),
@@ -66,7 +66,7 @@ impl Chooser {
                 ctx.request_repaint();
             }
             Poll::Done(Answer::NoDialog) => {
-                self.none = true;
+                self.is_unavailable = true;
                 app_state.carry_out(ViewChange::Dialog(Some(dialog)));
                 ctx.request_repaint();
             }
@@ -75,7 +75,7 @@ impl Chooser {
     }
 }
 
-/// How names of such files end, the usual one first.
+/// Returns the file extensions for a purpose, the usual one first.
 fn endings(purpose: &Purpose) -> Vec<&'static str> {
     match purpose {
         Purpose::Open => vec!["toml", "urdf", "xml", "csv"],
@@ -92,15 +92,15 @@ fn endings(purpose: &Purpose) -> Vec<&'static str> {
     }
 }
 
-/// A name without an ending gets the usual one.
+/// Adds the extension to a file name without one.
 fn with_ending(file: PathBuf, ending: &str) -> PathBuf {
     if file.extension().is_some() { file } else { file.with_extension(ending) }
 }
 
-type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
+type DialogFuture = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 
-/// The dialog of the system, in front of the window.
-fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
+/// Creates the dialog of the system, in front of the window.
+fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> DialogFuture {
     let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
         Purpose::Open => "Sessions, machines, models and tables",

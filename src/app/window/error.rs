@@ -7,35 +7,35 @@ use thiserror::Error;
 use crate::picture::render::offscreen::{Gpu, NoAdapter};
 use crate::session::Refusal;
 
-/// Why there is no window.
+/// The reason why there is no window.
 #[derive(Debug, Error)]
 pub enum WindowError {
-    /// No display server answers.
+    /// No display server responds.
     #[error("no display: {0}")]
     NoDisplay(String),
-    /// A library that the window system needs.
+    /// A library required by the window system is missing.
     #[error("the window needs {library}: install it with `{install}`")]
     MissingLibrary {
         /// File name of the library.
         library: &'static str,
-        /// What installs it on Debian.
+        /// Command that installs it on Debian.
         install: &'static str,
     },
     /// The scenario cannot start.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Nothing can draw on the display.
+    /// No graphics adapter can draw on the display.
     #[error("the window cannot be drawn: {0}")]
     NoAdapter(String),
     /// The window system failed.
     #[error("the window could not be opened: {0}")]
     Failed(String),
-    /// The graphics device went away while the window was open, and none could be had in its place.
+    /// The graphics device was lost while the window was open, and could not be replaced.
     #[error("the graphics device was lost: {why}; {}", kept_in(.kept.as_deref()))]
     DeviceLost {
-        /// Why there is no other.
+        /// Why it could not be replaced.
         why: String,
-        /// Where the session is kept, if something was done to it.
+        /// File of the journal of the session, if there were changes.
         kept: Option<PathBuf>,
     },
 }
@@ -47,7 +47,7 @@ fn kept_in(kept: Option<&Path>) -> String {
     }
 }
 
-/// Why nothing could be drawn on a display that is there.
+/// Returns why nothing could be drawn on an existing display.
 pub(super) fn what_is_missing() -> String {
     // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers
     // do nothing but set up its own state.
@@ -55,7 +55,7 @@ pub(super) fn what_is_missing() -> String {
         return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
     }
     match Gpu::new() {
-        // The list of drivers that were tried would not help a reader.
+        // The list of drivers that were tried would not help the user.
         Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
                                        `apt-get install mesa-vulkan-drivers`"
             .into(),
@@ -64,7 +64,7 @@ pub(super) fn what_is_missing() -> String {
     }
 }
 
-/// On X11 a missing library would end the program deep inside; name it before.
+/// Checks the libraries that X11 needs: a missing one would end the program without a clear message.
 pub(super) fn check_libraries() -> Result<(), WindowError> {
     let x11 = cfg!(target_os = "linux")
         && std::env::var_os("WAYLAND_DISPLAY").is_none()

@@ -1,4 +1,4 @@
-//! [`App`]: the application as the guest of a window, with its clock and its title, and what it writes down.
+//! [`App`]: the application in a window, with its clock, its title, and its stored files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,99 +13,99 @@ use super::keeper::Keeper;
 use super::times::Times;
 use crate::app::{AppState, Preferences, SessionCommand, WindowCommand};
 
-/// The application as a window shows it, and as tests drive it without one.
+/// The application, in a window or driven by tests without one.
 pub struct App {
     app_state: AppState,
     clock: Clock,
-    /// What stands above the window.
+    /// The title of the window.
     title: String,
     times: Times,
-    /// The window of the desktop, if there is one.
+    /// The desktop window, if there is one.
     window: Option<Arc<Window>>,
-    /// A key takes the graphics device away: for tests.
+    /// Whether a key simulates the loss of the graphics device: for tests.
     may_break: bool,
-    /// That key was pressed.
+    /// Whether that key was pressed.
     breaks: bool,
-    /// The graphics device went away for good: the session is to be offered at the next start.
+    /// Whether the graphics device was lost for good: the session is then offered at the next start.
     is_cut_off: bool,
-    /// Who writes down what is to last; nobody does in tests.
+    /// Writes preferences and journal; `None` in tests.
     keeper: Option<Keeper>,
-    /// Who asks for files; the window itself does in tests.
+    /// Shows the system's file dialogs; `None` in tests, where the window shows its own.
     chooser: Option<Chooser>,
 }
 
-/// Where wall time comes from.
+/// Source of wall time.
 #[derive(Clone, Copy, Debug)]
 pub enum Clock {
-    /// The machine's clock, and what it last said.
+    /// The system clock, and its last reading.
     Wall(Option<Instant>),
-    /// The same time for each repaint, s: for tests.
+    /// A fixed time per repaint, s: for tests.
     Fixed(f64),
 }
 
 impl App {
-    /// Around a state.
+    /// Creates the application around a state.
     pub fn new(app_state: AppState, clock: Clock) -> Self {
         let (title, times, window) = (String::new(), Times::default(), None);
         let (may_break, breaks, is_cut_off) = (false, false, false);
         Self { app_state, clock, title, times, window, may_break, breaks, is_cut_off, keeper: None, chooser: None }
     }
 
-    /// The same, which writes down what is to last, and asks for files as the system does; whether a key takes the
-    /// graphics device away.
+    /// Enables preferences, journal and the system's file dialogs; `may_break` says whether a key simulates the loss of
+    /// the graphics device.
     pub(super) fn kept(self, liked: Preferences, may_break: bool) -> Self {
         let keeper = Keeper::new(liked, &self.app_state);
         Self { keeper: Some(keeper), chooser: Some(Chooser::default()), may_break, ..self }
     }
 
-    /// From now on it is shown in a window of the desktop.
+    /// Sets the desktop window.
     pub(super) fn shown_in(&mut self, window: Arc<Window>) {
         self.window = Some(window);
     }
 
-    /// Whether the graphics device is to be taken away; asked for once.
+    /// Takes the request to simulate the loss of the graphics device.
     pub(super) fn breaks(&mut self) -> bool {
         std::mem::take(&mut self.breaks)
     }
 
-    /// Another graphics device has taken over.
+    /// Tells the user that another graphics device has taken over.
     pub(super) fn was_replaced(&mut self) {
         self.app_state.announce("the graphics device was lost, and another one took over: all is as it was");
     }
 
-    /// No graphics device can be had in the place of the one that was lost.
+    /// Writes the journal after the graphics device was lost for good; returns the error.
     pub(super) fn cut_off(&mut self, why: String) -> WindowError {
         self.is_cut_off = true;
         WindowError::DeviceLost { why, kept: self.keep_now() }
     }
 
-    /// Ends with its window.
+    /// Ends the application with its window.
     pub(super) fn close(&mut self) {
         if let Some(keeper) = self.keeper.as_mut().filter(|_| !self.is_cut_off) {
             keeper.end();
         }
         self.app_state.close();
-        // A recording that is not there yet leaves nothing half written.
+        // An unfinished recording leaves no incomplete file.
         drop(crate::files::abandon());
         self.window = None;
     }
 
-    /// Writes down what was done, at once; where.
+    /// Writes the journal at once; returns its file.
     fn keep_now(&mut self) -> Option<PathBuf> {
         self.keeper.as_mut()?.keep_now(&self.app_state)
     }
 
-    /// What it shows.
+    /// The state of the user interface.
     pub fn app_state(&self) -> &AppState {
         &self.app_state
     }
 
-    /// The same, to be told what to do.
+    /// The state of the user interface, to change.
     pub fn app_state_mut(&mut self) -> &mut AppState {
         &mut self.app_state
     }
 
-    /// One pass of the interface over a whole window.
+    /// Runs one pass of the user interface over the whole window.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.breaks |= self.may_break && ui.input_mut(|i| i.consume_shortcut(&BREAK));
         let now = Instant::now();
@@ -148,5 +148,5 @@ impl App {
     }
 }
 
-/// The keys that take the device away where that is allowed.
+/// The keys that simulate the loss of the graphics device.
 const BREAK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::CTRL.plus(Modifiers::SHIFT), Key::F12);

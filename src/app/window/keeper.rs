@@ -1,4 +1,4 @@
-//! [`Keeper`]: writes down how the window is liked, and the session into its journal.
+//! [`Keeper`]: writes the preferences, and the session into its journal.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -9,19 +9,19 @@ use crate::files::journal::{self, Journal, Left};
 use crate::files::preferences;
 use crate::query::{Job, Poll};
 
-/// Writes what changes, beside the window: the first change at once, later ones within a second.
+/// Writes changes in the background: the first at once, later ones within a second.
 pub struct Keeper {
     liked: Liked,
     journal: Option<Journal>,
-    /// What the journal holds, and what is being written.
+    /// State that the journal contains, and state that is being written.
     held: Kept,
     writing: Option<(Kept, Job<bool>)>,
     next: Instant,
-    /// What was left behind and goes when the journal holds it again.
+    /// File of a recovered session; it is removed once the journal contains the session.
     going: Option<PathBuf>,
 }
 
-/// How the window is liked, how its file has it, and since when.
+/// Preferences: present ones, those in the file, and the time of their writing.
 struct Liked {
     now: Preferences,
     written: Preferences,
@@ -29,7 +29,7 @@ struct Liked {
 }
 
 impl Liked {
-    /// Brings the file up to date.
+    /// Updates the file.
     fn write(&mut self) {
         if self.written != self.now {
             preferences::save(&self.now);
@@ -39,23 +39,23 @@ impl Liked {
     }
 }
 
-/// What of a session on display is kept: the count of its changes, and what is in none of them.
+/// Number of changes of a session, and the state of the display that no edit contains.
 type Kept = (u64, LeftOff);
 
-/// The least time between two writes of preferences.
+/// Minimum time between two writes of preferences.
 const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
-/// The least time between two writes of the journal: half of the second within which it holds a change.
+/// Minimum time between two writes of the journal: half of the second within which it contains a change.
 const JOURNAL_INTERVAL: Duration = Duration::from_millis(500);
-/// The most that copying a long session adds to this time.
+/// Maximum extension of this time by the copying of a long session.
 const MAX_COPY_PAUSE: Duration = Duration::from_millis(250);
-/// How often and how long a write is waited for when the window closes.
-const LOOKS: u32 = 1000;
-const LOOK: Duration = Duration::from_millis(2);
-/// Copying a session takes at most this fraction of the time between two copies, as far as the pause allows.
+/// Number and interval of the checks for the end of a write when the window closes.
+const MAX_CHECKS: u32 = 1000;
+const CHECK_INTERVAL: Duration = Duration::from_millis(2);
+/// Copying a session takes at most this fraction of the time between two copies, as far as `MAX_COPY_PAUSE` allows.
 const COPY_SHARE: u32 = 50;
 
 impl Keeper {
-    /// What is liked is in its file already.
+    /// Creates the keeper; preferences and session count as stored.
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
         let held = (app_state.changes().0, app_state.left_off());
@@ -63,7 +63,7 @@ impl Keeper {
         Self { liked, journal: None, held, writing: None, next: now, going: None }
     }
 
-    /// After a repaint.
+    /// Writes preferences and journal after a repaint, if they are due.
     pub fn keep(&mut self, ctx: &egui::Context, app_state: &mut AppState) {
         self.like(ctx, app_state);
         self.write(ctx, app_state);
@@ -76,7 +76,7 @@ impl Keeper {
         if liked.now == liked.written {
             return;
         }
-        // While an edge is dragged it is not written at every step.
+        // While a window edge is dragged, the file is not written at every step.
         match PREFERENCES_INTERVAL.checked_sub(liked.when.elapsed()) {
             Some(wait) if !wait.is_zero() => ctx.request_repaint_after(wait),
             _ => liked.write(),
@@ -94,14 +94,14 @@ impl Keeper {
         self.going = app_state.take_recovered().or(self.going.take());
         let now_is = (app_state.changes().0, app_state.left_off());
         let (changes, left_off) = &now_is;
-        // An instant alone is no reason to begin a journal, and while time runs it is not followed.
+        // A new instant alone does not begin a journal, and is not written while the run plays.
         let elsewhere =
             self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
         if *changes == self.held.0 && left_off.plots == self.held.1.plots && !elsewhere {
             self.going.take().iter().for_each(|file| journal::forget(file));
             return;
         }
-        // What is being written wakes the window when it is done.
+        // The write under way wakes the window at its end.
         if self.writing.is_some() {
             return;
         }
@@ -126,18 +126,18 @@ impl Keeper {
         self.writing = Some((now_is, job));
     }
 
-    /// Waits for what is being written. A disk that hangs is not waited for.
+    /// Waits for the end of a write, for a limited time.
     fn settle(&mut self) {
         let busy = |job: &Job<bool>| matches!(job.poll(), Poll::Working);
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_CHECKS {
             if !self.writing.as_ref().is_some_and(|(_, job)| busy(job)) {
                 break;
             }
-            std::thread::sleep(LOOK);
+            std::thread::sleep(CHECK_INTERVAL);
         }
     }
 
-    /// The window ends out of order: what was done is written at once, to be offered at the next start; where.
+    /// Writes everything at once because the window ends abnormally, to be offered at the next start; returns the file.
     pub fn keep_now(&mut self, app_state: &AppState) -> Option<PathBuf> {
         self.liked.write();
         self.settle();
@@ -150,10 +150,10 @@ impl Keeper {
         Some(file.to_owned())
     }
 
-    /// The window closes in order: nothing is to be offered at the next start.
+    /// Removes the journal because the window closes normally: nothing is to be offered at the next start.
     pub fn end(&mut self) {
         self.liked.write();
-        // What is being written would come back after it was removed.
+        // A write under way would create the journal again after its removal.
         self.settle();
         if let Some(journal) = self.journal.take() {
             journal.end();
@@ -161,7 +161,7 @@ impl Keeper {
     }
 }
 
-/// The newest session that a program left behind, with when that was, in words.
+/// Returns the newest session left by an earlier program run, and its age in words.
 pub fn found() -> Option<(PathBuf, String)> {
     let Left { file, when } = journal::left(&journal::folder()?).into_iter().next()?;
     let ago = when.elapsed().unwrap_or_default().as_secs();

@@ -1,4 +1,4 @@
-//! [`Screen`]: what a window is drawn on.
+//! [`Screen`]: the surface of a window and its graphics device.
 
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -13,8 +13,8 @@ use winit::window::Window;
 use crate::picture::gui::{GuiRenderer, Sheet};
 use crate::picture::render::offscreen::NoAdapter;
 
-/// A window's surface and the device that draws on it. A device may go away at any time, with the card, its driver or a
-/// remote display.
+/// A window's surface and the device that draws on it. The device may be lost at any time, with the card, its driver or
+/// a remote display.
 pub struct Screen {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
@@ -23,21 +23,21 @@ pub struct Screen {
     gui: GuiRenderer,
     is_software: bool,
     lost: Arc<AtomicBool>,
-    /// What is to become of egui's textures in the next picture.
+    /// Pending changes of egui's textures.
     textures: TexturesDelta,
 }
 
-/// What came of a picture.
+/// Outcome of drawing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is on its way, or nobody would see it.
+    /// The picture was presented, or the window is hidden.
     Done,
-    /// Not there: the surface has changed, and the next one will do.
+    /// The picture was not presented, because the surface has changed: draw again.
     Again,
 }
 
 impl Screen {
-    /// Of a window; `changed` is called from any thread when the device is lost.
+    /// Creates the screen of a window; `changed` is called from any thread when the device is lost.
     ///
     /// # Errors
     /// If no adapter can draw in the window.
@@ -64,7 +64,7 @@ impl Screen {
         let adapter = pollster::block_on(instance.request_adapter(&asked)).map_err(|why| missing(why.to_string()))?;
         let info = adapter.get_info();
         let unfit = |why: String| NoAdapter::Unfit { name: info.name.clone(), why };
-        // As large as the adapter's textures: screens grow.
+        // The adapter's largest textures are allowed: windows may grow.
         let required_limits = wgpu::Limits::default().using_resolution(adapter.limits());
         let asked = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
         let (device, queue) =
@@ -77,7 +77,7 @@ impl Screen {
             changed();
         });
         let knows = lost.clone();
-        // What is asked of a lost device fails in many ways, and none of them matters.
+        // Requests to a lost device fail in many ways, all of them irrelevant.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             assert!(knows.load(Ordering::Acquire), "wgpu error: {error}");
         }));
@@ -86,7 +86,7 @@ impl Screen {
         let config = surface
             .get_default_config(&adapter, size.width.max(1), size.height.max(1))
             .ok_or_else(|| unfit("it cannot draw in this window".into()))?;
-        // Colours are blended as sRGB values: best on a target that takes them as they are.
+        // Colours are blended as sRGB values: a format without conversion is preferred.
         let plain = |format: &wgpu::TextureFormat| {
             matches!(format, wgpu::TextureFormat::Rgba8Unorm | wgpu::TextureFormat::Bgra8Unorm)
         };
@@ -99,29 +99,29 @@ impl Screen {
         Ok(Self { surface, config, gui, device, queue, is_software, lost, textures: TexturesDelta::default() })
     }
 
-    /// Whether the processor draws.
+    /// Whether the device is a software renderer.
     pub fn is_software(&self) -> bool {
         self.is_software
     }
 
-    /// The longest side of a texture.
+    /// Returns the maximum side of a texture, pixels.
     pub fn longest_side(&self) -> usize {
         self.device.limits().max_texture_dimension_2d as usize
     }
 
-    /// Whether the device is gone.
+    /// Whether the device is lost.
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Acquire)
     }
 
-    /// Takes the device away, as a driver would: for tests.
+    /// Destroys the device, as a failing driver would: for tests.
     pub fn destroy(&self) {
         self.device.destroy();
-        // It is lost when all that was asked of it before is done.
+        // The loss is reported after all earlier requests have finished.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// Follows the window to a size, pixels; a window without any, as one that is minimised, is not followed.
+    /// Resizes the surface, pixels; ignores a zero size, as of a minimised window.
     pub fn resize(&mut self, [width, height]: [u32; 2]) {
         let (Some(width), Some(height)) = (NonZeroU32::new(width), NonZeroU32::new(height)) else { return };
         let most = self.device.limits().max_texture_dimension_2d;
@@ -135,25 +135,25 @@ impl Screen {
         }
     }
 
-    /// All letters are to be sent again: to a device that is new.
+    /// Sends the font texture again, to a new device.
     pub fn send_letters(&mut self, ctx: &egui::Context) {
         let letters = ctx.fonts(|fonts| fonts.image());
         self.textures.push(egui::TextureId::default(), ImageDelta::full(letters, TextureAtlas::texture_options()));
     }
 
-    /// Takes note of what has become of egui's textures, drawn or not.
+    /// Adds changes of egui's textures, whether or not a picture is drawn.
     pub fn take_textures(&mut self, textures: TexturesDelta) {
         self.textures.append(textures);
     }
 
-    /// Draws what egui has made and shows it.
+    /// Draws egui's shapes and presents the picture.
     pub fn draw(
         &mut self,
         window: &Window,
         (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
         behind: egui::Color32,
     ) -> Outcome {
-        // A driver whose device goes away just now may break off in the middle.
+        // A driver may panic in the middle of drawing when its device is lost.
         let drawn = catch_unwind(AssertUnwindSafe(|| self.draw_on(window, (shapes, pixels_per_point), behind)));
         drawn.unwrap_or_else(|panic| match self.is_lost() {
             true => Outcome::Again,
@@ -193,7 +193,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // egui insists that nothing of it is forgotten; here it is meant to be.
+        // egui asserts that no texture changes are dropped; here it is intended.
         self.textures.clear();
     }
 }

@@ -17,17 +17,17 @@ use super::screen::{Outcome, Screen};
 use crate::picture::paint::draw_drafts;
 use crate::picture::render::offscreen::NoAdapter;
 
-/// A device that is lost again sooner would be lost for ever.
-const LASTS: Duration = Duration::from_secs(10);
-/// A window that nobody sees is looked after so often.
-const UNSEEN: Duration = Duration::from_millis(250);
+/// A device lost again within this time is not replaced again.
+const MIN_DEVICE_LIFETIME: Duration = Duration::from_secs(10);
+/// Minimum time between the passes of a hidden window.
+const HIDDEN_PASS_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What wakes the loop from outside the window system.
+/// Events that wake the event loop from outside the window system.
 #[derive(Debug)]
 enum Wake {
-    /// egui wants a pass at a time; the count of passes when it said so.
+    /// egui requests a pass at a time; holds the number of the pass that requested it.
     Pass(Instant, u64),
-    /// The device that draws is gone.
+    /// The graphics device is lost.
     Lost,
     /// A screen reader begins, acts or ends.
     Reader(accesskit_winit::Event),
@@ -39,10 +39,10 @@ impl From<accesskit_winit::Event> for Wake {
     }
 }
 
-/// Shows an application in a window until that is closed.
+/// Shows an application in a window until the window is closed.
 ///
 /// # Errors
-/// If there is no display, or nothing can draw on it, be it at once or after the device was lost.
+/// If there is no display, or no device can draw on it, at the start or after the device was lost.
 pub fn show(app: &mut App, place: ViewportBuilder) -> Result<(), WindowError> {
     let events = EventLoop::<Wake>::with_user_event().build().map_err(|why| match why {
         EventLoopError::Os(why) => WindowError::NoDisplay(last_clause(&why.to_string())),
@@ -54,7 +54,7 @@ pub fn show(app: &mut App, place: ViewportBuilder) -> Result<(), WindowError> {
     shell.ended.and(ran.map_err(|why| WindowError::Failed(why.to_string())))
 }
 
-/// The window system puts the place in its own source before what is wrong.
+/// Returns the last clause of an error of the window system, which begins with a place in its source.
 fn last_clause(text: &str) -> String {
     text.rsplit(": ").next().unwrap_or(text).to_owned()
 }
@@ -74,14 +74,14 @@ struct Open {
     ctx: egui::Context,
     input: egui_winit::State,
     info: ViewportInfo,
-    /// None only while one takes over from another.
+    /// `None` only while it is being replaced.
     screen: Option<Screen>,
     /// When the screen was last replaced.
     replaced: Option<Instant>,
     is_shown: bool,
     /// When the last pass began.
     passed: Instant,
-    /// Last: what draws in it and listens to it goes first.
+    /// The last field, so that it is dropped after those that draw in it and listen to it.
     window: Arc<Window>,
 }
 
@@ -94,13 +94,13 @@ impl Open {
         let ctx = egui::Context::default();
         let wake = wakes.clone();
         ctx.set_request_repaint_callback(move |asked| {
-            // A delay without end is none.
+            // An infinite delay requests no pass.
             if let Some(when) = Instant::now().checked_add(asked.delay) {
-                // The loop has ended: nothing is left to paint.
+                // After the end of the loop nothing is left to paint.
                 let _ = wake.send_event(Wake::Pass(when, asked.current_cumulative_pass_nr));
             }
         });
-        // Nothing is shown before there is something to see; a screen reader must be there before that, too.
+        // The window is hidden until its first picture; a screen reader must be initialised before it is shown, too.
         let place = clamped(events, place.clone()).with_visible(false);
         let window = egui_winit::create_window(&ctx, events, &place);
         let window = Arc::new(window.map_err(|why| WindowError::Failed(last_clause(&why.to_string())))?);
@@ -121,9 +121,9 @@ impl Open {
         self.is_shown && (self.window.is_minimized() == Some(true) || self.info.occluded == Some(true))
     }
 
-    /// Takes another device for one that was lost, with everything in place.
+    /// Replaces a lost device, and restores its textures.
     fn replace(&mut self, events: &ActiveEventLoop, wakes: &EventLoopProxy<Wake>) -> Result<(), String> {
-        if self.replaced.is_some_and(|last| last.elapsed() < LASTS) {
+        if self.replaced.is_some_and(|last| last.elapsed() < MIN_DEVICE_LIFETIME) {
             return Err("so was the one that took over".into());
         }
         // Two surfaces may not share a window.
@@ -143,7 +143,7 @@ fn screen(window: &Arc<Window>, events: &ActiveEventLoop, wakes: &EventLoopProxy
     })
 }
 
-/// No larger than the largest monitor: some systems show a window that is larger not at all.
+/// Limits the window to the size of the largest monitor: some systems do not show a larger window.
 fn clamped(events: &ActiveEventLoop, place: ViewportBuilder) -> ViewportBuilder {
     let sizes = events.available_monitors().map(|monitor| monitor.size().to_logical::<f32>(monitor.scale_factor()));
     let largest = sizes.fold(egui::Vec2::ZERO, |most, size| most.max(egui::vec2(size.width, size.height)));
@@ -154,7 +154,7 @@ fn clamped(events: &ActiveEventLoop, place: ViewportBuilder) -> ViewportBuilder 
 }
 
 impl Shell<'_> {
-    /// The window closes, for a reason if there is one.
+    /// Closes the window, with its error if there is one.
     fn end(&mut self, events: &ActiveEventLoop, ended: Result<(), WindowError>) {
         if self.ended.is_ok() {
             self.ended = ended;
@@ -162,7 +162,7 @@ impl Shell<'_> {
         events.exit();
     }
 
-    /// One pass of the interface, and its picture where somebody sees it.
+    /// Runs one pass of the user interface, and draws it if the window is visible.
     fn pass(&mut self, events: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         if events.exiting() {
@@ -195,11 +195,11 @@ impl Shell<'_> {
         screen.take_textures(textures_delta);
         input.handle_platform_output_with_event_loop(window, events, platform_output);
         let root = viewport_output.remove(&ViewportId::ROOT);
-        // What is new settles in a second pass, which nobody calls for.
+        // New widgets reach their final layout in a second pass, which no event requests.
         let again = root.as_ref().and_then(|root| passed.checked_add(root.repaint_delay));
         let commands = root.map(|root| root.commands).unwrap_or_default();
         let stays = commands.contains(&ViewportCommand::CancelClose);
-        // Nothing that the interface asks for needs an answer: it copies by itself, and takes no pictures.
+        // No command of the interface needs an answer: it copies text itself, and takes no screenshots.
         egui_winit::process_viewport_commands(ctx, info, commands, window, &mut Vec::new());
         if closes && !stays {
             return self.end(events, Ok(()));
@@ -209,7 +209,7 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
-            // The screen makes the window wait for its turn.
+            // Presenting may wait for the screen: the work held back starts before.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, (&shapes, pixels_per_point), behind) == Outcome::Again {
@@ -239,7 +239,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
             Ok(open) => {
                 self.app.shown_in(open.window.clone());
                 self.open = Some(open);
-                // The window is shown with its first picture.
+                // The window becomes visible with its first picture.
                 self.pass(events);
             }
             Err(why) => self.end(events, Err(why)),
@@ -249,7 +249,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
     fn user_event(&mut self, _: &ActiveEventLoop, wake: Wake) {
         let Some(open) = &mut self.open else { return };
         match wake {
-            // What was asked for in an older pass has been done since.
+            // A request of an older pass has been met since.
             Wake::Pass(when, asked) => {
                 let passes = open.ctx.cumulative_pass_nr_for(ViewportId::ROOT);
                 if passes <= asked + 1 {
@@ -277,7 +277,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
                 self.next = None;
                 return self.pass(events);
             }
-            // What the event says may be older than what the window has become since.
+            // The size in the event may be outdated.
             WindowEvent::Resized(_) => {
                 let size = open.window.inner_size();
                 if let Some(screen) = &mut open.screen {
@@ -291,7 +291,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
             }
             WindowEvent::CloseRequested => {
                 open.info.events.push(ViewportEvent::Close);
-                // A window that nobody sees may never be asked to redraw.
+                // A hidden window may never receive a request to redraw.
                 return self.pass(events);
             }
             WindowEvent::Destroyed => return self.end(events, Ok(())),
@@ -306,9 +306,9 @@ impl ApplicationHandler<Wake> for Shell<'_> {
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         let Some(open) = &self.open else { return };
         let now = Instant::now();
-        // A window that nobody sees is not asked to redraw by every system: it must not spin, nor fall asleep.
+        // Some systems do not send redraw requests to a hidden window: its passes are limited in rate, but continue.
         let is_unseen = self.next.is_some() && open.is_unseen();
-        let due = self.next.map(|next| if is_unseen { next.max(open.passed + UNSEEN) } else { next });
+        let due = self.next.map(|next| if is_unseen { next.max(open.passed + HIDDEN_PASS_INTERVAL) } else { next });
         let is_due = due.is_some_and(|due| due <= now);
         events.set_control_flow(due.filter(|_| !is_due).map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
         if is_due {
@@ -322,7 +322,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.app.close();
-        // What listens to the window system must go before it does.
+        // Listeners to the window system must be dropped before it.
         self.open = None;
     }
 }

@@ -1,4 +1,4 @@
-//! [`Times`]: what a repaint takes, for whoever asks.
+//! [`Times`]: display of repaint times.
 
 use std::time::{Duration, Instant};
 
@@ -10,46 +10,47 @@ use crate::picture::scene::palette::Palette;
 /// Times of repaints, averaged over the last few.
 #[derive(Default)]
 pub struct Times {
-    /// From one repaint to the next, while they follow each other, s.
-    apart: f64,
-    /// What the program takes to say what is to be drawn, s.
+    /// Time from one repaint to the next, while they follow each other, s.
+    interval: f64,
+    /// Time that the program takes to determine what to draw, s.
     interface: f64,
     begun: Option<Instant>,
     follows: bool,
-    /// What is shown, and since when: figures that change at every repaint cannot be read.
+    /// Text on display, and since when: text that changes at every repaint could not be read.
     shown: Option<(String, Instant)>,
 }
 
-/// Repaints further apart than this had nothing to show in between.
-const REST: Duration = Duration::from_millis(400);
-const READABLE: Duration = Duration::from_millis(300);
-/// Share of the newest in the average.
-const NEWEST: f64 = 0.1;
+/// Longer gaps between repaints are pauses, and are not counted.
+const MIN_PAUSE: Duration = Duration::from_millis(400);
+/// Minimum time for which a text stays.
+const MIN_TEXT_DURATION: Duration = Duration::from_millis(300);
+/// Weight of the newest value in the average.
+const NEWEST_WEIGHT: f64 = 0.1;
 
 impl Times {
-    /// A repaint begins.
+    /// Records the begin of a repaint.
     pub fn begin(&mut self, now: Instant) {
-        let apart = self.begun.map(|begun| now - begun).filter(|apart| *apart < REST);
-        if let Some(apart) = apart {
-            blend(&mut self.apart, apart.as_secs_f64());
+        let interval = self.begun.map(|begun| now - begun).filter(|interval| *interval < MIN_PAUSE);
+        if let Some(interval) = interval {
+            blend(&mut self.interval, interval.as_secs_f64());
         }
-        self.follows = apart.is_some();
+        self.follows = interval.is_some();
         self.begun = Some(now);
     }
 
-    /// All is said that is to be drawn.
+    /// Records that the shapes of a repaint are complete.
     pub fn end(&mut self, now: Instant) {
-        // The first one reads the fonts.
+        // The first repaint loads the fonts.
         if let Some(begun) = self.begun.filter(|_| self.follows) {
             blend(&mut self.interface, (now - begun).as_secs_f64());
         }
     }
 
-    /// Draws them at the bottom of the window, above the status.
+    /// Draws the times at the bottom of the window, above the status line.
     pub fn show(&mut self, ctx: &egui::Context, p: &Palette, now: Instant) {
-        if self.shown.as_ref().is_none_or(|(_, since)| now - *since > READABLE) {
-            let rate = if self.apart > 0.0 { 1.0 / self.apart } else { 0.0 };
-            let [apart, interface] = [self.apart, self.interface].map(|t| 1e3 * t);
+        if self.shown.as_ref().is_none_or(|(_, since)| now - *since > MIN_TEXT_DURATION) {
+            let rate = if self.interval > 0.0 { 1.0 / self.interval } else { 0.0 };
+            let [apart, interface] = [self.interval, self.interface].map(|t| 1e3 * t);
             let text =
                 format!("a frame every {apart:.1} ms, {rate:.0} a second; {interface:.1} ms of it for the interface");
             self.shown = Some((text, now));
@@ -69,5 +70,5 @@ impl Times {
 }
 
 fn blend(average: &mut f64, newest: f64) {
-    *average = if *average > 0.0 { *average + NEWEST * (newest - *average) } else { newest };
+    *average = if *average > 0.0 { *average + NEWEST_WEIGHT * (newest - *average) } else { newest };
 }
