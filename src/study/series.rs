@@ -85,7 +85,9 @@ impl Series {
                     let samples = self.values[from..].iter().enumerate();
                     samples.fold(Block::EMPTY, |all, (i, value)| all.and(Block::of(from + i, *value)))
                 }
-                _ => self.levels[level - 1][count - BLOCK_LEN..].iter().fold(Block::EMPTY, |all, block| all.and(*block)),
+                _ => {
+                    self.levels[level - 1][count - BLOCK_LEN..].iter().fold(Block::EMPTY, |all, block| all.and(*block))
+                }
             };
             if level == self.levels.len() {
                 self.levels.push(Vec::new());
