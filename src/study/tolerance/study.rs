@@ -123,7 +123,8 @@ impl Drawing {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
-        let (seed, samples) = (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(DEFAULT_SAMPLES).clamp(1, MAX_SAMPLES));
+        let (seed, samples) =
+            (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(DEFAULT_SAMPLES).clamp(1, MAX_SAMPLES));
         let spreads = tolerance.spreads_or_default(&plant);
         let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &spreads, seed)?;
         let outcomes = Vec::with_capacity(samples as usize + CHUNK);
