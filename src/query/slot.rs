@@ -23,10 +23,10 @@ impl<Q: Query> Default for Slot<Q> {
 
 /// A slot of any query, without its type.
 pub(super) trait Kept: Any + Send {
-    /// Whether work is under way.
+    /// Returns whether work is under way.
     fn works(&mut self) -> bool;
 
-    /// How many answers are kept.
+    /// Number of cached answers.
     fn count(&self) -> usize;
 
     /// Returns itself, to be cast to its own type.

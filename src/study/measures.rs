@@ -78,7 +78,7 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
     Beta { force, moment, torque }
 }
 
-/// Samples a motion at the middle of equal time intervals, to avoid the jumps of the acceleration at its ends.
+/// Samples a motion at the middle of equal time intervals, to avoid sampling exactly at jumps of the acceleration.
 pub(super) fn instants(motion: &Motion) -> impl Iterator<Item = crate::planning::Reference> {
     let dt = motion.duration() / SAMPLES as f64;
     (0..SAMPLES).map(move |i| motion.at((i as f64 + 0.5) * dt))

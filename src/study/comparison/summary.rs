@@ -39,7 +39,7 @@ pub struct Summary {
     pub energy: f64,
     /// Largest rate of a reaction wheel, rad/s.
     pub wheel_rate: Option<f64>,
-    /// Time at which a reaction wheel first reached a limit, s.
+    /// Time at which a reaction wheel first could not deliver the requested torque, s.
     pub saturated_at: Option<f64>,
     /// Whether the arm transmitted no reactions.
     pub reactionless: bool,

@@ -33,9 +33,9 @@ pub enum ToleranceError {
     Impossible {
         /// The key.
         key: String,
-        /// Its nominal value.
+        /// Nominal value.
         nominal: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
         /// Fraction of the distribution that is impossible.
         cut: f64,
@@ -47,7 +47,7 @@ pub enum ToleranceError {
         key: String,
         /// Standard deviation or half-width.
         scale: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
     },
     /// A varied machine is not valid, such as by a length that a closure fixes.

@@ -46,14 +46,14 @@ pub struct Study {
     pub yields: Option<Yield>,
     /// Contribution of each tolerance, the largest for |n_B| first.
     pub shares: Vec<Share>,
-    /// Spectra of f_Bx, f_By and the moment on the base, over the nominal run.
+    /// Spectra of f_Bx, f_By and the moment on the base, over the run.
     pub spectra: Option<[Spectrum; 3]>,
     /// Features of the scenario that perfect tracking on a fixed base omits; with any of them, only full simulation is
     /// exact.
     pub left_out: Vec<&'static str>,
 }
 
-/// Query for the study of a run; a portion draws some thousand machines.
+/// Query for the study of a run; a portion draws about two thousand machines.
 #[derive(Debug)]
 pub struct Studying {
     run: Run,

@@ -43,9 +43,9 @@ pub enum TrimError {
     Short {
         /// Index of the motion, from 0.
         motion: usize,
-        /// Number of its rows.
+        /// Number of rows.
         rows: usize,
-        /// Its duration, s.
+        /// Duration, s.
         time: f64,
         /// Minimum number of rows.
         want: usize,

@@ -23,7 +23,7 @@ pub struct Change {
     pub to: f64,
     /// Exact new value.
     pub exact: f64,
-    /// Its unit.
+    /// Unit of the number.
     pub unit: &'static str,
 }
 

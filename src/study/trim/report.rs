@@ -60,7 +60,7 @@ pub struct Gain {
 pub struct Number {
     /// Name of the unknown.
     pub name: String,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
     /// Value in the machine's file.
     pub nominal: f64,
@@ -94,7 +94,7 @@ pub struct Suggestion {
     /// Present half width of its 95 % interval; `None` if it is not identifiable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
     /// Duration of each motion, s.
     pub duration: f64,

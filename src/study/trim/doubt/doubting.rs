@@ -182,7 +182,7 @@ fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<u
     candidates.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// Returns the largest violation of the limits of relative angles, modulo whole turns, rad; negative if there is none.
+/// Returns the largest violation of the limits of relative angles, modulo whole turns, rad; 0 if there is none.
 fn limit_violation(machine: &Machine, recording: &Recording) -> f64 {
     let mut most: f64 = 0.0;
     for angle in machine.angles() {

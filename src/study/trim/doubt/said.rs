@@ -18,7 +18,7 @@ pub struct Doubt {
     pub noise: [f64; 2],
     /// These residuals as fractions of the measured values.
     pub shares: [f64; 2],
-    /// Violation of the limits of relative angles as given, rad; negative if there is none.
+    /// Violation of the limits of relative angles as given, rad; 0 if there is none.
     pub leaves: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct Cause {
     pub shares: [f64; 2],
     /// Value after correction of the unknown with the largest deviation.
     pub furthest: Option<f64>,
-    /// Violation of the limits of relative angles after correction, rad; negative if there is none.
+    /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
     pub leaves: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Cause {
 pub struct Said {
     /// Name of the unknown.
     pub name: String,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
     /// Measured value.
     pub value: f64,
