@@ -1,6 +1,6 @@
-//! Convex programs: least ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones of three rows,
-//! by an interior-point method (Clarabel). The same program always has the same answer, and the solver's dual says how
-//! far from the best it may be.
+//! Convex programs: minimise ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones of three
+//! rows, by an interior-point method (Clarabel). The same program always has the same answer. The dual solution bounds
+//! how far the answer is from the optimum.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -8,10 +8,10 @@ use clarabel::solver::{
 };
 use thiserror::Error;
 
-/// Σ value x_j and what stands on the other side.
+/// One row of a constraint: Σ value x_j, and the right side.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Row {
-    /// j and the value; repeated places add up.
+    /// Pairs of j and value; values at a repeated j add up.
     pub terms: Vec<(usize, f64)>,
     pub right: f64,
 }
@@ -22,55 +22,56 @@ impl Row {
     }
 }
 
-/// A program, row by row.
+/// A convex program, built row by row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Program {
-    /// P above and on its diagonal: row, column, value; repeated places add up.
+    /// Upper triangle of P, diagonal included: row, column, value. Repeated places add up.
     quadratic: Vec<(usize, usize, f64)>,
     /// q.
     pub linear: Vec<f64>,
-    /// Σ = right.
+    /// Equalities Σ value x_j = right.
     pub equal: Vec<Row>,
-    /// Σ ≤ right, which is finite.
+    /// Inequalities Σ value x_j ≤ right, where right is finite.
     pub at_most: Vec<Row>,
-    /// Rows a, b, c with a ≥ |(b, c)|; the right side of a row is added to its sum.
+    /// Second-order cones: rows a, b, c with a ≥ |(b, c)|. The right side of a row is added to its sum.
     pub cones: Vec<[Row; 3]>,
 }
 
-/// Where it is least.
+/// Solution of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Least {
     pub x: Vec<f64>,
-    /// What is least.
+    /// Value of the objective at `x`.
     pub value: f64,
-    /// The most by which the best may lie below, from the dual.
+    /// Duality gap: upper bound on how far the optimum lies below `value`.
     pub gap: f64,
 }
 
-/// Why there is no x.
+/// Why a program has no solution.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum NoX {
-    /// How much each inequality has to do with it.
+    /// The program is infeasible. The multiplier of each inequality in the proof of infeasibility.
     #[error("what is wanted contradicts itself")]
     Contradiction(Vec<f64>),
-    /// The solver's own word.
+    /// The solver failed; its status in words.
     #[error("the solver found no answer: {0}")]
     Failed(String),
 }
 
 impl Program {
-    /// Nothing to be least yet, over `n` unknowns.
+    /// Returns a program over `n` unknowns with objective zero and without constraints.
     pub fn over(n: usize) -> Self {
         Self { linear: vec![0.0; n], ..Self::default() }
     }
 
-    /// Adds factor · x_i x_j to what is to be least.
+    /// Adds factor · x_i x_j to the objective.
     pub fn add_product(&mut self, i: usize, j: usize, factor: f64) {
-        // Twice the square on the diagonal, half of the sum of both halves beside it.
+        // P enters as ½ xᵀ P x: twice the factor on the diagonal. Off the diagonal P_ij and P_ji contribute one half
+        // each.
         self.quadratic.push((i.min(j), i.max(j), if i == j { 2.0 * factor } else { factor }));
     }
 
-    /// Wants x_u x_w ≥ x_s², both not below 0.
+    /// Adds the constraint x_u x_w ≥ x_s² with x_u ≥ 0 and x_w ≥ 0.
     pub fn above_quotient(&mut self, u: usize, w: usize, s: usize) {
         self.cones.push([
             Row::new([(u, 1.0), (w, 1.0)], 0.0),
@@ -79,7 +80,7 @@ impl Program {
         ]);
     }
 
-    /// Wants x_v ≥ factor x_w².
+    /// Adds the constraint x_v ≥ factor x_w².
     pub fn above_square(&mut self, v: usize, factor: f64, w: usize) {
         self.cones.push([
             Row::new([(v, 1.0)], 1.0),
@@ -88,11 +89,11 @@ impl Program {
         ]);
     }
 
-    /// The x at which it is least.
+    /// Returns the x that minimises the objective. Fails if the program is infeasible or the solver finds no answer.
     pub fn solve(&self) -> Result<Least, NoX> {
         let n = self.linear.len();
         let (mut entries, mut right) = (Vec::new(), Vec::new());
-        // Clarabel wants right − Σ in the cone.
+        // Clarabel takes constraints in the form: right − Σ lies in the cone.
         let linear = self.equal.iter().chain(&self.at_most).map(|row| (row, 1.0));
         for (i, (row, sign)) in linear.chain(self.cones.iter().flatten().map(|row| (row, -1.0))).enumerate() {
             entries.extend(row.terms.iter().map(|&(j, value)| (i, j, sign * value)));
@@ -103,14 +104,14 @@ impl Program {
         cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
         let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &self.quadratic));
         let mut failed = String::new();
-        // Where what is wanted just exists or just does not, less exactness may still tell.
-        for [gap, feasible] in [[1e-10, 1e-11], [1e-8, 1e-9]] {
+        // Close to the boundary of feasibility, a second attempt with larger tolerances may still decide.
+        for [gap_tolerance, feasibility_tolerance] in [[1e-10, 1e-11], [1e-8, 1e-9]] {
             let settings = DefaultSettings {
                 verbose: false,
                 max_iter: 200,
-                tol_gap_abs: gap,
-                tol_gap_rel: gap,
-                tol_feas: feasible,
+                tol_gap_abs: gap_tolerance,
+                tol_gap_rel: gap_tolerance,
+                tol_feas: feasibility_tolerance,
                 ..DefaultSettings::default()
             };
             let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
@@ -135,12 +136,14 @@ impl Program {
 
 fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
     let entries = entries.iter().filter(|entry| entry.2 != 0.0);
-    let part = |pick: fn(&(usize, usize, f64)) -> usize| entries.clone().map(pick).collect();
-    CscMatrix::new_from_triplets(m, n, part(|e| e.0), part(|e| e.1), entries.clone().map(|e| e.2).collect())
+    let column = |pick: fn(&(usize, usize, f64)) -> usize| entries.clone().map(pick).collect();
+    CscMatrix::new_from_triplets(m, n, column(|e| e.0), column(|e| e.1), entries.clone().map(|e| e.2).collect())
 }
 
-/// Of bounds that contradict each other those without any of which the others do not: what the solver's proof uses, as
-/// far as its weights tell, less all that can be done without.
+/// Returns an irreducible infeasible subset of contradicting bounds: without any one of them, the others are feasible.
+///
+/// Starts from the bounds with nonzero `weights` in the solver's proof of infeasibility, or from all bounds if those do
+/// not contradict each other. Then removes each bound without which the rest still contradicts itself.
 pub(crate) fn conflict<B: Clone>(
     bounds: Vec<(B, Row)>,
     weights: &[f64],

@@ -1,31 +1,32 @@
-//! [`Asked`]: an answer that may still be in the making.
+//! [`Asked`]: the newest answer of a query, and whether it belongs to the current input.
 
 use std::sync::Arc;
 
-/// An answer that may still be in the making.
+/// The newest answer of a query, and whether it belongs to the current input.
 #[derive(Debug)]
 pub struct Asked<A> {
-    /// The newest there is; none if there was none yet.
+    /// The newest answer; `None` before the first one.
     pub last: Option<Arc<A>>,
-    /// What it is to what was asked.
+    /// Whether `last` belongs to the current input, and if not, why.
     pub state: State,
 }
 
-/// How an answer stands to the input that was asked about.
+/// State of the newest answer relative to the current input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
-    /// It is of this input.
+    /// The answer belongs to the current input.
     Known,
-    /// It is of an earlier one; so much of the work is done, from 0 to 1.
+    /// The answer belongs to an earlier input; work on the current one is under way. Fraction done, from 0 to 1.
     UnderWay(f64),
-    /// It is of an earlier one: the work was stopped by hand.
+    /// The answer belongs to an earlier input; the user stopped the work on the current one.
     Stopped,
-    /// It is of an earlier one: the work broke off, which is a fault of the program.
+    /// The answer belongs to an earlier input; the work on the current one ended without an answer, by a fault of the
+    /// program.
     Broken,
 }
 
 impl<A> Asked<A> {
-    /// The answer, if it is of what was asked.
+    /// Returns the answer if it belongs to the current input.
     pub fn known(&self) -> Option<&Arc<A>> {
         self.last.as_ref().filter(|_| self.state == State::Known)
     }

@@ -1,4 +1,5 @@
-//! A [`Growing`] answer: one of a [`Sequence`], which takes up what is appended instead of being made again.
+//! [`Growing`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead of being
+//! derived again.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -6,33 +7,33 @@ use std::sync::Arc;
 use super::sequence::{Mark, Revision, Sequence};
 use super::slot::Kept;
 
-/// An answer that grows with a sequence. It follows from its input and the items that it has taken, alone: taken one at
-/// a time or together, cut back and taken again, they give the same.
+/// An answer that grows with a sequence. It depends only on its input and on the items taken. Items taken one at a
+/// time, all at once, or again after a truncation give the same answer.
 pub trait Growing: Clone + Send + Sync + 'static {
-    /// What is taken.
+    /// Item of the sequence.
     type Item: Clone;
-    /// What else it depends on.
+    /// Everything else that the answer depends on.
     type Input: Clone + PartialEq + Send + 'static;
 
-    /// Of no items yet.
+    /// Returns the answer for no items.
     fn begin(input: &Self::Input) -> Self;
 
-    /// How many items it has taken.
+    /// Returns the number of items taken so far.
     fn count(&self) -> usize;
 
-    /// Takes those that follow.
+    /// Takes the next items of the sequence.
     fn take(&mut self, items: &[Self::Item]);
 
-    /// Goes back to the first so many items, or to fewer.
+    /// Goes back to the answer for the first `count` items, or for fewer.
     fn cut(&mut self, count: usize);
 
-    /// Goes over to another input. It may keep what is the same for both.
+    /// Changes to another input. An implementation may keep everything that both inputs share.
     fn turn_to(&mut self, input: &Self::Input) {
         *self = Self::begin(input);
     }
 }
 
-/// The answer to a whole sequence, at once and not kept.
+/// Returns the answer for a whole sequence, computed at once and without a cache entry.
 pub fn grown<G: Growing>(input: &G::Input, items: &Sequence<G::Item>) -> G {
     let mut answer = G::begin(input);
     while let together @ [_, ..] = items.from(answer.count()) {
@@ -45,12 +46,13 @@ pub fn grown<G: Growing>(input: &G::Input, items: &Sequence<G::Item>) -> G {
     answer
 }
 
-/// A growing answer as it is when it is asked. As an input of others it is the same until it takes or loses something.
+/// A snapshot of a growing answer. As an input of other queries, two snapshots are equal as long as the answer has not
+/// changed between them.
 #[derive(Debug)]
 pub struct Grown<G> {
     version: Arc<()>,
     answer: Option<Arc<G>>,
-    /// Whether it has taken all there is.
+    /// Whether the answer has taken all items of the sequence.
     pub is_whole: bool,
 }
 
@@ -67,18 +69,19 @@ impl<G> PartialEq for Grown<G> {
 }
 
 impl<G> Grown<G> {
-    /// The answer; none once it was let go.
+    /// Returns the answer; `None` after [`let_go`](Self::let_go).
     pub fn answer(&self) -> Option<&Arc<G>> {
         self.answer.as_ref()
     }
 
-    /// Keeps only what it is compared by: whoever has the answer itself keeps it from growing where it is.
+    /// Drops the answer and keeps only the version that is compared. While a snapshot holds the answer, the answer
+    /// cannot grow in place and is copied instead.
     pub fn let_go(&mut self) {
         self.answer = None;
     }
 }
 
-/// An answer, and how far it is.
+/// A cache entry: an answer with its input, and the revision of the sequence that it has taken.
 pub(super) struct Growth<G: Growing> {
     of: Mark,
     input: G::Input,
@@ -92,7 +95,7 @@ impl<G: Growing> Growth<G> {
         Self { of: revision.mark(), input: input.clone(), version: Arc::default(), answer }
     }
 
-    /// Takes what there is more than before, so many items at most.
+    /// Takes at most `at_most` new items of the sequence, after truncating the answer to the items that are unchanged.
     pub fn follow(&mut self, input: &G::Input, items: &Sequence<G::Item>, at_most: usize) {
         let kept = items.revision().kept_of(&self.of).min(items.len());
         self.of = items.revision().mark();
@@ -103,16 +106,16 @@ impl<G: Growing> Growth<G> {
             self.input = input.clone();
             self.change().turn_to(input);
         }
-        let mut left = at_most;
+        let mut remaining = at_most;
         loop {
             let count = self.answer.count();
             let together = items.from(count);
-            let taken = &together[..together.len().min(left)];
+            let taken = &together[..together.len().min(remaining)];
             if taken.is_empty() {
                 return;
             }
             self.change().take(taken);
-            left -= taken.len();
+            remaining -= taken.len();
             if self.answer.count() <= count {
                 return;
             }
@@ -130,7 +133,7 @@ impl<G: Growing> Growth<G> {
     }
 }
 
-/// The answers of one kind, of each sequence that lives.
+/// Cache entries of one kind of growing answer, one for each sequence in use.
 pub(super) struct Growths<G: Growing>(Vec<Growth<G>>);
 
 impl<G: Growing> Default for Growths<G> {
@@ -154,8 +157,9 @@ impl<G: Growing> Kept for Growths<G> {
 }
 
 impl<G: Growing> Growths<G> {
-    /// That which has most in common with a revision, to be grown outside of the store. Of others that have less in common
-    /// with it only those stay whose sequences live.
+    /// Removes and returns the entry that has most items in common with a revision, so that it grows outside of the
+    /// store. Among the others, keeps those in use: entries with no items in common as long as their sequence exists,
+    /// entries with some in common as long as a sequence has exactly their revision.
     pub fn take(&mut self, revision: &Revision) -> Option<Growth<G>> {
         let kept = |growth: &Growth<G>| revision.kept_of(&growth.of);
         let best = (0..self.0.len()).max_by_key(|i| kept(&self.0[*i])).filter(|i| kept(&self.0[*i]) > 0);

@@ -1,8 +1,8 @@
-//! Inputs that are shared: [`Shared`] and [`Same`].
+//! Inputs that are shared by reference: [`Shared`] and [`Same`].
 
 use std::sync::Arc;
 
-/// Something shared as an input, compared by what it holds only where it is not the very same.
+/// A shared input. Two are equal if they are the same allocation or if their contents are equal.
 #[derive(Debug)]
 pub struct Shared<T>(pub Arc<T>);
 
@@ -18,7 +18,7 @@ impl<T: PartialEq> PartialEq for Shared<T> {
     }
 }
 
-/// Something shared as an input: the same only as itself, whatever it holds.
+/// A shared input. Two are equal only if they are the same allocation; contents are not compared.
 #[derive(Debug)]
 pub struct Same<T: ?Sized>(pub Arc<T>);
 

@@ -1,25 +1,26 @@
-//! Work beside the window: what takes longer than a frame runs as a [`Job`], tells how far it is, and stops when nobody
-//! waits for it any more.
+//! Work in the background: work that takes longer than a frame runs as a [`Job`]. A job reports its progress, and stops
+//! when its handle is dropped.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// What a job does.
+/// Work of a job.
 pub type Work = Box<dyn FnOnce() + Send>;
 
-/// Who does the work.
+/// Runs work, such as a pool of worker threads.
 pub trait Workers {
-    /// Has it done, at once or beside.
+    /// Runs the work, at once or in the background.
     fn start(&self, work: Work);
 
-    /// The same of work that is short as a rule: who reads a clock may wait for its end, as long as nobody sees it.
+    /// Runs work that is usually short. An implementation with a clock may wait for its end, up to a time that the user
+    /// does not notice.
     fn start_short(&self, work: Work) {
         self.start(work);
     }
 }
 
-/// The same who take all that is given to them for short.
+/// Workers that run all work as [`start_short`](Workers::start_short).
 pub struct Short<'a>(pub &'a dyn Workers);
 
 impl Workers for Short<'_> {
@@ -28,7 +29,7 @@ impl Workers for Short<'_> {
     }
 }
 
-/// No threads: every job is done when it starts, as in a browser and in tests.
+/// Workers without threads: every job is done when it starts, as in a browser and in tests.
 #[derive(Clone, Copy, Debug)]
 pub struct AtOnce;
 
@@ -38,11 +39,11 @@ impl Workers for AtOnce {
     }
 }
 
-/// What a job and whoever waits for it share.
+/// State shared by a job and its handle.
 #[derive(Debug, Default)]
 struct Shared {
     stopped: AtomicBool,
-    /// Thousandths that are done.
+    /// Thousandths of the work that are done.
     done: AtomicU32,
 }
 
@@ -52,19 +53,19 @@ impl Shared {
     }
 }
 
-/// Told by a job as it goes.
+/// The job's end of the shared state: reports progress and reads whether to stop.
 #[derive(Clone, Debug)]
 pub struct Ticket(Arc<Shared>);
 
 impl Ticket {
-    /// How much is done, from 0 to 1; whether the rest is still wanted.
+    /// Reports the fraction done, from 0 to 1; returns whether the job is to continue.
     pub fn goes_on(&self, done: f64) -> bool {
         self.0.done.store((1e3 * done.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
         !self.0.stopped.load(Ordering::Relaxed)
     }
 }
 
-/// Work that is under way. Dropped, it stops at its next word.
+/// Handle of work that is under way. When it is dropped, the work stops at its next report of progress.
 #[derive(Debug)]
 pub struct Job<T> {
     result: Receiver<T>,
@@ -72,7 +73,7 @@ pub struct Job<T> {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts it; `wake` is called when it has ended.
+    /// Starts the work; calls `wake` when the work has ended.
     pub fn start(
         workers: &dyn Workers,
         wake: impl FnOnce() + Send + 'static,
@@ -83,29 +84,29 @@ impl<T: Send + 'static> Job<T> {
         let ticket = Ticket(shared.clone());
         workers.start(Box::new(move || {
             let done = work(&ticket);
-            // Nobody may wait any more.
+            // The receiver may have been dropped.
             let _ = send.send(done);
             wake();
         }));
         Self { result, shared }
     }
 
-    /// How much is done, from 0 to 1.
+    /// Returns the fraction done, from 0 to 1.
     pub fn progress(&self) -> f64 {
         f64::from(self.shared.done.load(Ordering::Relaxed)) / 1e3
     }
 
-    /// Has it stop at its next word.
+    /// Requests a stop, which takes effect at the next report of progress.
     pub fn stop(&self) {
         self.shared.stop();
     }
 
-    /// Waits for its result; a job that broke off has none.
+    /// Waits for the result; `None` if the job ended without one.
     pub fn wait(self) -> Option<T> {
         self.result.recv().ok()
     }
 
-    /// Whether its result is there; a job that broke off has none.
+    /// Returns the result if the job has ended, without waiting.
     pub fn poll(&self) -> Poll<T> {
         match self.result.try_recv() {
             Ok(result) => Poll::Done(result),
@@ -121,13 +122,13 @@ impl<T> Drop for Job<T> {
     }
 }
 
-/// How a job stands.
+/// State of a job.
 #[derive(Debug)]
 pub enum Poll<T> {
-    /// Under way.
+    /// The job is under way.
     Working,
-    /// Its result, given once.
+    /// The result; it is returned once.
     Done(T),
-    /// It ended without one.
+    /// The job ended without a result.
     Broken,
 }

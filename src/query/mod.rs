@@ -1,17 +1,17 @@
-//! What is derived from other things is a [`Query`]: it is asked of [`Queries`], made when its input changes, and kept
-//! until then. This is the one place where anything derived is kept.
+//! A [`Query`] derives an answer from an input. [`Queries`] computes the answer when the input changes, and caches it
+//! until then. This is the only cache of the program.
 //!
 //! | what | how |
 //! |---|---|
 //! | input | a value: all that the answer depends on, and nothing else |
 //! | answer | shared, never changed |
-//! | [`Queries::ask`] | answers at once |
-//! | [`Queries::ask_beside`] | answers at once what is known, else with the last answer while work goes on beside |
-//! | [`Queries::grow`] | takes up what is new in a [`Sequence`], in portions |
+//! | [`Queries::ask`] | returns the answer at once |
+//! | [`Queries::ask_beside`] | returns the answer if it is known, else the last answer while work runs in the background |
+//! | [`Queries::grow`] | extends the answer by the new items of a [`Sequence`], in portions |
 //!
-//! An answer follows from its input alone, because nothing else is given to the work. Of several inputs asked about one
-//! after the other the newest counts: work on an older one stops, or ends first if it is short. Where there are no
-//! threads the work is done in portions, one for each time it is asked about.
+//! An answer depends on its input alone, because the work receives nothing else. Of several inputs requested one after
+//! the other, the newest counts: work on an older one stops, or ends first if it is short. Without threads the work is
+//! done in portions, one at each request.
 
 mod asked;
 mod growing;

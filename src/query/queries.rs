@@ -1,4 +1,4 @@
-//! [`Queries`]: where answers are kept.
+//! [`Queries`]: the cache of answers.
 
 use std::any::TypeId;
 use std::collections::HashMap;
@@ -13,16 +13,16 @@ use super::question::{Query, answered};
 use super::sequence::Sequence;
 use super::slot::{Kept, Slot, Working};
 
-/// Answers that are known, and the work on others. Copies share both.
+/// Cache of answers, with the work in progress on new ones. Clones share both.
 #[derive(Clone)]
 pub struct Queries(Arc<Store>);
 
-/// The same from an input, which is kept in them: they end when nobody else has them.
+/// Weak reference to [`Queries`], for an input that is itself cached there: it does not keep the cache alive.
 #[derive(Clone)]
 pub struct Asking(Weak<Store>);
 
 impl Asking {
-    /// They, or none that are known.
+    /// Returns the cache, or an empty one if it no longer exists.
     pub fn queries(&self) -> Queries {
         self.0.upgrade().map_or_else(Queries::default, Queries)
     }
@@ -35,32 +35,33 @@ impl fmt::Debug for Asking {
 }
 
 struct Store {
-    /// One for each query that was asked, by its own type.
+    /// One slot for each type of query that was requested.
     slots: Mutex<HashMap<TypeId, Box<dyn Kept>>>,
-    place: Mutex<Place>,
+    execution: Mutex<Execution>,
 }
 
-/// How many stores there are: one that keeps itself would never go.
-static STORES: AtomicUsize = AtomicUsize::new(0);
+/// Number of stores in existence. A store that referred to itself would never be dropped; tests find that by this
+/// count.
+static STORE_COUNT: AtomicUsize = AtomicUsize::new(0);
 
 impl Drop for Store {
     fn drop(&mut self) {
-        STORES.fetch_sub(1, Ordering::SeqCst);
+        STORE_COUNT.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
-/// Who works, and who is told.
-struct Place {
+/// How background work is run, and the callback after its end.
+struct Execution {
     workers: Option<Arc<dyn Workers + Send + Sync>>,
     wake: Option<Arc<dyn Fn() + Send + Sync>>,
 }
 
 impl Default for Queries {
-    /// Work beside is done at once.
+    /// Returns an empty cache that does background work at once.
     fn default() -> Self {
-        let place = Place { workers: Some(Arc::new(AtOnce)), wake: None };
-        STORES.fetch_add(1, Ordering::SeqCst);
-        Self(Arc::new(Store { slots: Mutex::default(), place: Mutex::new(place) }))
+        let execution = Execution { workers: Some(Arc::new(AtOnce)), wake: None };
+        STORE_COUNT.fetch_add(1, Ordering::SeqCst);
+        Self(Arc::new(Store { slots: Mutex::default(), execution: Mutex::new(execution) }))
     }
 }
 
@@ -71,32 +72,32 @@ impl fmt::Debug for Queries {
 }
 
 impl Queries {
-    /// For an input that asks others.
+    /// Returns a weak reference, for an input that makes requests of its own.
     pub fn asking(&self) -> Asking {
         Asking(Arc::downgrade(&self.0))
     }
 
-    /// Has work done beside by somebody from now on.
+    /// Sets the workers that run background work from now on.
     pub fn hire(&self, workers: Arc<dyn Workers + Send + Sync>) {
-        self.place().workers = Some(workers);
+        self.execution().workers = Some(workers);
     }
 
-    /// From now on work is done in portions, one for each time it is asked about.
+    /// Does work in portions from now on, one at each request.
     pub fn work_in_portions(&self) {
-        self.place().workers = None;
+        self.execution().workers = None;
     }
 
-    /// Calls this whenever work beside has ended.
+    /// Sets the callback for the end of background work.
     pub fn wakes(&self, wake: impl Fn() + Send + Sync + 'static) {
-        self.place().wake = Some(Arc::new(wake));
+        self.execution().wake = Some(Arc::new(wake));
     }
 
-    /// The answer, at once.
+    /// Returns the answer, computed at once if it is not cached.
     pub fn ask<Q: Query>(&self, input: &Q::Input) -> Arc<Q::Answer> {
         self.ask_if::<Q>(|known| known == input, || input.clone())
     }
 
-    /// The same of an input that is made only if it is not the one that is known.
+    /// Returns the answer as [`ask`](Self::ask) does, but builds the input only if `is_known` rejects the cached one.
     pub fn ask_if<Q: Query>(
         &self,
         is_known: impl FnOnce(&Q::Input) -> bool,
@@ -106,20 +107,21 @@ impl Queries {
             return answer;
         }
         let input = input();
-        // The slots are free meanwhile: what is asked may ask others.
+        // The lock is not held meanwhile: the work may make requests of its own.
         let answer = Arc::new(answered::<Q>(input.clone()));
         self.slot::<Q, _>(|slot| slot.keep(input, answer.clone()));
         answer
     }
 
-    /// The answer if it is known; if not, it is worked on beside, and there is the last one so long.
+    /// Returns the answer if it is cached. If not, starts or continues background work and returns the last answer
+    /// meanwhile.
     pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> Asked<Q::Answer> {
         if let Some(replaced) = self.slot::<Q, _>(|slot| slot.replaced_by(input)) {
             let (workers, wake) = {
-                let place = self.place();
-                (place.workers.clone(), place.wake.clone())
+                let execution = self.execution();
+                (execution.workers.clone(), execution.wake.clone())
             };
-            // Begun outside of the slots, as work that is done at once may ask others.
+            // Begun without holding the lock, as work that is done at once may make requests of its own.
             let work = Working::begin(input.clone(), replaced, workers.as_deref(), wake);
             self.slot::<Q, _>(|slot| slot.work_on(work));
         } else if let Some(mut work) = self.slot::<Q, _>(|slot| slot.take_portions()) {
@@ -129,7 +131,7 @@ impl Queries {
         self.slot::<Q, _>(|slot| slot.asked(input))
     }
 
-    /// The answer, if it is known.
+    /// Returns the answer if it is cached.
     pub fn known<Q: Query>(&self, input: &Q::Input) -> Option<Arc<Q::Answer>> {
         self.slot::<Q, _>(|slot| {
             slot.collect();
@@ -137,12 +139,12 @@ impl Queries {
         })
     }
 
-    /// The newest answer, whatever it is of; none if there is none.
+    /// Returns the newest answer, whatever its input; `None` if there is none.
     pub fn last<Q: Query>(&self) -> Option<Arc<Q::Answer>> {
         self.slot::<Q, _>(|slot| slot.last())
     }
 
-    /// How much of the work beside is done, from 0 to 1, while it is under way.
+    /// Returns the fraction of the background work that is done, from 0 to 1; `None` if no work is under way.
     pub fn progress<Q: Query>(&self) -> Option<f64> {
         self.slot::<Q, _>(|slot| {
             slot.collect();
@@ -150,35 +152,37 @@ impl Queries {
         })
     }
 
-    /// The newest answer, and how it stands to the input that was asked about last; none if nothing was asked beside.
+    /// Returns the newest answer and its state relative to the last input requested; `None` without an answer and
+    /// without work.
     pub fn newest<Q: Query>(&self) -> Option<Asked<Q::Answer>> {
         self.slot::<Q, _>(|slot| slot.newest())
     }
 
-    /// Whether any work beside is under way.
+    /// Returns whether any background work is under way.
     pub fn is_busy(&self) -> bool {
         self.slots().values_mut().any(|slot| slot.works())
     }
 
-    /// Stops work that is under way; it is not begun again until the input changes.
+    /// Stops work that is under way; it does not start again until the input changes.
     pub fn stop<Q: Query>(&self) {
         self.slot::<Q, _>(Slot::stop);
     }
 
-    /// Gives up work that is under way; what is known stays, and what is not is begun anew when it is asked about.
+    /// Stops work that is under way and forgets the last answer; the next request starts the work anew. Without such
+    /// work, nothing changes.
     pub fn give_up<Q: Query>(&self) {
         if self.progress::<Q>().is_some() {
             self.forget::<Q>();
         }
     }
 
-    /// Stops work and forgets the answer.
+    /// Stops the work and removes the answer from the cache.
     pub fn forget<Q: Query>(&self) {
         self.slots().remove(&TypeId::of::<Slot<Q>>());
     }
 
-    /// The answer that grows with a sequence, once it has taken what there is more than before, so many items at most.
-    /// Nothing is copied while nobody else keeps the answer.
+    /// Returns the answer that grows with a sequence, after it has taken at most `at_most` new items. The answer grows
+    /// in execution while nothing else refers to it; otherwise it is copied.
     pub fn grow<G: Growing>(&self, input: &G::Input, items: &Sequence<G::Item>, at_most: usize) -> Grown<G> {
         let known = self.kept(|growths: &mut Growths<G>| growths.take(items.revision()));
         let mut growth = known.unwrap_or_else(|| Growth::begin(items.revision(), input));
@@ -188,19 +192,19 @@ impl Queries {
         grown
     }
 
-    /// How many answers are kept: of a growing one, one for each sequence.
+    /// Returns the number of cached answers; a growing answer counts once for each sequence.
     pub fn count(&self) -> usize {
         self.slots().values().map(|slot| slot.count()).sum()
     }
 
-    /// Stops all work and forgets all answers.
+    /// Stops all work and removes all answers.
     pub fn forget_all(&self) {
         self.slots().clear();
     }
 
-    /// How many stores there are in this program. None is left once every window and recording is gone.
+    /// Returns the number of stores in this program; zero after every window and recording has been dropped.
     pub fn stores() -> usize {
-        STORES.load(Ordering::SeqCst)
+        STORE_COUNT.load(Ordering::SeqCst)
     }
 
     fn slot<Q: Query, T>(&self, with: impl FnOnce(&mut Slot<Q>) -> T) -> T {
@@ -212,17 +216,17 @@ impl Queries {
         let slot = slots.entry(TypeId::of::<S>()).or_insert_with(|| Box::new(S::default()));
         match slot.as_any().downcast_mut() {
             Some(slot) => with(slot),
-            // Of its own type there is no other.
+            // Unreachable: the key is the type itself.
             None => with(&mut S::default()),
         }
     }
 
     fn slots(&self) -> MutexGuard<'_, HashMap<TypeId, Box<dyn Kept>>> {
-        // What a panic left is whole: slots change in one go.
+        // A panic leaves slots consistent: each changes in one step.
         self.0.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn place(&self) -> MutexGuard<'_, Place> {
-        self.0.place.lock().unwrap_or_else(PoisonError::into_inner)
+    fn execution(&self) -> MutexGuard<'_, Execution> {
+        self.0.execution.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

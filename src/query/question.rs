@@ -1,72 +1,72 @@
-//! A [`Query`]: a question whose answer follows from its input alone.
+//! [`Query`]: a computation whose answer depends on its input alone.
 
-/// A question whose answer follows from its input alone, with the work of answering it.
+/// A computation whose answer depends on its input alone, with its work in progress.
 pub trait Query: Send + Sized + 'static {
-    /// All that the answer depends on. Copies are made only where it has changed.
+    /// Everything that the answer depends on. It is cloned only when it has changed.
     type Input: Clone + PartialEq + Send + 'static;
-    /// What it comes to.
+    /// Result of the computation.
     type Answer: Send + Sync + 'static;
 
-    /// Whether work that has begun ends although another input is asked about by then: short work does, so that answers
-    /// keep coming while the input changes all the time.
+    /// Whether work under way runs to its end although another input has been requested meanwhile. Short work does, so
+    /// that answers keep coming while the input changes continuously.
     const ENDS: bool = false;
 
-    /// The work, yet to be done.
+    /// Returns the work for an input, not yet started.
     fn begin(input: Self::Input) -> Self;
 
-    /// Does a portion of it, best of some milliseconds at most. One that takes longer tells how much is done of all of
-    /// it, from 0 to 1, and hears whether the rest is still wanted.
+    /// Does a portion of the work, a few milliseconds at most if possible. A longer portion calls `goes_on` with the
+    /// fraction done, from 0 to 1, and stops if it returns `false`.
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer>;
 
-    /// Takes out of an input that was answered what it is not compared by: see [`Grown::let_go`](super::Grown::let_go).
+    /// Drops those parts of a cached input that are not compared: see [`Grown::let_go`](super::Grown::let_go).
     fn let_go(_: &mut Self::Input) {}
 }
 
-/// Told how much is done, from 0 to 1; says whether the rest is still wanted.
+/// Progress callback: takes the fraction done, from 0 to 1; returns whether the work is to continue.
 pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
 
-/// The same of a part of the work, from one share of the whole to another.
+/// Returns a progress callback for a part of the work: maps 0 to 1 to the interval `from` to `to` of the whole.
 pub fn part(goes_on: Watch<'_>, [from, to]: [f64; 2]) -> impl FnMut(f64) -> bool {
     move |done| goes_on(from + (to - from) * done)
 }
 
-/// What a portion of work has come to.
+/// Outcome of a portion of work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Portion<A> {
-    /// How much is done of all of it, from 0 to 1.
+    /// More work remains. Fraction done of the whole, from 0 to 1.
     More(f64),
     /// The answer.
     Done(A),
-    /// Nothing: it heard that the rest is not wanted.
+    /// No answer: the progress callback ended the work.
     Stopped,
 }
 
-/// The answer to an input, at once and not kept.
+/// Returns the answer to an input, computed at once and without a cache entry.
 pub fn answered<Q: Query>(input: Q::Input) -> Q::Answer {
     let mut work = Q::begin(input);
     loop {
-        // All of it is wanted, so it never stops.
+        // The callback always continues, so the work never stops early.
         if let Portion::Done(answer) = work.go_on(&mut |_| true) {
             return answer;
         }
     }
 }
 
-/// A query that is answered in one portion.
+/// A query that is computed in one portion.
 pub trait Quick: 'static {
     /// As [`Query::Input`].
     type Input: Clone + PartialEq + Send + 'static;
     /// As [`Query::Answer`].
     type Answer: Send + Sync + 'static;
 
-    /// The answer.
+    /// Returns the answer.
     fn answer(input: &Self::Input) -> Self::Answer;
 
     /// As [`Query::let_go`].
     fn let_go(_: &mut Self::Input) {}
 }
 
-/// The work of a quick query.
+/// Work of a quick query.
 pub struct Whole<Q: Quick>(Q::Input);
 
 impl<Q: Quick> Query for Whole<Q> {

@@ -1,19 +1,19 @@
-//! A [`Sequence`]: items that are mostly appended, shared in pieces, with a [`Revision`] that tells how many of the
-//! first items are still those of before.
+//! [`Sequence`]: items that are mostly appended, stored in shared pieces. Its [`Revision`] tells how many of the first
+//! items are unchanged since an earlier revision.
 
 use std::ops::Index;
 use std::sync::{Arc, Weak};
 
-/// Items in a piece: a copy that is appended to copies one piece at most.
-const PIECE: usize = 256;
+/// Number of items in a piece. Appending to a clone copies one piece at most.
+const PIECE_LEN: usize = 256;
 
-/// How many changes back are remembered.
-const REMEMBERED: usize = 32;
+/// Maximum number of earlier revisions that a revision remembers.
+const MAX_REMEMBERED: usize = 32;
 
-/// Items in order. Copies share them, so a copy costs little however long it is.
+/// Items in order. Clones share the items, so that cloning is cheap at any length.
 #[derive(Clone, Debug)]
 pub struct Sequence<T> {
-    /// All of the same length but the last.
+    /// All pieces but the last have `PIECE_LEN` items.
     pieces: Vec<Arc<Vec<T>>>,
     revision: Revision,
 }
@@ -25,23 +25,23 @@ impl<T> Default for Sequence<T> {
 }
 
 impl<T: Clone> Sequence<T> {
-    /// One more item at the end.
+    /// Appends an item.
     pub fn push(&mut self, item: T) {
-        // A copy may go on in another way.
+        // Another clone may be extended differently.
         if self.revision.is_shared() {
             self.revision = self.revision.changed_after(self.len());
         }
         match self.pieces.last_mut() {
-            Some(last) if last.len() < PIECE => Arc::make_mut(last).push(item),
+            Some(last) if last.len() < PIECE_LEN => Arc::make_mut(last).push(item),
             _ => {
-                let mut piece = Vec::with_capacity(PIECE);
+                let mut piece = Vec::with_capacity(PIECE_LEN);
                 piece.push(item);
                 self.pieces.push(Arc::new(piece));
             }
         }
     }
 
-    /// Puts another item in place of the last; nothing happens if there is none.
+    /// Replaces the last item; an empty sequence stays empty.
     pub fn replace_last(&mut self, item: T) {
         self.revision = self.revision.changed_after(self.len().saturating_sub(1));
         if let Some(last) = self.pieces.last_mut().and_then(|last| Arc::make_mut(last).last_mut()) {
@@ -49,69 +49,70 @@ impl<T: Clone> Sequence<T> {
         }
     }
 
-    /// Keeps the first so many items.
+    /// Keeps the first `count` items.
     pub fn truncate(&mut self, count: usize) {
         if count >= self.len() {
             return;
         }
         self.revision = self.revision.changed_after(count);
-        self.pieces.truncate(count.div_ceil(PIECE));
-        if let Some(last) = self.pieces.last_mut().filter(|_| !count.is_multiple_of(PIECE)) {
-            Arc::make_mut(last).truncate(count % PIECE);
+        self.pieces.truncate(count.div_ceil(PIECE_LEN));
+        if let Some(last) = self.pieces.last_mut().filter(|_| !count.is_multiple_of(PIECE_LEN)) {
+            Arc::make_mut(last).truncate(count % PIECE_LEN);
         }
     }
 
-    /// All items in one vector.
+    /// Returns all items in one vector.
     pub fn to_vec(&self) -> Vec<T> {
         self.iter().cloned().collect()
     }
 }
 
 impl<T> Sequence<T> {
-    /// Which revision it is.
+    /// Returns the revision.
     pub fn revision(&self) -> &Revision {
         &self.revision
     }
 
-    /// How many items there are.
+    /// Returns the number of items.
     pub fn len(&self) -> usize {
-        self.pieces.last().map_or(0, |last| (self.pieces.len() - 1) * PIECE + last.len())
+        self.pieces.last().map_or(0, |last| (self.pieces.len() - 1) * PIECE_LEN + last.len())
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no items.
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()
     }
 
-    /// An item by its place.
+    /// Returns an item by its index.
     pub fn get(&self, place: usize) -> Option<&T> {
-        self.pieces.get(place / PIECE)?.get(place % PIECE)
+        self.pieces.get(place / PIECE_LEN)?.get(place % PIECE_LEN)
     }
 
-    /// The first item.
+    /// Returns the first item.
     pub fn first(&self) -> Option<&T> {
         self.get(0)
     }
 
-    /// The last item.
+    /// Returns the last item.
     pub fn last(&self) -> Option<&T> {
         self.pieces.last()?.last()
     }
 
-    /// All items, in order.
+    /// Iterates over all items, in order.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> + Clone {
         self.pieces.iter().flat_map(|piece| piece.iter())
     }
 
-    /// Items from a place on, as many as lie together; none past the end.
+    /// Returns the items from an index to the end of its piece; empty past the end.
     pub fn from(&self, place: usize) -> &[T] {
-        self.pieces.get(place / PIECE).and_then(|piece| piece.get(place % PIECE..)).unwrap_or_default()
+        self.pieces.get(place / PIECE_LEN).and_then(|piece| piece.get(place % PIECE_LEN..)).unwrap_or_default()
     }
 
-    /// How many of the first items have a property that only first items have.
+    /// Returns the number of leading items that satisfy `is_first`, by bisection. No item after the first failure may
+    /// satisfy it.
     pub fn partition_point(&self, is_first: impl Fn(&T) -> bool) -> usize {
         let whole = self.pieces.partition_point(|piece| piece.last().is_some_and(&is_first));
-        self.pieces.get(whole).map_or(self.len(), |piece| whole * PIECE + piece.partition_point(is_first))
+        self.pieces.get(whole).map_or(self.len(), |piece| whole * PIECE_LEN + piece.partition_point(is_first))
     }
 }
 
@@ -119,7 +120,7 @@ impl<T> Index<usize> for Sequence<T> {
     type Output = T;
 
     fn index(&self, place: usize) -> &T {
-        &self.pieces[place / PIECE][place % PIECE]
+        &self.pieces[place / PIECE_LEN][place % PIECE_LEN]
     }
 }
 
@@ -141,7 +142,7 @@ impl<T: Clone> FromIterator<T> for Sequence<T> {
     }
 }
 
-/// By what they hold, whatever their revisions.
+/// Compares the items; revisions do not matter.
 impl<T: PartialEq> PartialEq for Sequence<T> {
     fn eq(&self, other: &Self) -> bool {
         let mut pairs = self.pieces.iter().zip(&other.pieces);
@@ -161,60 +162,61 @@ impl<T: PartialEq> PartialEq<Vec<T>> for Sequence<T> {
     }
 }
 
-/// As long as it is the same, items are only appended.
+/// Identifies a state of a sequence. As long as the revision is the same, items have only been appended.
 #[derive(Clone, Debug)]
 pub struct Revision {
     own: Arc<()>,
-    /// Shared by those alone that are this one, not by those that remember it.
-    had: Arc<()>,
-    /// Earlier ones, and how many of their first items are still the same.
+    /// Shared by clones of this revision only, not by later revisions that remember it.
+    alive: Arc<()>,
+    /// Earlier revisions, and how many of their first items are unchanged.
     before: Vec<(Arc<()>, usize)>,
 }
 
-/// A revision to be compared with later ones.
+/// Weak reference to a revision, for comparison with later ones.
 #[derive(Clone, Debug)]
 pub struct Mark {
     own: Weak<()>,
-    had: Weak<()>,
+    alive: Weak<()>,
 }
 
 impl Mark {
-    /// Whether a sequence has it still.
+    /// Returns whether a sequence still has this revision.
     pub fn is_had(&self) -> bool {
-        self.had.strong_count() > 0
+        self.alive.strong_count() > 0
     }
 
-    /// Whether no sequence has it, or remembers that it had it.
+    /// Returns whether no sequence has this revision or remembers it.
     pub fn has_ended(&self) -> bool {
         self.own.strong_count() == 0
     }
 }
 
 impl Revision {
-    /// Another one than all before.
+    /// Returns a revision that differs from all others.
     fn new() -> Self {
-        Self { own: Arc::new(()), had: Arc::new(()), before: Vec::new() }
+        Self { own: Arc::new(()), alive: Arc::new(()), before: Vec::new() }
     }
 
-    /// What it becomes where all items change but the first so many.
+    /// Returns the revision after a change of all items but the first `kept`.
     fn changed_after(&self, kept: usize) -> Self {
         let older = self.before.iter().map(|(earlier, count)| (earlier.clone(), kept.min(*count)));
         let known = std::iter::once((self.own.clone(), kept)).chain(older).filter(|(_, count)| *count > 0);
-        let before = known.take(REMEMBERED).collect();
+        let before = known.take(MAX_REMEMBERED).collect();
         Self { before, ..Self::new() }
     }
 
-    /// Whether another sequence has it too.
+    /// Returns whether another sequence has this revision too.
     fn is_shared(&self) -> bool {
-        Arc::strong_count(&self.had) > 1
+        Arc::strong_count(&self.alive) > 1
     }
 
-    /// To be compared with later ones.
+    /// Returns a weak reference, for comparison with later revisions.
     pub fn mark(&self) -> Mark {
-        Mark { own: Arc::downgrade(&self.own), had: Arc::downgrade(&self.had) }
+        Mark { own: Arc::downgrade(&self.own), alive: Arc::downgrade(&self.alive) }
     }
 
-    /// How many of the first items are those of an earlier revision: all if it is the same, none if nothing is known of it.
+    /// Returns how many first items are unchanged since an earlier revision: `usize::MAX` if it is this revision, 0 if
+    /// it is unknown.
     pub fn kept_of(&self, earlier: &Mark) -> usize {
         let is_it = |own: &Arc<()>| std::ptr::eq(Arc::as_ptr(own), earlier.own.as_ptr());
         if is_it(&self.own) {

@@ -1,4 +1,4 @@
-//! A [`Slot`]: the newest answer of a query, and the work on the next.
+//! [`Slot`]: the newest answer of a query, and the work on the next one.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -7,29 +7,29 @@ use super::asked::{Asked, State};
 use super::job::{Job, Poll, Workers};
 use super::question::{Portion, Query};
 
-/// The answer that is known, with what it is of, and what is under way.
+/// Cache slot of one query: the newest answer with its input, and the work under way.
 pub(super) struct Slot<Q: Query> {
     known: Option<(Q::Input, Arc<Q::Answer>)>,
     working: Option<Working<Q>>,
-    /// What is not worked on again: it was stopped, or broke off.
-    left: Option<(Q::Input, State)>,
+    /// Input whose work was stopped or ended without an answer; it is not tried again.
+    given_up: Option<(Q::Input, State)>,
 }
 
 impl<Q: Query> Default for Slot<Q> {
     fn default() -> Self {
-        Self { known: None, working: None, left: None }
+        Self { known: None, working: None, given_up: None }
     }
 }
 
-/// A slot of any query.
+/// A slot of any query, without its type.
 pub(super) trait Kept: Any + Send {
-    /// Whether work is under way.
+    /// Returns whether work is under way.
     fn works(&mut self) -> bool;
 
-    /// How many answers are kept.
+    /// Number of cached answers.
     fn count(&self) -> usize;
 
-    /// To be told from others.
+    /// Returns itself, to be cast to its own type.
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
@@ -54,19 +54,19 @@ pub(super) struct Working<Q: Query> {
     by: By<Q>,
 }
 
-/// Who does it.
+/// Where the work is done.
 enum By<Q: Query> {
-    /// Somebody beside.
+    /// In the background, by a worker.
     Job(Job<Option<Q::Answer>>),
-    /// Whoever asks, a portion each time; and how much is done.
+    /// By the caller, a portion at each request; with the fraction done.
     Portions(Q, f64),
-    /// It has ended.
+    /// Nowhere any more: the work has ended.
     Done(Q::Answer),
 }
 
 impl<Q: Query> Working<Q> {
-    /// Begins it, with somebody who works beside or in portions. It starts when what it replaces has stopped: two searches
-    /// for one answer would take processors from each other, and from the window.
+    /// Begins work, with workers in the background or else in portions. It starts when the work that it replaces has
+    /// stopped: two computations of the same query would compete for processors, and with the window.
     pub fn begin(
         of: Q::Input,
         replaced: Replaced<Q>,
@@ -103,12 +103,12 @@ impl<Q: Query> Working<Q> {
         Self { of, by: By::Job(job) }
     }
 
-    /// Does a portion, if whoever asks does the work.
+    /// Does a portion, if the work is done by the caller.
     pub fn go_on(&mut self) {
         if let By::Portions(work, share) = &mut self.by {
             match work.go_on(&mut |_| true) {
                 Portion::More(done) => *share = done,
-                // All of it is wanted.
+                // Unreachable: the callback always continues.
                 Portion::Stopped => {}
                 Portion::Done(answer) => self.by = By::Done(answer),
             }
@@ -116,7 +116,7 @@ impl<Q: Query> Working<Q> {
     }
 }
 
-/// Work on another input that was told to stop, and may not have heard it yet.
+/// Work on an earlier input that was told to stop and may still be running.
 pub(super) struct Replaced<Q: Query>(Option<Job<Option<Q::Answer>>>);
 
 impl<Q: Query> Replaced<Q> {
@@ -131,64 +131,65 @@ impl<Q: Query> Replaced<Q> {
     }
 }
 
-/// Called when work has ended.
+/// Callback after the end of work.
 type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl<Q: Query> Slot<Q> {
-    /// The answer, if it is of this input.
+    /// Returns the answer if `is_of` accepts its input.
     pub fn known(&self, is_of: impl FnOnce(&Q::Input) -> bool) -> Option<Arc<Q::Answer>> {
         self.known.as_ref().filter(|(of, _)| is_of(of)).map(|(_, answer)| answer.clone())
     }
 
-    /// The newest answer.
+    /// Returns the newest answer.
     pub fn last(&mut self) -> Option<Arc<Q::Answer>> {
         self.collect();
         self.known.as_ref().map(|(_, answer)| answer.clone())
     }
 
-    /// Takes an answer; work on the same is wanted no more.
+    /// Stores an answer and drops work on the same input.
     pub fn keep(&mut self, mut of: Q::Input, answer: Arc<Q::Answer>) {
         self.working = self.working.take().filter(|working| working.of != of);
         Q::let_go(&mut of);
         self.known = Some((of, answer));
-        self.left = None;
+        self.given_up = None;
     }
 
-    /// If work on an input is to begin, what it replaces: the input is neither known nor left, and nothing is under way that
-    /// ends first. Other work stops.
+    /// Decides whether work on an input is to begin: the input is neither known nor given up, and no work is under way
+    /// that runs to its end. If so, returns the work that it replaces. Stops work on another input, unless that runs to
+    /// its end.
     pub fn replaced_by(&mut self, input: &Q::Input) -> Option<Replaced<Q>> {
         self.collect();
         let stays = |work: &mut Working<Q>| Q::ENDS || work.of == *input;
         let replaced = Replaced::by_another(self.working.take_if(|work| !stays(work)));
-        self.left = self.left.take().filter(|(of, _)| of == input);
+        self.given_up = self.given_up.take().filter(|(of, _)| of == input);
         let known = self.known.as_ref().is_some_and(|(of, _)| of == input);
-        let new = !(known || self.left.is_some() || self.working.is_some());
+        let new = !(known || self.given_up.is_some() || self.working.is_some());
         new.then_some(replaced)
     }
 
-    /// Work that whoever asks does, to be done outside of the slot.
+    /// Removes and returns work that is done by the caller, to be continued without holding the lock.
     pub fn take_portions(&mut self) -> Option<Working<Q>> {
         let here = self.working.as_ref().is_some_and(|working| matches!(working.by, By::Portions(..)));
         if here { self.working.take() } else { None }
     }
 
-    /// Takes work; that before is wanted no more.
+    /// Stores work in progress and drops the work before it.
     pub fn work_on(&mut self, working: Working<Q>) {
         self.working = Some(working);
-        self.left = None;
+        self.given_up = None;
         self.collect();
     }
 
-    /// Takes what work has come to.
+    /// Stores the answer of work that has ended.
     pub fn collect(&mut self) {
         let Some(Working { mut of, by }) = self.working.take() else { return };
         let by = match by {
             By::Job(job) => match job.poll() {
                 Poll::Working => By::Job(job),
                 Poll::Done(Some(answer)) => By::Done(answer),
-                // Nobody stops work but by letting go of it.
+                // Work is stopped only together with dropping its handle, so a job without an answer is a fault.
                 Poll::Done(None) | Poll::Broken => {
-                    self.left = Some((of, State::Broken));
+                    self.given_up = Some((of, State::Broken));
                     return;
                 }
             },
@@ -203,11 +204,11 @@ impl<Q: Query> Slot<Q> {
         }
     }
 
-    /// The newest answer, and what it is to an input.
+    /// Returns the newest answer and its state relative to an input.
     pub fn asked(&self, input: &Q::Input) -> Asked<Q::Answer> {
         let last = self.known.as_ref().map(|(_, answer)| answer.clone());
         let is_known = self.known.as_ref().is_some_and(|(of, _)| of == input);
-        let state = match (&self.working, &self.left) {
+        let state = match (&self.working, &self.given_up) {
             _ if is_known => State::Known,
             (Some(_), _) => State::UnderWay(self.progress().unwrap_or(0.0)),
             (None, Some((_, state))) => *state,
@@ -216,11 +217,11 @@ impl<Q: Query> Slot<Q> {
         Asked { last, state }
     }
 
-    /// The newest answer, and what it is to what was asked last.
+    /// Returns the newest answer and its state relative to the last input requested.
     pub fn newest(&mut self) -> Option<Asked<Q::Answer>> {
         self.collect();
         let last = self.known.as_ref().map(|(_, answer)| answer.clone());
-        let state = match (self.progress(), &self.left, &last) {
+        let state = match (self.progress(), &self.given_up, &last) {
             (Some(share), ..) => State::UnderWay(share),
             (None, Some((_, state)), _) => *state,
             (None, None, Some(_)) => State::Known,
@@ -229,7 +230,7 @@ impl<Q: Query> Slot<Q> {
         Some(Asked { last, state })
     }
 
-    /// How much of the work is done, from 0 to 1.
+    /// Returns the fraction of the work that is done, from 0 to 1.
     pub fn progress(&self) -> Option<f64> {
         self.working.as_ref().map(|working| match &working.by {
             By::Job(job) => job.progress(),
@@ -241,7 +242,7 @@ impl<Q: Query> Slot<Q> {
     /// Stops the work.
     pub fn stop(&mut self) {
         if let Some(working) = self.working.take() {
-            self.left = Some((working.of, State::Stopped));
+            self.given_up = Some((working.of, State::Stopped));
         }
     }
 }

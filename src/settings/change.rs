@@ -1,4 +1,5 @@
-//! Settings by key: part of a TOML table laid over a value, as files, edits and the command line name it.
+//! Settings by key: a partial TOML table is merged into a value, with the keys that files, edits and the command line
+//! use.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -6,22 +7,22 @@ use toml::{Table, Value};
 
 use crate::settings::range::{clipped, shortened};
 
-/// The word that takes a key out, so that its default returns.
+/// Word that removes a key, so that its default applies.
 pub const DEFAULT: &str = "default";
 
-/// A value with some of its keys changed; tables inside it are changed key by key, and the word `default` takes a key
-/// out.
+/// Returns a value with some of its keys changed. Nested tables are changed key by key; the word `default` removes a
+/// key.
 ///
 /// # Errors
-/// What key or value is wrong, and what would be right.
+/// Says which key or value is wrong, and what is accepted.
 pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
     read(&laid(value, change)?)
 }
 
-/// The keys of a value with some of them changed, not yet read as a value.
+/// Returns the keys of a value with some of them changed, not yet converted to a value.
 ///
 /// # Errors
-/// Which number is not finite.
+/// Says which number is not finite.
 pub fn laid<T: Serialize>(value: &T, change: &Table) -> Result<Table, String> {
     if let Some(key) = not_finite(change) {
         return Err(format!("{} is not a finite number: want one", clipped(&key)));
@@ -31,49 +32,49 @@ pub fn laid<T: Serialize>(value: &T, change: &Table) -> Result<Table, String> {
     Ok(table)
 }
 
-/// A value by its keys.
+/// Converts a table of keys to a value.
 ///
 /// # Errors
-/// What key or value is wrong, and what would be right.
+/// Says which key or value is wrong, and what is accepted.
 pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, String> {
     table.clone().try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
 }
 
-/// What the keys of a change hold now, so that [`with`] brings it back.
+/// Returns the current values of the keys of a change, so that [`with`] restores them.
 pub fn only<T: Serialize>(value: &T, change: &Table) -> Table {
     pick(&Table::try_from(value).unwrap_or_default(), change)
 }
 
-/// Whether a change sets every key that another sets.
+/// Returns whether the later change sets every key that the earlier one sets.
 pub fn covers(later: &Table, earlier: &Table) -> bool {
     earlier.iter().all(|(key, value)| match (value, later.get(key)) {
         (Value::Table(earlier), Some(Value::Table(later))) => covers(later, earlier),
-        // Keys of what a whole value has brought do not stand for it.
+        // A nested table sets only some keys, so it does not cover a key that was set as a whole.
         (_, found) => found.is_some_and(|found| !found.is_table()),
     })
 }
 
-/// A change of one key, its parts joined by dots.
+/// Returns a change of one key, given as its parts joined by dots.
 pub fn one(key: &str, value: impl Into<Value>) -> Table {
     at(&key.split('.').collect::<Vec<_>>(), value)
 }
 
-/// A change of one key, by its parts.
+/// Returns a change of one key, given by its parts.
 pub fn at(path: &[&str], value: impl Into<Value>) -> Table {
     let Some((last, outer)) = path.split_last() else { return Table::new() };
     let innermost = Table::from_iter([((*last).to_owned(), value.into())]);
     outer.iter().rev().fold(innermost, |inner, key| Table::from_iter([((*key).to_owned(), Value::Table(inner))]))
 }
 
-/// A value as it would stand in a file: text where TOML knows no other reading, and a list of several numbers parted by
-/// commas.
+/// Reads a value as a file would state it. What TOML cannot read is text; several numbers separated by commas are a
+/// list.
 pub fn value(text: &str) -> Value {
     let read = |text: &str| {
         let table: Option<Table> = format!("x = {text}").parse().ok();
-        // More than one line would be more than one value.
+        // More than one line would set more than one key.
         table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("x"))
     };
-    // Such as `.5` and `5.`, which TOML does not take.
+    // For forms such as `.5` and `5.`, which TOML does not accept.
     let number = |text: &str| text.trim().parse::<f64>().ok().map(Value::Float);
     let text = text.trim();
     let list = || {
@@ -88,7 +89,7 @@ pub fn value(text: &str) -> Value {
     read(text).or_else(|| number(text)).or_else(list).unwrap_or_else(|| Value::String(text.into()))
 }
 
-/// Two changes as one; the second has the last word.
+/// Merges two changes; the second takes precedence.
 pub fn join(mut first: Table, second: &Table) -> Table {
     for (key, value) in second {
         let value = match (first.remove(key), value) {
@@ -100,7 +101,7 @@ pub fn join(mut first: Table, second: &Table) -> Table {
     first
 }
 
-/// The first key whose value is a number, or a list with one, that is not finite.
+/// Returns the first key whose value is a number, or a list with a number, that is not finite.
 pub fn not_finite(table: &Table) -> Option<String> {
     fn within(value: &Value) -> bool {
         match value {
@@ -115,7 +116,7 @@ pub fn not_finite(table: &Table) -> Option<String> {
     })
 }
 
-/// Every value of a table with its path, its keys joined by dots.
+/// Returns every value of a table with its path: its keys joined by dots.
 pub fn leaves(table: &Table) -> Vec<(String, &Value)> {
     let mut list = Vec::new();
     for (key, value) in table {
@@ -129,12 +130,12 @@ pub fn leaves(table: &Table) -> Vec<(String, &Value)> {
     list
 }
 
-/// A number, whole or not.
+/// Returns the number in a value, integer or not.
 pub fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|x| x as f64))
 }
 
-/// Whether two values say the same: 2 is 2.0.
+/// Returns whether two values are equal, where 2 equals 2.0.
 pub fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
@@ -142,7 +143,7 @@ pub fn same(a: &Value, b: &Value) -> bool {
     }
 }
 
-/// A value as it would be typed.
+/// Returns a value as a person would type it.
 pub fn typed(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

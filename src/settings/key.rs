@@ -1,5 +1,5 @@
-//! [`Key`]: one setting of a scenario, and all that is known of it. Each stands once, in the table of its part; files,
-//! `--set`, edits, the window's rows, their ranges and tips, and the reference of all keys are read from there.
+//! [`Key`]: one setting of a scenario and its description. Each is stated once, in the table of its part. Files,
+//! `--set`, edits, the window's rows with their ranges and tips, and the reference of all keys read it there.
 
 use std::fmt;
 
@@ -11,29 +11,29 @@ use super::range::{Check, Range};
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// Its parts joined by dots; `*` stands for the name of a link, a length, a drive or an angle.
+    /// Parts of the key joined by dots; `*` stands for the name of a link, a length, a drive or an angle.
     pub path: &'static str,
-    /// What it holds.
+    /// Type and range of the value.
     pub holds: Holds,
-    /// What stands there if a file leaves it out, as it would be typed; [`NONE`](Self::NONE) for nothing,
-    /// [`REQUIRED`](Self::REQUIRED) if it has to be given.
+    /// Default if a file omits the key, as it would be typed. [`NONE`](Self::NONE) if there is no value then,
+    /// [`REQUIRED`](Self::REQUIRED) if the key must be given.
     pub default: &'static str,
-    /// What it means, in a sentence.
+    /// Meaning, in one sentence.
     pub words: &'static str,
-    /// When it has an effect; empty for always.
+    /// Condition under which the key has an effect; empty for always.
     pub when: &'static str,
-    /// Where nothing is the default: what then counts.
+    /// If the default is no value: what applies instead.
     pub instead: &'static str,
-    /// What a change of it reaches.
+    /// What a change of the key affects.
     pub effect: Effect,
 }
 
-/// What a change of a key reaches, from the least to the most.
+/// What a change of a key affects, from the least to the most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
-    /// No frame of the run: what is studied, designed or recorded of it. Such a key holds for the run as a whole.
+    /// No frame of the run, but what is studied, designed or recorded. Such a key holds for the run as a whole.
     Aside,
-    /// No frame of the run, but what is shown from the present step on.
+    /// No frame of the run, but the display from the present step on.
     Picture,
     /// Frames from the present step on.
     Motion,
@@ -41,7 +41,7 @@ pub enum Effect {
     Plan,
 }
 
-/// What a key holds.
+/// Type and range of the value of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Holds {
     /// A number.
@@ -50,7 +50,7 @@ pub enum Holds {
     Whole(Range),
     /// One number for all drives, or a list with one for each.
     PerDrive(Range),
-    /// So many numbers, parted by commas.
+    /// This many numbers, separated by commas.
     List(usize, Range),
     /// Points x, y.
     Points(Range),
@@ -58,49 +58,49 @@ pub enum Holds {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// How a number is held while others follow: the word `fixed` or `free`, or its least and greatest value.
+    /// How a number may vary while others follow: the word `fixed` or `free`, or its lower and upper bound.
     Bounds(Range),
-    /// How a value varies: `normal:` or `uniform:` and an amount, in its unit or in percent.
+    /// Distribution of a value: `normal:` or `uniform:` and an amount, in its unit or in percent.
     Spread(&'static str),
     /// Rows of numbers, from a file.
     Rows,
 }
 
 impl Key {
-    /// The default of a key that may be absent; as a value it takes such a key out.
+    /// Default of a key that may be absent; as a value, it removes such a key.
     pub const NONE: &'static str = "none";
-    /// The default of a key that has to be given.
+    /// Default of a key that must be given.
     pub const REQUIRED: &'static str = "";
 
-    /// A key that always has an effect.
+    /// Returns a key that always has an effect.
     pub const fn new(path: &'static str, holds: Holds, default: &'static str, words: &'static str) -> Self {
         Self { path, holds, default, words, when: "", instead: "", effect: Effect::Motion }
     }
 
-    /// A number.
+    /// Returns a key that holds a number.
     pub const fn number(path: &'static str, range: Range, default: &'static str, words: &'static str) -> Self {
         Self::new(path, Holds::Number(range), default, words)
     }
 
-    /// The same with what it wants to have an effect.
+    /// Returns the key with the condition under which it has an effect.
     #[must_use]
     pub const fn when(self, when: &'static str) -> Self {
         Self { when, ..self }
     }
 
-    /// The same with what counts where nothing is given.
+    /// Returns the key with what applies if it is absent.
     #[must_use]
     pub const fn instead(self, instead: &'static str) -> Self {
         Self { instead, ..self }
     }
 
-    /// The same with what a change of it reaches, where that is not the motion.
+    /// Returns the key with what its change affects, if that is not the motion.
     #[must_use]
     pub const fn reaching(self, effect: Effect) -> Self {
         Self { effect, ..self }
     }
 
-    /// Keys, a change of each of which reaches the same.
+    /// Returns the keys with one effect for all.
     #[must_use]
     pub const fn all_reaching<const N: usize>(effect: Effect, keys: &[Self]) -> [Self; N] {
         let mut all = [keys[0]; N];
@@ -112,12 +112,12 @@ impl Key {
         all
     }
 
-    /// The part of a scenario that it belongs to: the first word of its path.
+    /// Returns the part of a scenario that the key belongs to: the first word of its path.
     pub fn part(&self) -> &'static str {
         self.path.split('.').next().unwrap_or_default()
     }
 
-    /// Its default as a person reads it: what has to be given, what stands there, or what counts without it.
+    /// Returns the default in words: that the key must be given, the value, or what applies instead.
     pub fn usual(&self) -> String {
         match (self.default, self.instead) {
             (Self::REQUIRED, _) => "has to be given".into(),
@@ -126,12 +126,12 @@ impl Key {
         }
     }
 
-    /// Whether a path is of this key.
+    /// Returns whether a path names this key.
     pub fn matches(&self, path: &str) -> bool {
         names(self.path, path)
     }
 
-    /// Where its numbers may lie, if it holds any.
+    /// Returns the range of its numbers, if it holds any.
     pub const fn range(&self) -> Option<Range> {
         match self.holds {
             Holds::Number(range)
@@ -144,7 +144,7 @@ impl Key {
         }
     }
 
-    /// The unit of its numbers.
+    /// Returns the unit of its numbers.
     pub const fn unit(&self) -> &'static str {
         match self.holds {
             Holds::Spread(unit) => unit,
@@ -156,11 +156,11 @@ impl Key {
     }
 }
 
-/// How a number is held without its bounds being given.
+/// Words for how a number may vary, in place of bounds.
 pub const BOUNDS: [&str; 2] = ["fixed", "free"];
 
 impl Holds {
-    /// The same with numbers in a range, if it holds any.
+    /// Returns this type with its numbers in a range, if it holds any.
     #[must_use]
     pub const fn within(self, range: Range) -> Self {
         match self {
@@ -174,7 +174,7 @@ impl Holds {
         }
     }
 
-    /// Whether a value is of the kind that is held; the word `default` always is.
+    /// Returns whether a value has this type; the word `default` always does.
     pub fn takes(&self, value: &Value) -> bool {
         let number = |value: &Value| change::number(value).is_some();
         let list = |value: &Value, count: Option<usize>| {
@@ -216,7 +216,7 @@ impl fmt::Display for Holds {
     }
 }
 
-/// Whether a pattern, in which `*` stands for any name, is of a path.
+/// Returns whether a path matches a pattern, in which `*` stands for any name.
 pub fn names(pattern: &str, path: &str) -> bool {
     let (mut pattern, mut path) = (pattern.split('.'), path.split('.'));
     loop {
@@ -228,7 +228,7 @@ pub fn names(pattern: &str, path: &str) -> bool {
     }
 }
 
-/// Every number of a table, and whether its key takes it.
+/// Returns a check of every number of a table against the range of its key.
 pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> Vec<Check> {
     let mut list = Vec::new();
     for (path, value) in change::leaves(table) {
@@ -241,7 +241,7 @@ pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> V
 
 fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
     match value {
-        // Of a list of points each goes by its place.
+        // Each point of a list is named by its index, from 1.
         Value::Array(items) if items.iter().any(Value::is_array) => {
             items.iter().enumerate().for_each(|(i, item)| numbers(&format!("{path}[{}]", i + 1), item, range, list));
         }
@@ -250,9 +250,9 @@ fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
     }
 }
 
-/// Keys in words, those of one thing together: `link.NAME.(com|mass)`, `gravity`.
+/// Returns keys in words, grouped by the table they belong to: `link.NAME.(com|mass)`, `gravity`.
 pub fn in_words(paths: impl IntoIterator<Item = &'static str>) -> Vec<String> {
-    // What stands before the last part, and all that stand behind that.
+    // The path before the last part, and all last parts behind it.
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for path in paths {
         let named = path.rsplit_once('.').filter(|(_, field)| *field != "*");
@@ -262,7 +262,7 @@ pub fn in_words(paths: impl IntoIterator<Item = &'static str>) -> Vec<String> {
             None => groups.push((head, vec![field])),
         }
     }
-    // The own keys of a thing come before those of what it has.
+    // The keys of a table itself come before those of its subtables.
     let part = |head: &'static str| head.split('.').next();
     let parts: Vec<_> = groups.iter().map(|(head, _)| part(head)).collect();
     groups.sort_by_key(|(head, _)| (parts.iter().position(|known| *known == part(head)), head.matches('.').count()));
@@ -276,7 +276,7 @@ fn group(head: &str, fields: &[&str]) -> String {
         _ => "NAME",
     };
     let head = head.replace('*', name);
-    // Of an ending that all share, such as `_limit`, they go without.
+    // An ending that all fields share, such as `_limit`, is written once.
     let ending = fields.first().and_then(|field| Some(&field[field.rfind('_')?..])).unwrap_or_default();
     let stems: Option<Vec<&str>> = fields.iter().map(|field| field.strip_suffix(ending)).collect();
     match (fields, stems) {

@@ -1,4 +1,4 @@
-//! `keyed!`: a struct whose fields are settings, declared together with their [keys](super::key::Key): each stands once.
+//! `keyed!`: a struct whose fields are settings, declared together with their [keys](super::key::Key) in one place.
 
 use std::collections::BTreeMap;
 
@@ -7,17 +7,17 @@ use super::range::Range;
 
 /// A type that the field of a key may have.
 pub trait Holding {
-    /// What its key holds. The range of its numbers, if it holds any, stands in the row of the key.
+    /// Type of the value of its key. The row of the key states the range of its numbers, if it holds any.
     const HOLDS: Holds;
 }
 
 /// A type with a default that can be typed.
 pub trait Held: Holding {
-    /// The value that the default of a key states; of text that states none, the least of all values.
+    /// Returns the value that the text of a default states; zero, `false` or the first choice if the text states none.
     fn typed(default: &str) -> Self;
 }
 
-/// Where no row says another range.
+/// Range of a row that states none.
 pub const ANY: Range = Range::either_way(f64::MAX, "");
 
 /// A row states its range where it holds numbers.
@@ -44,7 +44,7 @@ impl<T: Holding> Holding for Option<T> {
     const HOLDS: Holds = T::HOLDS;
 }
 
-/// What holds one value under each of several names.
+/// A value under each of several names.
 impl<T: Holding> Holding for BTreeMap<String, T> {
     const HOLDS: Holds = T::HOLDS;
 }
@@ -74,21 +74,21 @@ impl<const N: usize> Held for [f64; N] {
     }
 }
 
-/// Nothing, which is the only default that such a key has.
+/// `None`, the only default that such a key has.
 impl<T: Holding> Held for Option<T> {
     fn typed(_: &str) -> Self {
         None
     }
 }
 
-/// None, which is the only default that such a key has.
+/// An empty list, the only default that such a key has.
 impl Held for Vec<[f64; 2]> {
     fn typed(_: &str) -> Self {
         Self::new()
     }
 }
 
-/// The lines of a doc comment as one sentence: each begins with a space.
+/// Returns a doc comment, whose lines each begin with a space, without the first space.
 pub const fn sentence(doc: &'static str) -> &'static str {
     match doc.as_bytes() {
         [b' ', ..] => doc.split_at(1).1,
@@ -104,20 +104,22 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 /// ```
 ///
 /// * `range` for a type that holds numbers;
-/// * `instead`: what counts where nothing is the default ([`Key::NONE`](super::key::Key::NONE));
-/// * `when`: what the key wants to have an effect, in words, and whether it has that, if the part alone can tell;
-/// * `usual`: what the field holds where the default of the key is nothing, but the part is there;
-/// * `reaching`: what a change of the key reaches, where that is not the motion;
-/// * `saved: always` if a file states it even where it is the default.
+/// * `instead`: what applies if the default is no value ([`Key::NONE`](super::key::Key::NONE));
+/// * `when`: the condition under which the key has an effect, in words, and a function that evaluates it if the part
+///   alone suffices;
+/// * `usual`: the field's value if the part is given, but not the key, and the default of the key is no value;
+/// * `reaching`: what a change of the key affects, if that is not the motion;
+/// * `saved: always` if a file states the key even at its default.
 ///
-/// A struct without `at` is of keys that stand alone.
+/// A struct without `at` is for keys without a common prefix.
 ///
-/// After `named:` follow rows of what holds a value under each of several names: `*` stands for these in the key. What
-/// such a row states as default is that of one value; there is none to begin with. After `tables:` follow fields that
-/// have keys of their own below this part.
+/// After `named:` follow rows that hold a value under each of several names, for which `*` stands in the key. The
+/// default of such a row is that of one value; initially there are no names. After `tables:` follow fields that have
+/// keys of their own below this part.
 ///
-/// It makes of them the struct with its documentation, `KEYS`, `Default`, what reads and writes a file (a field that is
-/// left out has its default, one that nobody knows is refused), and `uses`: whether a key has an effect as things are.
+/// The macro generates the struct with its documentation, `KEYS`, `Default`, and reading and writing of files. A field
+/// that is omitted has its default; an unknown one is an error. It also generates `uses`: whether a key has an effect
+/// in the present state.
 macro_rules! keyed {
     ($(#[$outer:meta])* pub struct $name:ident at $path:literal { $($rows:tt)* }) => {
         $crate::settings::keyed::keyed!(@below concat!($path, "."); $(#[$outer])* pub struct $name { $($rows)* });

@@ -1,5 +1,5 @@
 //! How a value is named, bounded and shown: keys with their fields, words of choices, changes by key, ranges, typed
-//! numbers, text from outside.
+//! numbers, and external text.
 
 pub mod change;
 pub mod key;

@@ -1,8 +1,8 @@
-//! How numbers are written.
+//! Formatting of numbers.
 
 use std::fmt;
 
-/// A number in as many digits as it needs, but never in hundreds of them: 1e300 stays 1e300.
+/// A number with as many digits as it needs; powers of ten below 1e-5 and from 1e7 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Short(pub f64);
 
@@ -18,7 +18,7 @@ impl fmt::Display for Short {
     }
 }
 
-/// A number with fixed decimals, without a sign on zero; powers of ten where decimals would run away.
+/// Formats a number with fixed decimals, without a sign on zero; with powers of ten from 1e9 on.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() >= 1e9 {
         return format!("{x:.3e}");
@@ -30,7 +30,8 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with fixed decimals, or in powers of ten where these would show nothing of it; rounding's noise is zero.
+/// Formats a number with fixed decimals, or with a power of ten if those would show only zeros. Below 1e-12 it is
+/// treated as zero.
 pub fn shown(x: f64, decimals: usize) -> String {
     let text = fixed(x, decimals);
     match x.abs() >= 1e-12 && text.bytes().all(|b| matches!(b, b'0' | b'.')) {
@@ -39,7 +40,7 @@ pub fn shown(x: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with the digits that matter: tiny and huge ones in powers of ten.
+/// Formats a number with four decimals, or with a power of ten below 1e-3 and from 1e6 on.
 pub fn significant(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
@@ -48,14 +49,14 @@ pub fn significant(x: f64) -> String {
     }
 }
 
-/// A count with what it counts: `1 step`, `2 steps`.
+/// Returns a count with its noun: `1 step`, `2 steps`.
 pub fn counted(count: impl fmt::Display, one: &str) -> String {
     let count = count.to_string();
     let plural = if count == "1" { "" } else { "s" };
     format!("{count} {one}{plural}")
 }
 
-/// A number with at most nine digits that matter; what rounding leaves of zero is zero.
+/// Formats a number with at most nine significant digits; below 1e-12 it is treated as zero.
 pub fn nine_digits(x: f64) -> String {
     if x.abs() < 1e-12 {
         return "0".into();
@@ -64,7 +65,7 @@ pub fn nine_digits(x: f64) -> String {
     Short(rounded).to_string()
 }
 
-/// A number as an index: 12 as ₁₂.
+/// Returns a number in subscript digits: 12 as ₁₂.
 pub fn subscript(number: usize) -> String {
     number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()
 }

@@ -1,31 +1,31 @@
-//! [`read`]: numbers as a person types them: with units and arithmetic, `30 deg`, `0.5/2`, `1 cm + 2 mm`, `2*pi/3`.
+//! [`read`]: numbers as a person types them, with units and arithmetic: `30 deg`, `0.5/2`, `1 cm + 2 mm`, `2*pi/3`.
 //!
-//! A unit is a quantity like any other and multiplies what stands before it: `3 N m` is 3 · N · m, from left to right.
-//! A number without a unit is in the unit that is asked for.
+//! A unit is a quantity like any other, and multiplies the number before it: `3 N m` is 3 · N · m, from left to right.
+//! A number without a unit is in the requested unit.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use super::range::shortened;
 
-/// Powers of metre, kilogram, second and radian.
+/// Exponents of metre, kilogram, second and radian.
 type Dimension = [i32; 4];
 
-const PLAIN: Dimension = [0; 4];
+const DIMENSIONLESS: Dimension = [0; 4];
 
-/// A number and what it measures.
+/// A number and its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Quantity {
-    /// In metres, kilograms, seconds, radians.
+    /// Value in metres, kilograms, seconds, radians.
     value: f64,
     of: Dimension,
-    /// Whether a unit was typed, be it one without a dimension.
+    /// Whether a unit was typed, even one without a dimension.
     has_unit: bool,
 }
 
 impl Quantity {
     fn plain(value: f64) -> Self {
-        Self { value, of: PLAIN, has_unit: false }
+        Self { value, of: DIMENSIONLESS, has_unit: false }
     }
 
     fn times(self, other: Self, sign: i32) -> Self {
@@ -39,18 +39,18 @@ impl Quantity {
     }
 }
 
-/// Why what was typed is no number of the unit that is asked for.
+/// Why a typed text is no number of the requested unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Misread {
-    /// A sign or word that has no meaning here.
+    /// A character or word without a meaning here.
     Unknown(String),
-    /// It ends where something is missing.
+    /// The text ends too early.
     Unfinished,
-    /// Of another kind than what is asked for: what was typed, and the unit that is wanted.
+    /// Another dimension than requested: the text, and the requested unit.
     OtherKind(String, String),
-    /// Metres plus seconds.
+    /// A sum of different dimensions, such as metres plus seconds.
     Mixed,
-    /// Such as 1/0.
+    /// No finite value, such as 1/0.
     NotFinite,
 }
 
@@ -70,10 +70,11 @@ impl fmt::Display for Misread {
     }
 }
 
-/// The number that a text says, in a unit; the unit as keys and panels write it, such as `N m/rad` or `°`.
+/// Returns the number that a text states, in a unit; the unit is written as in keys and panels, such as `N m/rad` or
+/// `°`.
 ///
 /// # Errors
-/// What was not understood, and what would be right.
+/// Says what was not understood, and what is accepted.
 pub fn read(text: &str, unit: &str) -> Result<f64, Misread> {
     let typed = parse(text)?;
     if !typed.value.is_finite() {
@@ -82,12 +83,13 @@ pub fn read(text: &str, unit: &str) -> Result<f64, Misread> {
     if !typed.has_unit {
         return Ok(typed.value);
     }
-    // Of several units, `m, rad`, any will do; one that is a word of its own, such as counts, takes plain numbers.
+    // If several units are listed, `m, rad`, any of them is accepted. A unit that is only a word, such as counts, takes
+    // plain numbers.
     let mut wanted: Vec<Quantity> = unit.split(',').filter_map(|unit| parse(unit).ok()).collect();
     if wanted.is_empty() {
         wanted.push(Quantity::plain(1.0));
     }
-    // Radians may go without saying in torques: N m/rad is N m.
+    // Radians may be omitted where there is mass, as in torques: N m/rad is N m.
     let same = |one: Dimension, other: Dimension| one == other || (one[1] != 0 && one[..3] == other[..3]);
     let found = wanted.into_iter().find(|wanted| same(typed.of, wanted.of));
     match found.map(|wanted| typed.value / wanted.value) {
@@ -108,12 +110,12 @@ fn parse(text: &str) -> Result<Quantity, Misread> {
 
 struct Reader<'a> {
     rest: &'a str,
-    /// Of parentheses.
+    /// Present depth of nested parentheses.
     depth: usize,
 }
 
-/// The most parentheses in each other.
-const DEEPEST: usize = 32;
+/// Maximum depth of nested parentheses.
+const MAX_DEPTH: usize = 32;
 
 impl Reader<'_> {
     fn peek(&mut self) -> Option<char> {
@@ -151,7 +153,7 @@ impl Reader<'_> {
             product = match () {
                 () if self.takes(&['*', '·', '×']) => product.times(self.signed()?, 1),
                 () if self.takes(&['/', '÷']) => product.times(self.signed()?, -1),
-                // What stands beside it multiplies: a unit, pi, something in parentheses.
+                // Juxtaposition multiplies: a unit, pi, or an expression in parentheses.
                 () if self.peek().is_some_and(|c| c == '(' || is_of_word(c)) => product.times(self.power()?, 1),
                 () => return Ok(product),
             };
@@ -205,7 +207,7 @@ impl Reader<'_> {
             Some('(') => {
                 self.takes(&['(']);
                 self.depth += 1;
-                if self.depth > DEEPEST {
+                if self.depth > MAX_DEPTH {
                     return Err(Misread::Unknown("(((".into()));
                 }
                 let inside = self.sum()?;
@@ -234,7 +236,7 @@ impl Reader<'_> {
         if bytes.get(end) == Some(&b'.') {
             end = digits(end + 1);
         }
-        // A power of ten, if digits follow: 3e is no number.
+        // A power of ten, only if digits follow: 3e is no number.
         if matches!(bytes.get(end), Some(b'e' | b'E')) {
             let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
             let after = digits(end + 1 + sign);
@@ -260,7 +262,7 @@ fn is_of_word(c: char) -> bool {
     (c.is_alphabetic() && !"⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c)) || matches!(c, '°' | '%' | '′')
 }
 
-/// What a word stands for.
+/// Returns the quantity that a word stands for.
 fn meaning(word: &str) -> Option<Quantity> {
     let (m, kg, s, rad) = ([1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]);
     let (newton, joule, per_s) = ([1, 1, -2, 0], [2, 1, -2, 0], [0, 0, -1, 0]);
@@ -297,7 +299,7 @@ fn meaning(word: &str) -> Option<Quantity> {
         "Hz" => (1.0, per_s),
         "kHz" => (1e3, per_s),
         "rpm" => (TAU / 60.0, [0, 0, -1, 1]),
-        "%" => (0.01, PLAIN),
+        "%" => (0.01, DIMENSIONLESS),
         _ => return None,
     };
     Some(Quantity { value, of, has_unit: true })

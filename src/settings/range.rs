@@ -1,11 +1,11 @@
-//! [`Range`]: where the number of a key may lie. Each key has one, stated once beside it; checks and messages read it.
+//! [`Range`]: the interval of a key's number. Each key states it once; checks and messages read it.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use crate::settings::number::{Short, counted};
 
-/// The numbers from one to another, both included, and their unit.
+/// A closed interval and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     low: f64,
@@ -14,44 +14,45 @@ pub struct Range {
 }
 
 impl Range {
-    /// From `low` to `high`; the unit is only for words.
+    /// Returns the interval from `low` to `high`; the unit only serves messages.
     pub const fn new(low: f64, high: f64, unit: &'static str) -> Self {
         Self { low, high, unit }
     }
 
-    /// As far either way from zero.
+    /// Returns the interval from −`most` to `most`.
     pub const fn either_way(most: f64, unit: &'static str) -> Self {
         Self::new(-most, most, unit)
     }
 
-    /// Whether a number lies in it; one that is not finite never does.
+    /// Returns whether a number lies in the interval; one that is not finite never does.
     pub fn contains(&self, x: f64) -> bool {
         (self.low..=self.high).contains(&x)
     }
 
-    /// Its unit.
+    /// Returns the unit.
     pub const fn unit(&self) -> &'static str {
         self.unit
     }
 
-    /// The least number.
+    /// Returns the lower bound.
     pub const fn low(&self) -> f64 {
         self.low
     }
 
-    /// The greatest number.
+    /// Returns the upper bound.
     pub const fn high(&self) -> f64 {
         self.high
     }
 
-    /// The same with ends of nine digits: a quotient of typed numbers is read better so.
+    /// Returns the interval with bounds rounded to nine digits, which are easier to read for a quotient of typed
+    /// numbers.
     #[must_use]
     pub fn rounded(&self) -> Self {
         let nine = |x: f64| format!("{x:.8e}").parse().unwrap_or(x);
         Self { low: nine(self.low), high: nine(self.high), ..*self }
     }
 
-    /// A number of this key, looked at.
+    /// Checks a number of a key against the interval.
     pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> Check {
         Check { key: key.into(), value, ok: self.contains(value), want: Want::Within(self) }
     }
@@ -64,56 +65,56 @@ impl fmt::Display for Range {
     }
 }
 
-/// A number that stands somewhere, and whether it may.
+/// A number of a key, and whether it is accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// Its key, as `--set` names it.
+    /// Key, as `--set` names it.
     pub key: Cow<'static, str>,
     /// The number.
     pub value: f64,
-    /// Whether it may stand there.
+    /// Whether the number is accepted.
     pub ok: bool,
-    /// What would be right.
+    /// What is accepted.
     pub want: Want,
 }
 
 impl Check {
-    /// A check that no range says.
+    /// Returns a check whose condition is not an interval, with the condition in words.
     pub fn words(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: &'static str) -> Self {
         Self { key: key.into(), value, ok, want: Want::Words(want) }
     }
 
-    /// The same in words that depend on other numbers.
+    /// Returns a check whose condition depends on other numbers, with the condition in words.
     pub fn said(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: impl FnOnce() -> String) -> Self {
         let want = if ok { Want::Words("") } else { Want::Said(want()) };
         Self { key: key.into(), value, ok, want }
     }
 
-    /// A list that holds so many of something, which is too many or too few.
+    /// Returns a failed check of a list with too many or too few items.
     pub fn count(key: impl Into<Cow<'static, str>>, count: usize, of: &'static str, want: String) -> Self {
         Self { key: key.into(), value: count as f64, ok: false, want: Want::Count { of, want } }
     }
 }
 
-/// What would be right.
+/// What is accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Want {
-    /// A number in a range.
+    /// A number in an interval.
     Within(Range),
-    /// What no range can say, in words.
+    /// A condition that is not an interval, in words.
     Words(&'static str),
-    /// The same with numbers that others decide.
+    /// A condition that depends on other numbers, in words.
     Said(String),
-    /// Another number of things in a list.
+    /// Another number of items in a list.
     Count {
-        /// What the list holds: `number`, `point`.
+        /// Noun for an item of the list: `number`, `point`.
         of: &'static str,
-        /// How many would be right.
+        /// Accepted number of items.
         want: String,
     },
 }
 
-/// What is wrong with a number under a key, and what would be right.
+/// Returns the message for a number that is not accepted: its key, its value, and what is accepted.
 pub fn refused(key: &str, value: f64, want: &Want) -> String {
     match want {
         Want::Count { of, want } => format!("{key} has {}: want {want}", counted(value, of)),
@@ -131,18 +132,19 @@ impl fmt::Display for Want {
     }
 }
 
-/// The most characters of given text that a message repeats.
+/// Maximum number of characters of given text that a message repeats.
 const MAX_CLIPPED: usize = 80;
 
-/// Given text as a message repeats it: its beginning, on one line, without what a terminal would obey.
+/// Returns given text as a message repeats it: its beginning, on one line, without control characters.
 pub fn clipped(text: &str) -> String {
     shortened(text, MAX_CLIPPED)
 }
 
-/// The most digits in a row that a message repeats: more than any number needs.
+/// Maximum number of consecutive digits that a message repeats: more than any number needs.
 const MAX_DIGITS: usize = 20;
 
-/// The first characters of a text, on one line, and dots where there is more, or a number that runs on and on.
+/// Returns the first `most` characters of a text, on one line. An ellipsis marks omitted text and omitted digits of a
+/// long number.
 pub fn shortened(text: &str, most: usize) -> String {
     let mut short = String::new();
     let (mut count, mut digits) = (0, 0);

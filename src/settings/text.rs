@@ -1,11 +1,11 @@
-//! Text from outside, shown so that it does nothing to a terminal.
+//! External text, shown so that it does not control a terminal.
 
 use std::borrow::Cow;
 
-/// The largest text that is read, bytes: a session of 100,000 edits has half of it.
+/// Maximum size of a text that is read, bytes: a session of 100,000 edits has half of it.
 pub const MOST_BYTES: u64 = 16 << 20;
 
-/// Text for a terminal: what would steer one, or turn the order of its letters, is spelled out.
+/// Returns text for a terminal: characters that control a terminal or change the writing direction are escaped.
 pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(steers) {
         return text.into();
@@ -17,12 +17,13 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     plain.into()
 }
 
-/// The first character of a text that would steer a terminal or turn the order of its letters; line ends may stand.
+/// Returns the first character that controls a terminal or changes the writing direction; line feeds are allowed.
 pub fn steering(text: &str) -> Option<char> {
     text.chars().find(|c| steers(*c))
 }
 
-/// A text as a cell of a spreadsheet: one that a spreadsheet would compute as a formula begins with an apostrophe.
+/// Returns a text as a cell of a spreadsheet: a text that a spreadsheet would read as a formula gets an apostrophe in
+/// front.
 pub fn sheet_cell(text: &str) -> Cow<'_, str> {
     let is_formula = text.trim_start().starts_with(['=', '+', '-', '@']);
     if is_formula { format!("'{text}").into() } else { text.into() }
@@ -33,21 +34,21 @@ fn steers(c: char) -> bool {
     turns || c == '\u{feff}' || (c.is_control() && c != '\n')
 }
 
-/// Characters of a message, and of its end, that are kept of a long one.
-const MOST_SAID: usize = 1600;
-const END_SAID: usize = 400;
+/// Maximum length of a message in characters, and the length of the end that is kept of a longer one.
+const MAX_MESSAGE_CHARS: usize = 1600;
+const MESSAGE_END_CHARS: usize = 400;
 
-/// A message that is not too long to be read: of a longer one the middle is left out.
+/// Returns a message of readable length: the middle of a longer one is left out.
 pub fn brief(text: &str) -> Cow<'_, str> {
-    // No text has more characters than bytes.
-    if text.len() <= MOST_SAID {
+    // A text has at most as many characters as bytes.
+    if text.len() <= MAX_MESSAGE_CHARS {
         return text.into();
     }
     let count = text.chars().count();
-    if count <= MOST_SAID {
+    if count <= MAX_MESSAGE_CHARS {
         return text.into();
     }
-    let begin: String = text.chars().take(MOST_SAID - END_SAID).collect();
-    let end: String = text.chars().skip(count - END_SAID).collect();
-    format!("{begin} … ({} characters left out) … {end}", count - MOST_SAID).into()
+    let begin: String = text.chars().take(MAX_MESSAGE_CHARS - MESSAGE_END_CHARS).collect();
+    let end: String = text.chars().skip(count - MESSAGE_END_CHARS).collect();
+    format!("{begin} … ({} characters left out) … {end}", count - MAX_MESSAGE_CHARS).into()
 }

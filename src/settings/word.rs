@@ -1,27 +1,27 @@
-//! `words!`: an enum whose variants are chosen by words, declared together with them: each stands once.
+//! `words!`: an enum whose variants are chosen by words, declared together with the words in one place.
 
-/// What a choice is called.
+/// Words of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// In files, edits and on the command line.
+    /// Word in files, in edits and on the command line.
     pub file: &'static str,
-    /// On the screen.
+    /// Words on the screen.
     pub screen: &'static str,
-    /// What it means, without a full stop.
+    /// Meaning, without a full stop.
     pub meaning: &'static str,
 }
 
-/// One of several, chosen by a word.
+/// An enum whose variants are chosen by words.
 pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
-    /// All of them.
+    /// All variants.
     const ALL: &'static [Self];
-    /// Their words in files, in the same order.
+    /// Words of the variants in files, in the same order.
     const FILE: &'static [&'static str];
 
-    /// What it is called.
+    /// Returns the words of this variant.
     fn words(self) -> Words;
 
-    /// The one of a word in files.
+    /// Returns the variant with a word in files.
     fn of_word(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|choice| choice.words().file == word)
     }
@@ -34,8 +34,8 @@ pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
 /// ```
 ///
 /// with further documentation above it, if there is any. Files, the choices of a key, those of the command line and the
-/// menus of the window follow. Where each variant has further data, the type of these stands behind the enum's name, and
-/// they behind the words: `Variant = …, …, … => data;`. They are what `data` gives.
+/// menus of the window follow from it. If each variant has further data, their type stands behind the enum's name, and
+/// the data behind the words: `Variant = …, …, … => data;`. The method `data` returns them.
 macro_rules! words {
     (
         $(#[$outer:meta])*
@@ -104,7 +104,7 @@ macro_rules! words {
         }
 
         impl $name {
-            /// What its row says of it beside its words.
+            /// Returns the data of this variant's row.
             #[inline]
             const fn data(self) -> &'static $data {
                 match self {

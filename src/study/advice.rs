@@ -1,18 +1,18 @@
-//! [`Advice`]: a sentence that may name ways out. Whoever shows it names them by what is at hand there: an option of a
-//! command, a control of a panel.
+//! [`Advice`]: a sentence that may name remedies. The place that shows it supplies their names: an option of a command,
+//! a control of a panel.
 
 use std::fmt::{self, Display};
 
 use serde::ser::{Serialize, Serializer};
 
-/// A way out that a sentence names.
+/// A remedy that a sentence may name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// To let the spline through samples bridge gaps in time.
+    /// Let the spline through samples bridge gaps in time.
     Gaps,
-    /// To smooth samples.
+    /// Smooth the samples.
     Smoothing,
-    /// The same by its cut-off, Hz.
+    /// Smooth the samples, named by the cut-off frequency, Hz.
     CutOff,
     /// Another pose constant.
     PoseConstant,
@@ -25,7 +25,7 @@ pub enum Remedy {
 }
 
 impl Remedy {
-    /// What it is, where nobody has another name for it.
+    /// Returns the default name.
     fn name(self) -> &'static str {
         match self {
             Self::Gaps => "gaps let pass",
@@ -38,7 +38,7 @@ impl Remedy {
     }
 }
 
-/// A sentence that may name ways out.
+/// A sentence that may name remedies.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Advice {
     pieces: Vec<Piece>,
@@ -51,28 +51,28 @@ enum Piece {
 }
 
 impl Advice {
-    /// More of the sentence.
+    /// Appends text.
     #[must_use]
     pub fn then(mut self, text: impl Into<String>) -> Self {
         self.pieces.push(Piece::Text(text.into()));
         self
     }
 
-    /// The same after some words.
+    /// Inserts text at the beginning.
     #[must_use]
     pub fn after(mut self, text: impl Into<String>) -> Self {
         self.pieces.insert(0, Piece::Text(text.into()));
         self
     }
 
-    /// A way out, named next in the sentence.
+    /// Appends the name of a remedy.
     #[must_use]
     pub fn name(mut self, remedy: Remedy) -> Self {
         self.pieces.push(Piece::Remedy(remedy));
         self
     }
 
-    /// The ways out that it names, in their order.
+    /// Iterates over the remedies that the sentence names, in their order.
     pub fn remedies(&self) -> impl Iterator<Item = Remedy> {
         self.pieces.iter().filter_map(|piece| match piece {
             Piece::Text(_) => None,
@@ -80,7 +80,7 @@ impl Advice {
         })
     }
 
-    /// The sentence with other names for its ways out.
+    /// Returns the sentence with other names for its remedies.
     #[must_use]
     pub fn worded(&self, name: impl Fn(Remedy) -> &'static str) -> Self {
         let text = self.pieces.iter().map(|piece| match piece {
@@ -103,7 +103,7 @@ impl From<&str> for Advice {
     }
 }
 
-/// The sentence with plain names for its ways out.
+/// The sentence with the default names of its remedies.
 impl Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.pieces.iter().try_for_each(|piece| match piece {
@@ -113,7 +113,7 @@ impl Display for Advice {
     }
 }
 
-/// As text.
+/// Serialised as text.
 impl Serialize for Advice {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)

@@ -1,26 +1,27 @@
-//! [`BalanceConstants`]: the constants of balance of a machine.
+//! [`BalanceConstants`]: the constants in the balance conditions of a machine.
 
 use serde::Serialize;
 
 use crate::mechanics::machine::Inertia;
 
-/// The constants of balance. Coefficients are real parts; pairs in the order (1,2), (1,3), (2,3) …
+/// Constants of the balance conditions. Of complex coefficients the real parts; pairs in the order (1,2), (1,3), (2,3)
+/// …
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BalanceConstants {
-    /// g_k, kg m.
+    /// Coefficients g_k of the first moment, kg m.
     pub gamma_coefficients: Vec<f64>,
-    /// C_kl, kg m².
+    /// Coupling coefficients C_kl, kg m².
     pub coupling_coefficients: Vec<f64>,
-    /// H_kk, kg m².
+    /// Diagonal of the mass matrix, H_kk, kg m².
     pub h: Vec<f64>,
-    /// D_k where all C_kl vanish, kg m²; gears make it another than H_kk.
+    /// D_k as it is when all C_kl vanish, kg m²; differs from H_kk with gears.
     pub d: Vec<f64>,
-    /// λ_k.
+    /// Coefficients λ_k of the pose constant.
     pub lambda: Vec<f64>,
 }
 
 impl BalanceConstants {
-    /// Of a machine.
+    /// Returns the constants of a machine.
     pub fn of(inertia: &Inertia) -> Self {
         let n = inertia.drives();
         Self {

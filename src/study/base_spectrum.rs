@@ -1,4 +1,4 @@
-//! [`BaseSpectrum`]: at which frequencies a run shakes its base, and how that stands against jitter limits.
+//! [`BaseSpectrum`]: spectra of the force and moment on the base over a run, and their comparison with jitter limits.
 
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
@@ -9,95 +9,95 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, felt};
 use crate::settings::number::fixed;
 
-/// One value for each axis of what the base feels.
+/// One value for each component of the base wrench.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Axes<T> {
-    /// Of the dynamic f_Bx.
+    /// For the dynamic f_Bx.
     pub force_x: T,
-    /// Of the dynamic f_By.
+    /// For the dynamic f_By.
     pub force_y: T,
-    /// Of n_B, or what a reaction wheel leaves of it.
+    /// For the moment on the base: n_B, less what a reaction wheel takes up.
     pub moment: T,
 }
 
 impl<T> Axes<T> {
-    /// The same of something else.
+    /// Applies a function to each component.
     pub fn map<'a, U>(&'a self, f: impl Fn(&'a T) -> U) -> Axes<U> {
         Axes { force_x: f(&self.force_x), force_y: f(&self.force_y), moment: f(&self.moment) }
     }
 
-    /// Each with its symbol and unit.
+    /// Returns each component with its symbol and unit.
     pub fn named(&self) -> [(&'static str, &'static str, &T); 3] {
         [("f_Bx", "N", &self.force_x), ("f_By", "N", &self.force_y), ("n_B", "N m", &self.moment)]
     }
 }
 
-/// What the samples of an axis come to.
+/// RMS values of one component, and its comparison with a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Axis {
-    /// Of samples and of both root mean squares.
+    /// Unit of the samples and of both RMS values.
     pub unit: &'static str,
-    /// Of the samples, all alike.
+    /// RMS of the samples, unweighted.
     pub rms: f64,
-    /// As the window weighs the samples: where the cumulative RMS ends.
+    /// RMS of the samples weighted by the window: the final value of the cumulative RMS.
     pub weighted_rms: f64,
-    /// Against its limit, if there is one.
+    /// Comparison with the limit, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<JitterVerdict>,
 }
 
-/// At which frequencies a run shakes its base.
+/// Spectra of the base wrench over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseSpectrum {
     /// Name of the scenario.
     pub scenario: String,
-    /// How samples were weighted.
+    /// Window function of the spectra.
     pub window: Window,
-    /// How many there were.
+    /// Number of samples.
     pub samples: usize,
-    /// Time between two, s.
+    /// Time between two samples, s.
     pub step: f64,
-    /// What each axis comes to.
+    /// RMS values of each component, and their comparison with limits.
     pub axes: Axes<Axis>,
-    /// Frequencies and densities; all have the same lines.
+    /// Spectra of each component; all have the same frequencies.
     pub spectra: Axes<Spectrum>,
     /// The first audit that failed, in words.
     pub fault: Option<String>,
 }
 
-/// Why there is none, or none against a limit.
+/// Why there is no spectrum, or no comparison with a limit.
 #[derive(Debug, Error)]
 pub enum NoBaseSpectrum {
     /// The scenario cannot be run.
     #[error(transparent)]
     Run(#[from] Refusal),
-    /// Its samples have no spectrum.
+    /// The samples have no spectrum.
     #[error(transparent)]
     Spectrum(#[from] SpectrumError),
-    /// A limit holds nowhere.
+    /// No frequency of the spectrum lies where the limit is defined.
     #[error(
         "a limit from {} to {} Hz holds at no line of the spectrum, {} to {} Hz by {}: want one that does",
         limit[0], limit[1], fixed(lines[0], 3), fixed(lines[1], 3), fixed(lines[0], 3)
     )]
     Beyond {
-        /// From, to, Hz.
+        /// Lowest and highest frequency of the limit, Hz.
         limit: [f64; 2],
-        /// First line above 0 Hz, and last, Hz.
+        /// Lowest frequency of the spectrum above 0 Hz, and highest, Hz.
         lines: [f64; 2],
     },
 }
 
 impl BaseSpectrum {
-    /// Of a scenario, run from its start to its end.
+    /// Runs a scenario to its end and returns the spectra of its base wrench.
     ///
     /// # Errors
-    /// If it cannot be run, or its samples have no spectrum.
+    /// Fails if the scenario cannot be run, or its samples have no spectrum.
     pub fn of(scenario: &Scenario, window: Window) -> Result<Self, NoBaseSpectrum> {
         let (course, fault) = felt(scenario)?;
         let [force_x, force_y, moment] = &course;
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, window);
         let spectra = Axes { force_x: of(force_x)?, force_y: of(force_y)?, moment: of(moment)? };
-        // Of the run itself: a window weighs its middle.
+        // Unweighted, as a window emphasises the middle of the run.
         let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
         let axis = |unit, samples: &[f64], spectrum: &Spectrum| Axis {
             unit,
@@ -120,10 +120,10 @@ impl BaseSpectrum {
         })
     }
 
-    /// Sets it against limits on both forces, N/√Hz, and on the moment, N m/√Hz.
+    /// Compares the spectra with limits on both forces, N/√Hz, and on the moment, N m/√Hz.
     ///
     /// # Errors
-    /// If a limit holds at no line.
+    /// Fails if no frequency of the spectrum lies where a limit is defined.
     pub fn judge(&mut self, force: Option<&JitterLimit>, moment: Option<&JitterLimit>) -> Result<(), NoBaseSpectrum> {
         let Self { axes, spectra, .. } = self;
         for (axis, spectrum, limit) in [
@@ -137,12 +137,12 @@ impl BaseSpectrum {
         Ok(())
     }
 
-    /// Frequencies of all lines, Hz.
+    /// Returns all frequencies, Hz.
     pub fn frequency(&self) -> &[f64] {
         &self.spectra.moment.frequency
     }
 
-    /// How far lines lie apart, Hz.
+    /// Returns the distance between two frequencies, Hz.
     pub fn resolution(&self) -> f64 {
         self.frequency().get(1).copied().unwrap_or(0.0)
     }

@@ -1,5 +1,5 @@
-//! A machine balanced by where the masses of its links lie, and what that comes to: [`designed`] anew, or [`kept`] with
-//! the least change.
+//! Balance by moving the centres of mass of the links, with a report: [`designed`] from scratch, or [`kept`] with the
+//! least change.
 
 use serde::Serialize;
 
@@ -9,53 +9,53 @@ use crate::mechanics::balance::{Adjusted, DesignError, Keep, NotKept, Quantity, 
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::planning::Motion;
 
-/// A machine whose centres of mass were placed, Eq. (10).
+/// Report on a machine whose centres of mass were placed by Eq. (10).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignReport {
     /// l_c of each link, m.
     pub com: Vec<f64>,
-    /// Beside the machine that it was made from.
+    /// Comparison with the original machine.
     #[serde(flatten)]
     pub measures: Measures,
-    /// What is left of balance.
+    /// Balance constants of the new machine.
     #[serde(flatten)]
     pub balance: BalanceConstants,
 }
 
-/// A machine that was changed as little as it can be to be balanced.
+/// Report on a machine that was balanced with the least change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KeptReport {
-    /// What may change, in the order of what was asked.
+    /// Parameters that may change, in the order of the request.
     pub changes: Vec<KeptChange>,
-    /// Σ (p Δ)² over the changes.
+    /// Value of the objective, Σ (p Δ)² over the changes.
     pub cost: f64,
-    /// Whether nothing else within the limits has less.
+    /// Whether the minimum within the limits is proven.
     pub certified: bool,
-    /// Beside the machine that it was made from.
+    /// Comparison with the original machine.
     #[serde(flatten)]
     pub measures: Measures,
-    /// What is left of balance.
+    /// Balance constants of the new machine.
     #[serde(flatten)]
     pub balance: BalanceConstants,
 }
 
-/// One number that may change.
+/// One parameter that may change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KeptChange {
-    /// Such as `link.5.com`.
+    /// Key, such as `link.5.com`.
     pub key: String,
-    /// Before.
+    /// Value before.
     pub from: f64,
-    /// Now.
+    /// Value after.
     pub to: f64,
-    /// p, 1/m or 1/kg.
+    /// Penalty p, 1/m or 1/kg.
     pub penalty: f64,
-    /// m or kg.
+    /// Unit, m or kg.
     pub unit: &'static str,
 }
 
-/// A machine balanced by the centres of mass of its links with the least Σ (p l_c)², and what that comes to; a motion is
-/// one of as many drives.
+/// Balances a machine by the centres of mass of its links with the least Σ (p l_c)², and reports on it. A motion has as
+/// many drives as the machine.
 ///
 /// # Errors
 /// As [`design`].
@@ -73,8 +73,8 @@ pub fn designed(
     Ok((designed, report))
 }
 
-/// A machine balanced with the least change of what may change, and what that comes to; a motion is one of as many
-/// drives.
+/// Balances a machine with the least change of the given parameters, and reports on it. A motion has as many drives as
+/// the machine.
 ///
 /// # Errors
 /// As [`keep`].

@@ -1,4 +1,4 @@
-//! [`balanced`]: a machine balanced by counterweights, with other lengths if these are sought, and what that comes to.
+//! [`balanced`]: balances a machine by counterweights, if requested with other link lengths, and reports on it.
 
 use serde::Serialize;
 use thiserror::Error;
@@ -13,118 +13,118 @@ use crate::mechanics::counterweights::{
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 use crate::planning::Motion;
 
-/// Payloads at which the residual is given.
-const PAYLOADS: usize = 11;
+/// Number of payloads, across their range, at which the residual is reported.
+const PAYLOAD_SAMPLES: usize = 11;
 
-/// What counterweights are asked for.
+/// Request for counterweights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CounterweightRequest {
-    /// Where they may be, and what is to be least; of a search for lengths its own counts.
+    /// Sites of the counterweights, and the objective. A search for lengths uses its own instead.
     pub weighing: Weighing,
-    /// Lengths that are sought with them.
+    /// Link lengths to optimise together with the counterweights.
     pub lengths: Option<LengthSearch>,
-    /// In how many machines the front from the least mass to the least inertia is shown.
+    /// Number of machines on the Pareto front from the least mass to the least inertia.
     pub front: Option<usize>,
 }
 
-/// Why there are none.
+/// Why there are no counterweights.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCounterweights {
-    /// No lengths are found.
+    /// The search for lengths failed.
     #[error(transparent)]
     Lengths(NoLengths),
     /// No counterweights balance the machine.
     #[error(transparent)]
     Weights(NoWeights),
-    /// There is no front.
+    /// There is no Pareto front.
     #[error(transparent)]
     Front(NoWeights),
-    /// What comes out is no machine.
+    /// The result is no valid machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
 }
 
-/// What counterweights come to.
+/// Report on a machine with counterweights.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CounterweightReport {
-    /// Beside the machine without counterweights.
+    /// Comparison with the machine without counterweights.
     #[serde(flatten)]
     pub measures: Measures,
-    /// The greatest |torque| of a motor in a motion, N m.
+    /// Largest |torque| of a motor in the motion, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<f64>,
-    /// Those that were found; those that are fixed stay beside them.
+    /// New counterweights; fixed ones stay in addition.
     pub weights: Vec<Counterweight>,
-    /// Those that the machine had and that were taken off.
+    /// Counterweights of the given machine that were removed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub taken_off: Vec<Counterweight>,
-    /// The most by which the best may lie below what was found.
+    /// Upper bound on how far the minimum lies below the objective's value.
     pub gap: f64,
-    /// Whether that is no more than rounding.
+    /// Whether the gap is within rounding.
     pub certified: bool,
-    /// Added mass, kg, and Σ D_k, kg m².
+    /// Pareto front: added mass, kg, and Σ D_k, kg m².
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub front: Vec<[f64; 2]>,
-    /// The same machines, and what else they come to.
+    /// The machines of the Pareto front, with further measures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub front_points: Vec<FrontPoint>,
-    /// Lengths that were sought.
+    /// Lengths that were optimised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sought: Option<SoughtLengths>,
     /// Rotors that were chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rotors: Vec<ChosenRotor>,
-    /// What is left of balance over the payloads.
+    /// Residuals of balance over the range of payloads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub payload: Vec<Residual>,
-    /// Whether (7) and (8) hold: over a range of payloads they may not within bounds.
+    /// Whether (7) and (8) hold. Over a range of payloads they may fail to hold, within the given bounds.
     pub is_balanced: bool,
-    /// Those constants.
+    /// Balance constants of the new machine.
     #[serde(flatten)]
     pub balance: BalanceConstants,
 }
 
-/// Lengths, and how sure they are.
+/// Optimised lengths, and the reliability of the result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoughtLengths {
     /// Name and length, m.
     pub lengths: Vec<(String, f64)>,
-    /// A search proves nothing.
+    /// Always `false`: the search proves no minimum.
     pub certified: bool,
-    /// From how many places it started.
+    /// Number of starting points.
     pub starts: usize,
-    /// Starts that ended within a thousandth of the best.
+    /// Number of starts that ended within a thousandth of the best.
     pub agreeing: usize,
-    /// Machines that were looked at.
+    /// Number of machines evaluated.
     pub machines: usize,
-    /// How far the arms reach together, m.
+    /// Sum of the arms' lengths, m.
     pub reach: f64,
-    /// The reactionless workspace, m², of a machine that has one b of three drives.
+    /// Area of the reactionless workspace, m²; only for a machine with three drives and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<f64>,
 }
 
-/// A rotor that was chosen.
+/// A rotor whose inertia and ratio were optimised.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChosenRotor {
-    /// Name of its drive.
+    /// Name of the drive.
     pub drive: String,
-    /// kg m².
+    /// Rotor inertia, kg m².
     pub inertia: f64,
-    /// Below 0 it counter-rotates.
+    /// Gear ratio; negative if the rotor counter-rotates.
     pub ratio: f64,
 }
 
-/// The counterweights of a machine that are taken off before others are sought: all but those that are fixed.
+/// Returns the counterweights of a machine that are removed before others are placed: all but the fixed ones.
 pub fn taken_off(machine: &Machine) -> Vec<Counterweight> {
     machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect()
 }
 
-/// A machine balanced by the counterweights that are asked for, and what they come to, in a motion if one is given.
-/// `go_on` is asked after every machine of a search for lengths; the best so far is the answer where it says no.
+/// Balances a machine by counterweights and reports on it, with torques if a motion is given. Calls `go_on` after every
+/// machine of a search for lengths; once it returns `false`, the best machine so far is the result.
 ///
 /// # Errors
-/// If there are none, or what is asked for cannot be.
+/// Fails if no counterweights balance the machine, or the request is invalid.
 pub fn balanced(
     machine: &Machine,
     asked: &CounterweightRequest,
@@ -143,7 +143,7 @@ pub fn balanced(
             (found.placed, Some(sought))
         }
     };
-    // With other lengths the links are others, too.
+    // With other lengths, the front starts from the machine with these lengths.
     let base = if sought.is_some() { &placed.machine } else { machine };
     let front = match asked.front {
         Some(count) => front(base, &weighing, count).map_err(NoCounterweights::Front)?.points,
@@ -179,7 +179,7 @@ impl CounterweightReport {
         motion: Option<&Motion>,
         asked: &Weighing,
     ) -> Result<Self, MachineError> {
-        // With what it holds now, which is no part of what was added.
+        // The bare machine includes the present payload, so that it does not count as added mass.
         let bare = placed.machine.without_counterweights()?;
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
         let chosen = |rotor: &FreeRotor| {
@@ -187,7 +187,7 @@ impl CounterweightReport {
             let found = drive.rotor.unwrap_or_default();
             ChosenRotor { drive: drive.name.clone(), inertia: found.inertia, ratio: found.ratio }
         };
-        let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOADS)).transpose()?;
+        let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOAD_SAMPLES)).transpose()?;
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),
             torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),

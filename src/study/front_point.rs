@@ -1,4 +1,4 @@
-//! [`FrontPoint`]: what a machine of the front comes to beside its mass and inertia.
+//! [`FrontPoint`]: measures of one machine of a Pareto front, beyond its mass and inertia.
 
 use serde::Serialize;
 
@@ -11,39 +11,39 @@ use crate::planning::pose_space::plane_area;
 
 use super::measures::instants;
 
-/// A machine of the front, in numbers.
+/// Measures of one machine of a Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrontPoint {
-    /// kg.
+    /// Added mass, kg.
     pub added_mass: f64,
     /// Σ D_k, kg m².
     pub inertia: f64,
-    /// The greatest |torque| of a motor in a motion, weight included, N m; none without a motion.
+    /// Largest |torque| of a motor in a motion, weight included, N m; `None` without a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<f64>,
-    /// Area of the reactionless workspace, m²; none without a b that three drives hold.
+    /// Area of the reactionless workspace, m²; `None` unless the machine has three drives and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<f64>,
-    /// The greatest |g_k| if every counterweight is as far off as is usual ([`Tolerance::USUAL`]), kg m.
+    /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`Tolerance::USUAL`]), kg m.
     pub off_by: f64,
 }
 
-/// What the machines of a front may be told apart by beside mass and inertia.
+/// Further measures of the machines of a Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrontMeasure {
-    /// The greatest torque of the motion.
+    /// Largest torque in the motion.
     Torque,
-    /// The area of the reactionless workspace.
+    /// Area of the reactionless workspace.
     Workspace,
-    /// The greatest |g_k| with counterweights that are a little off.
+    /// Largest |g_k| if the counterweights deviate by the usual tolerance.
     OffBy,
 }
 
 impl FrontMeasure {
-    /// All of them.
+    /// All measures.
     pub const ALL: [Self; 3] = [Self::Torque, Self::Workspace, Self::OffBy];
 
-    /// In words, and its unit.
+    /// Returns the measure in words, and its unit.
     pub const fn words(self) -> [&'static str; 2] {
         match self {
             Self::Torque => ["greatest torque", "N m"],
@@ -52,7 +52,7 @@ impl FrontMeasure {
         }
     }
 
-    /// Of each machine of a front; none where a machine has none. A motion is one of as many drives.
+    /// Returns the measure of one machine; `None` where it is not defined. A motion has as many drives as the machine.
     pub fn of(self, placed: &Placed, motion: Option<&Motion>) -> Option<f64> {
         let point = FrontPoint::of(placed, motion.filter(|_| self == Self::Torque), self == Self::Workspace);
         match self {
@@ -64,13 +64,13 @@ impl FrontMeasure {
 }
 
 impl FrontPoint {
-    /// Added mass, kg, and Σ D_k, kg m².
+    /// Returns the added mass, kg, and Σ D_k, kg m².
     pub fn measures(&self) -> [f64; 2] {
         [self.added_mass, self.inertia]
     }
 
-    /// Of a machine of the front; a motion is one of as many drives. The workspace is found if it is asked for: it takes
-    /// longer than all else.
+    /// Returns the measures of one machine; a motion has as many drives as the machine. The workspace is computed only
+    /// if requested, because it takes longer than all other measures.
     pub fn of(placed: &Placed, motion: Option<&Motion>, workspace: bool) -> Self {
         let machine = &placed.machine;
         Self {
@@ -83,7 +83,7 @@ impl FrontPoint {
     }
 }
 
-/// Of all motors, N m.
+/// Returns the largest |torque| over all motors, N m.
 fn greatest_torque(machine: &Machine, motion: &Motion) -> f64 {
     let inertia = Inertia::of(machine);
     let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };

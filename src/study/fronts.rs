@@ -1,4 +1,4 @@
-//! [`Fronts`]: what less inertia costs in mass, of several machines under the same bounds, side by side.
+//! [`Fronts`]: Pareto fronts of added mass against inertia, for several machines under the same bounds.
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -10,59 +10,59 @@ use crate::planning::Motion;
 use crate::query::{Portion, Query, Same, Watch};
 use crate::session::design::Brief;
 
-/// A machine whose front is asked for.
+/// A machine whose Pareto front is requested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrontOf {
-    /// What it is called in the answer.
+    /// Name in the answer.
     pub name: String,
-    /// It; counterweights that it has are taken off first, but for fixed ones.
+    /// The machine; its counterweights are removed first, except fixed ones.
     pub machine: Machine,
-    /// The bounds that are the same for all, as they are for its links.
+    /// Bounds on the counterweights: the same for all machines, applied to the links of this one.
     pub asked: Weighing,
 }
 
 impl FrontOf {
-    /// As a brief has it: the one way to ask the same of machines whose links differ.
+    /// Builds the request from a brief, which states the same bounds for machines with different links.
     pub fn of(name: impl Into<String>, machine: &Machine, brief: &Brief) -> Self {
-        // So that the answer stays the same while the counterweights that are taken off change.
+        // Counterweights are removed here, so that the request stays equal while they change.
         let machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
         Self { name: name.into(), asked: brief.weighing(&machine), machine }
     }
 }
 
-/// What fronts are asked for.
+/// Request for Pareto fronts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrontsRequest {
-    /// Of these machines.
+    /// The machines.
     pub machines: Vec<FrontOf>,
-    /// How many machines each front has, at least two.
+    /// Number of machines on each front, at least two.
     pub count: usize,
-    /// The motion whose torque is told, of machines with as many drives as it has.
+    /// Motion for the torque, used for machines with the same number of drives.
     pub motion: Option<Same<Motion>>,
-    /// Whether the areas of workspaces are told: they take longer than all else.
+    /// Whether to compute the areas of workspaces, which take longer than all other measures.
     pub workspace: bool,
 }
 
-/// The front of one of several machines.
+/// Pareto front of one of several machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineFront {
-    /// What it is called.
+    /// Name of the machine.
     pub name: String,
-    /// Its front, or why it has none.
+    /// Its Pareto front, or why it has none.
     pub outcome: Result<ToldFront, NoWeights>,
 }
 
-/// A front, and what each of its machines comes to.
+/// A Pareto front with the measures of its machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToldFront {
-    /// From light to quick.
+    /// The machines, from the lightest to the one with the least inertia.
     pub front: Front,
-    /// Of each machine, in the same order.
+    /// Measures of each machine, in the same order.
     pub points: Vec<FrontPoint>,
 }
 
 impl ToldFront {
-    /// Added mass, kg, and Σ D_k, kg m², of each machine.
+    /// Returns added mass, kg, and Σ D_k, kg m², of each machine.
     pub fn measures(&self) -> Vec<[f64; 2]> {
         self.points.iter().map(FrontPoint::measures).collect()
     }
@@ -83,7 +83,8 @@ impl Serialize for MachineFront {
     }
 }
 
-/// The fronts of several machines, in their order; a machine that nothing balances has its reason, and the others stand.
+/// Query for the Pareto fronts of several machines, in their order. A machine that cannot be balanced gets the reason;
+/// the others are unaffected.
 #[derive(Debug)]
 pub struct Fronts {
     asked: FrontsRequest,
@@ -91,12 +92,12 @@ pub struct Fronts {
     now: Stage,
 }
 
-/// How far the front of one machine has come.
+/// Progress on the front of one machine.
 #[derive(Debug)]
 enum Stage {
-    /// Its machines are looked for.
+    /// The machines of the front are being computed.
     Search(Box<FrontSearch>),
-    /// What they come to is found.
+    /// The measures of these machines are being computed.
     Telling(Front, Vec<FrontPoint>),
 }
 
@@ -108,13 +109,13 @@ impl Query for Fronts {
         Self { now: Stage::of(&asked, 0), done: Vec::with_capacity(asked.machines.len()), asked }
     }
 
-    /// A machine of a front in a portion, found or told.
+    /// Computes one machine of a front, or its measures.
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
         let (known, all) = (self.done.len(), self.asked.machines.len() as f64);
         let Some(of) = self.asked.machines.get(known) else {
             return Portion::Done(std::mem::take(&mut self.done));
         };
-        // Of one machine the search is one half, what is told the other.
+        // For each machine the search counts as one half of the work, the measures as the other.
         let share = |half: f64| (known as f64 + 0.5 * half) / all;
         let outcome = match &mut self.now {
             Stage::Search(search) => match search.go_on(&mut |found| goes_on(share(found))) {
@@ -146,7 +147,7 @@ impl Query for Fronts {
 }
 
 impl Stage {
-    /// The beginning for one of the machines; after the last, nothing that is asked.
+    /// Returns the first stage for machine `i`; after the last machine, an empty stage that is never run.
     fn of(asked: &FrontsRequest, i: usize) -> Self {
         match asked.machines.get(i) {
             Some(of) => {

@@ -1,4 +1,5 @@
-//! [`JointExtremes`]: what every pin carries over a run, how near change points come, and what tilts the base.
+//! [`JointExtremes`]: extremes over a run of the pin forces, of the distance to change points, and of the moments that
+//! tilt the base.
 
 use serde::Serialize;
 
@@ -7,12 +8,12 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::cross;
 use crate::simulation::frame::Frame;
 
-/// The largest or least of something, and when.
+/// An extreme value and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extreme {
-    /// It.
+    /// The value.
     pub value: f64,
-    /// When, s.
+    /// Time, s.
     pub time: f64,
 }
 
@@ -24,73 +25,74 @@ impl Extreme {
     }
 }
 
-/// What a pin carries.
+/// Load of a pin over a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PinLoad {
-    /// Its name.
+    /// Name of the pin.
     pub name: String,
-    /// `base` or a link.
+    /// First body that it connects: `base` or a link.
     pub from: String,
-    /// A link.
+    /// Second body, a link.
     pub to: String,
     /// Largest force, N.
     pub peak: f64,
-    /// When, s.
+    /// Time of the largest force, s.
     pub time: f64,
     /// Mean force, N.
     pub mean: f64,
-    /// Steps at a change point, which peak and mean leave out.
+    /// Number of steps at a change point, which peak and mean omit.
     pub undefined_steps: u64,
 }
 
-/// Two drives whose parallelograms, or other loops, lie flat where they line up.
+/// Two drives whose closed loops, such as parallelograms, become flat where the drives align.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Transmission {
-    /// Their names.
+    /// Names of the drives.
     pub drives: [String; 2],
-    /// Pins that close parallelograms of these two drives.
+    /// Pins that close the parallelograms of these two drives.
     pub closures: Vec<String>,
-    /// Least |sin(q_k − q_l)|: 0 where a change point is passed.
+    /// Smallest |sin(q_k − q_l)|; 0 if a change point is passed.
     pub least: f64,
-    /// The transmission angle there, rad.
+    /// Transmission angle at that time, rad.
     pub angle: f64,
-    /// When, s.
+    /// Time of the smallest value, s.
     pub time: f64,
-    /// Change points passed between two steps.
+    /// Number of change points passed between two steps.
     pub passed: u64,
 }
 
-/// What tilts the base.
+/// Moments that tilt the base.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tilt {
-    /// Whether all heights are zero, so that the plane model knows of no tilting.
+    /// Whether all heights are zero, so that the planar model has no tilting moments.
     pub flat: bool,
     /// |n_x|, N m.
     pub x: Extreme,
     /// |n_y|, N m.
     pub y: Extreme,
-    /// The same of the part that comes from motion alone, N m.
+    /// Magnitude of the part that comes from motion alone, N m.
     pub motion: Extreme,
-    /// Largest weighted first moment about the height of the centre of mass, kg m²: 0 where no motion tilts.
+    /// Largest |s_k − z̄ g_k|, kg m²: the weighted first moment about the height of the centre of mass. At 0 no motion
+    /// tilts the base.
     pub residual: f64,
 }
 
-/// What joints carry over a run.
+/// Loads of the joints over a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointReport {
     /// Name of the scenario.
     pub scenario: String,
-    /// How many steps.
+    /// Number of steps.
     pub steps: u64,
-    /// The pins that a run keeps.
+    /// Loads of the recorded pins.
     pub pins: Vec<PinLoad>,
-    /// The pin that carries most.
+    /// Pin with the largest force.
     pub worst: String,
-    /// Pairs of drives whose loops lie flat where they line up.
+    /// Pairs of drives whose closed loops become flat where the drives align.
     pub transmission: Vec<Transmission>,
-    /// What tilts the base.
+    /// Moments that tilt the base.
     pub tilt: Tilt,
-    /// The first audit that the run has failed.
+    /// The first audit that failed, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub audit_failed: Option<String>,
 }
@@ -115,7 +117,7 @@ impl Sine {
     }
 }
 
-/// What the joints of a machine carry, frame by frame.
+/// Collects the extremes of the joint loads of a machine, frame by frame.
 #[derive(Clone, Debug)]
 pub struct JointExtremes {
     machine: Machine,
@@ -126,10 +128,10 @@ pub struct JointExtremes {
 }
 
 impl JointExtremes {
-    /// Nothing seen yet.
+    /// Returns a collector without frames.
     ///
     /// # Errors
-    /// If the forces in its joints cannot be told.
+    /// Fails if the forces in the joints cannot be determined.
     pub fn of(machine: Machine) -> Result<Self, JointsError> {
         let joints = Joints::of(&machine)?;
         let pairs = vec![Sine::default(); Inertia::pairs(machine.drives()).count()];
@@ -137,17 +139,17 @@ impl JointExtremes {
         Ok(Self { machine, joints, seen, pairs, tilt: [None; 3] })
     }
 
-    /// The pins that a run keeps.
+    /// Returns the pins whose loads are recorded.
     pub fn pins(&self) -> &[Pin] {
         &self.joints.pins()[..self.seen.len()]
     }
 
-    /// How many pins it leaves out.
+    /// Returns the number of pins that are not recorded.
     pub fn left_out(&self) -> usize {
         self.joints.pins().len() - self.seen.len()
     }
 
-    /// Takes in a frame of a run of the machine.
+    /// Includes a frame of a run of the machine.
     pub fn include(&mut self, frame: &Frame) {
         let (t, e) = (frame.time, frame.q.units());
         for (i, pin) in self.seen.iter_mut().enumerate() {
@@ -162,7 +164,7 @@ impl JointExtremes {
         }
     }
 
-    /// What was seen up to the last frame of a run of a scenario by name.
+    /// Returns the report up to the last frame of a run; `scenario` is the name.
     pub fn report(&self, scenario: &str, last: &Frame) -> JointReport {
         let (machine, joints) = (&self.machine, &self.joints);
         let axial = AxialMoments::of(machine);
@@ -178,13 +180,13 @@ impl JointExtremes {
         };
         let pins: Vec<PinLoad> = joints.pins().iter().zip(&self.seen).map(pin).collect();
         let none = Extreme { value: 0.0, time: 0.0 };
-        // A loop of three drives may lie flat by any pair of them.
+        // A loop of three drives may become flat by the alignment of any two of them.
         let other_loops = joints.pins().len() > machine.links().len() + joints.parallelograms().len();
         let pair = |((k, l), sine): ((usize, usize), &Sine)| {
             let seen = sine.least.unwrap_or(none);
             let closures = joints.parallelograms().iter().filter(|p| p.drives == (k, l));
             let closures: Vec<String> = closures.map(|p| p.name.clone()).collect();
-            // No loop lies flat where two links in series line up.
+            // Two links in series form no loop that could become flat.
             (!closures.is_empty() || other_loops).then(|| Transmission {
                 drives: [k, l].map(|k| machine.spec().drives[k].name.clone()),
                 closures,

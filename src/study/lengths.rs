@@ -1,8 +1,8 @@
-//! [`search`]: lengths of the links with which counterweights are least.
+//! [`search`]: optimises the lengths of the links together with the counterweights.
 //!
-//! For given lengths the counterweights are a cone program, and certified. Over the lengths nothing is convex, so the
-//! search starts at several places that a seed draws (Nelder–Mead from each) and says how many of them ended alike. What it
-//! finds is the best of what it has seen, and no proof.
+//! For given lengths the counterweights solve a cone program, with a certified minimum. The problem is not convex in
+//! the lengths. So the search runs Nelder–Mead from several starting points drawn from a seed, and reports how many of
+//! them ended at the same value. The result is the best machine evaluated, without a proof that it is optimal.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -15,103 +15,103 @@ use crate::planning::pose_space::plane_area;
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::session::design::Brief;
 
-/// A length that is sought: one under `[lengths]`, which several links may share, or that of one link.
+/// A length to optimise: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeLength {
-    /// Its name, or the link's.
+    /// Name of the length, or of the link.
     pub name: String,
-    /// From, to, m.
+    /// Lower and upper bound, m.
     pub ends: [f64; 2],
 }
 
-/// What is asked for.
+/// Request for a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthSearch {
-    /// Lengths that are sought. Links keep their mass per metre: centre of mass and inertia follow the length.
+    /// Lengths to optimise. Links keep their mass per metre; centre of mass and inertia scale with the length.
     pub lengths: Vec<FreeLength>,
-    /// Counterweights, and what is to be least.
+    /// Sites of the counterweights, and the objective.
     pub weighing: Weighing,
-    /// Whether places at the ends of links, or as far behind them, follow their lengths.
+    /// Whether sites at the ends of links, or as far behind the roots, move with the lengths.
     pub anywhere: bool,
-    /// How far the arms have to reach together at least, Σ |L_k|, m.
+    /// Lower bound on the sum of the arms' lengths, Σ |L_k|, m.
     pub least_reach: Option<f64>,
-    /// How large the reactionless workspace has to be at least, m².
+    /// Lower bound on the area of the reactionless workspace, m².
     pub least_workspace: Option<f64>,
-    /// From how many places it starts: first from the lengths that the machine has.
+    /// Number of starting points; the first is the present lengths.
     pub starts: usize,
-    /// For the others.
+    /// Seed of the other starting points.
     pub seed: u64,
 }
 
-/// What was found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// The machine with its counterweights; certified for these lengths.
+    /// The machine with its counterweights, which are certified for these lengths.
     pub placed: Placed,
-    /// m, in the order of what was sought.
+    /// Lengths in the order of the request, m.
     pub lengths: Vec<f64>,
-    /// How many starts were made, and how many of them ended within a thousandth of the best.
+    /// Number of starts, and number of those that ended within a thousandth of the best.
     pub starts: [usize; 2],
-    /// How many machines were looked at.
+    /// Number of machines evaluated.
     pub machines: usize,
 }
 
-/// How far a search has come.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Progress {
-    /// Starts that have ended.
+    /// Number of finished starts.
     pub starts: usize,
-    /// Machines looked at.
+    /// Number of machines evaluated.
     pub machines: usize,
-    /// The least so far; infinite if there is none.
+    /// Smallest objective so far; infinite before the first feasible machine.
     pub best: f64,
 }
 
-/// Why nothing was found.
+/// Why the search found no machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoLengths {
-    /// There is no such length.
+    /// The machine has no such length.
     #[error("no length {name}: want one of {known}")]
     Unknown {
-        /// What was asked for.
+        /// The name requested.
         name: String,
-        /// What there is.
+        /// Names of the machine's lengths.
         known: String,
     },
-    /// A range that cannot be.
+    /// An invalid interval of a length.
     #[error("length {name} from {from} to {to}: want two lengths above 0 in m, the first below the second")]
     Range {
-        /// Of what.
+        /// Name of the length.
         name: String,
-        /// m.
+        /// Lower bound, m.
         from: f64,
-        /// m.
+        /// Upper bound, m.
         to: f64,
     },
-    /// One length is named twice.
+    /// A length is requested twice.
     #[error("length {0} is sought in two ranges: want one")]
     Twice(String),
-    /// Nothing to seek, or from nowhere.
+    /// No lengths or no starts are requested.
     #[error("{0}")]
     Nothing(&'static str),
-    /// No machine that was looked at does.
+    /// No machine evaluated was feasible.
     #[error("none of {machines} machines with such lengths does: {why}")]
     None {
-        /// How many.
+        /// Number of machines evaluated.
         machines: usize,
-        /// Why the present lengths do not.
+        /// Why the machine with the present lengths is infeasible.
         why: String,
     },
-    /// The counterweights themselves.
+    /// The counterweights have no solution.
     #[error(transparent)]
     Weights(#[from] NoWeights),
 }
 
-/// What a machine that is no answer counts at least: more than any that is one. Less of what is missing is better.
-const NO_ANSWER: f64 = 1e30;
+/// Lower bound on the penalty value of an infeasible machine, above that of any feasible one. The value grows with the
+/// constraint violation.
+const INFEASIBLE: f64 = 1e30;
 
-/// The search for lengths with which counterweights are least, as a query: [`search`], in one portion that says how many
-/// of its starts have ended.
+/// [`search`] as a query, in one portion; its progress is the fraction of finished starts.
 pub struct Seeking {
     machine: Shared<Machine>,
     asked: LengthSearch,
@@ -135,17 +135,17 @@ impl Query for Seeking {
     }
 }
 
-/// Steps of one start for each length.
-const STEPS: usize = 70;
+/// Maximum number of Nelder–Mead iterations of one start, per length.
+const ITERATIONS_PER_LENGTH: usize = 70;
 
-/// A start has ended where its machines differ by less than this, of their range.
-const ALIKE: f64 = 1e-5;
+/// A start has converged when its simplex is narrower than this fraction of every length's interval.
+const CONVERGED_BELOW: f64 = 1e-5;
 
-/// The best lengths that it comes across. `go_on` is asked after every machine; the best so far is the answer where it
-/// says no.
+/// Searches for the lengths with the smallest objective. Calls `go_on` after every machine; once it returns `false`,
+/// the best machine so far is the result.
 ///
 /// # Errors
-/// If what is asked for cannot be, or nothing is found.
+/// Fails if the request is invalid, or no machine evaluated is feasible.
 pub fn search(
     machine: &Machine,
     asked: &LengthSearch,
@@ -160,7 +160,7 @@ pub fn search(
         machines: 0,
         ended: 0,
         best: None,
-        nearest_misses: [f64::INFINITY; 2],
+        least_violations: [f64::INFINITY; 2],
     };
     let present = asked.lengths.iter().map(|free| share(free.ends, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
@@ -179,7 +179,7 @@ pub fn search(
     let Some((value, lengths, placed)) = seen.best else {
         let why = match seen.asked.at(machine, &present) {
             Err(why) => why,
-            Ok(_) => short(seen.nearest_misses),
+            Ok(_) => short(seen.least_violations),
         };
         return Err(NoLengths::None { machines, why });
     };
@@ -231,11 +231,11 @@ fn share([from, to]: [f64; 2], x: f64) -> f64 {
     ((x - from) / (to - from)).clamp(0.0, 1.0)
 }
 
-/// From how many places a search starts that nobody has said more of.
-const STARTS: usize = 6;
+/// Number of starting points unless the request states another.
+const DEFAULT_STARTS: usize = 6;
 
 impl LengthSearch {
-    /// As a brief has it for a machine, with what is to be least.
+    /// Builds the search from a brief, for a machine and an objective.
     pub fn of(brief: &Brief, machine: &Machine, objective: Objective) -> Self {
         let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
         Self {
@@ -244,12 +244,13 @@ impl LengthSearch {
             anywhere: true,
             least_reach: brief.reach,
             least_workspace: brief.workspace,
-            starts: STARTS,
+            starts: DEFAULT_STARTS,
             seed: 1,
         }
     }
 
-    /// A machine with other lengths, as shares of their ranges; its links keep their mass per metre.
+    /// Returns the lengths, m, and the machine with these lengths. They are given as fractions of their intervals;
+    /// links keep their mass per metre.
     fn changed(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Machine), String> {
         let mut spec = machine.spec().clone();
         let mut lengths = Vec::with_capacity(shares.len());
@@ -273,10 +274,11 @@ impl LengthSearch {
         Ok((lengths, Machine::new(spec).map_err(|why| why.to_string())?))
     }
 
-    /// Counterweights for other lengths, and what misses; or why there are none.
+    /// Returns lengths, machine with counterweights, and constraint violations of reach, m, and area, m²; or why there
+    /// is no machine.
     fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, [f64; 2]), String> {
         let (lengths, changed) = self.changed(machine, shares)?;
-        let mut misses = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
+        let mut violations = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
         let weighing = match self.anywhere {
             true => Weighing { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() },
             false => self.weighing.clone(),
@@ -284,20 +286,20 @@ impl LengthSearch {
         let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
         if let Some(least) = self.least_workspace {
             let area = plane_area(&placed.machine).unwrap_or(0.0);
-            misses[1] = (least - area).max(0.0);
+            violations[1] = (least - area).max(0.0);
         }
-        Ok((lengths, placed, misses))
+        Ok((lengths, placed, violations))
     }
 }
 
-/// What the nearest machine misses, in words.
+/// Returns the constraint violations of the nearest machine in words.
 fn short([reach, area]: [f64; 2]) -> String {
     let missing = [(reach, "m", "reach"), (area, "m²", "workspace")];
     let missing = missing.iter().filter(|(by, ..)| *by > 0.0).map(|(by, unit, of)| format!("{by:.4} {unit} of {of}"));
     format!("the nearest is {} short", missing.collect::<Vec<_>>().join(" and "))
 }
 
-/// Places that go to the ends of their links, or as far behind them, go on to do so when these are longer or shorter.
+/// Moves the bounds of sites that lie at the ends of their links, or as far behind the roots, with the lengths.
 fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites> {
     let stretch = |site: &Sites| {
         let [was, is] = [machine, changed].map(|machine| machine.resolved_links()[site.link].length);
@@ -307,7 +309,7 @@ fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites
     sites.iter().map(stretch).collect()
 }
 
-/// What a search has seen.
+/// State of a search.
 struct Seen<'a> {
     machine: &'a Machine,
     asked: &'a LengthSearch,
@@ -316,8 +318,8 @@ struct Seen<'a> {
     machines: usize,
     ended: usize,
     best: Option<(f64, Vec<f64>, Placed)>,
-    /// What misses of reach, m, and of workspace, m², where both together are least.
-    nearest_misses: [f64; 2],
+    /// Violations of the bounds on reach, m, and on area, m², of the machine with the smallest sum of both.
+    least_violations: [f64; 2],
 }
 
 impl Seen<'_> {
@@ -331,12 +333,12 @@ impl Seen<'_> {
                 }
                 value
             }
-            Ok((.., misses)) => {
-                let all = misses.iter().sum::<f64>();
-                if all < self.nearest_misses.iter().sum::<f64>() {
-                    self.nearest_misses = misses;
+            Ok((.., violations)) => {
+                let all = violations.iter().sum::<f64>();
+                if all < self.least_violations.iter().sum::<f64>() {
+                    self.least_violations = violations;
                 }
-                NO_ANSWER * (1.0 + all)
+                INFEASIBLE * (1.0 + all)
             }
             Err(_) => f64::INFINITY,
         };
@@ -346,7 +348,7 @@ impl Seen<'_> {
     }
 }
 
-/// Nelder–Mead within the box of all shares; the least value that it comes to.
+/// Runs Nelder–Mead within the box of fractions 0 to 1; returns the smallest value it finds.
 fn downhill(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
     let n = from.len();
     let mut corners: Vec<(f64, Vec<f64>)> = vec![(seen.value(&from), from.clone())];
@@ -355,30 +357,30 @@ fn downhill(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
         corner[i] += if corner[i] > 0.5 { -0.25 } else { 0.25 };
         corners.push((seen.value(&corner), corner));
     }
-    for _ in 0..STEPS * n {
+    for _ in 0..ITERATIONS_PER_LENGTH * n {
         corners.sort_by(|a, b| a.0.total_cmp(&b.0));
         let wide = |i: usize| corners.iter().map(|(_, at)| (at[i] - corners[0].1[i]).abs()).fold(0.0, f64::max);
-        if seen.stopped || (0..n).all(|i| wide(i) < ALIKE) {
+        if seen.stopped || (0..n).all(|i| wide(i) < CONVERGED_BELOW) {
             break;
         }
         let worst = corners[n].clone();
-        let middle: Vec<f64> =
+        let centroid: Vec<f64> =
             (0..n).map(|i| corners[..n].iter().map(|(_, at)| at[i]).sum::<f64>() / n as f64).collect();
-        // The worst corner, thrown over the middle of the others by so much.
-        let thrown = |by: f64| -> Vec<f64> {
-            middle.iter().zip(&worst.1).map(|(m, w)| (m + by * (m - w)).clamp(0.0, 1.0)).collect()
+        // The worst corner, reflected through the centroid of the others and scaled by a factor.
+        let reflected = |by: f64| -> Vec<f64> {
+            centroid.iter().zip(&worst.1).map(|(m, w)| (m + by * (m - w)).clamp(0.0, 1.0)).collect()
         };
-        let over = thrown(1.0);
+        let over = reflected(1.0);
         let value = seen.value(&over);
         let better = match value {
             _ if value < corners[0].0 => {
-                let far = thrown(2.0);
+                let far = reflected(2.0);
                 let further = seen.value(&far);
                 Some(if further < value { (further, far) } else { (value, over) })
             }
             _ if value < corners[n - 1].0 || (n == 1 && value < worst.0) => Some((value, over)),
             _ => {
-                let near = thrown(if value < worst.0 { 0.5 } else { -0.5 });
+                let near = reflected(if value < worst.0 { 0.5 } else { -0.5 });
                 let nearer = seen.value(&near);
                 (nearer < worst.0.min(value)).then_some((nearer, near))
             }

@@ -1,4 +1,4 @@
-//! [`Measures`]: what balance has cost and what it has brought, as the literature compares designs.
+//! [`Measures`]: cost and benefit of balancing, by the measures of the literature.
 
 use serde::Serialize;
 
@@ -7,45 +7,46 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Motion;
 
-/// A machine beside the one that it was made from, which is called bare here.
+/// Comparison of a machine with the one that it was made from, the bare machine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measures {
     /// M − M_bare, kg.
     pub added_mass: f64,
-    /// Σ D_k − Σ D_k of the bare machine, kg m²; of both as if all C_kl vanished, so that no pose is preferred.
+    /// Σ D_k less Σ D_k of the bare machine, kg m²; both as if all C_kl vanished, so that the value does not depend on
+    /// the pose.
     pub added_inertia: f64,
-    /// M/M_bare + Σ D_k/Σ D_k of the bare machine: 2 where nothing has been added. Both weigh the same. None where the
-    /// bare machine has no Σ D_k above 0.
+    /// M/M_bare + Σ D_k/Σ D_k of the bare machine; 2 if nothing was added. `None` if Σ D_k of the bare machine is not
+    /// above 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_inertia_factor: Option<f64>,
-    /// What is left of what shakes and drives, if a motion is given.
+    /// Ratios of base reactions and torques, if a motion is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beta: Option<Beta>,
 }
 
-/// What is left of what the bare machine does in the same motion of its drives: the ratio of root mean squares over its
-/// time, 0 for nothing and 1 for as much. None where the bare machine has nothing.
+/// Ratios to the bare machine in the same motion of its drives, each of root mean squares over time. 0 if nothing
+/// remains, 1 if nothing is gained; `None` if the bare machine's value is zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Beta {
-    /// Of the dynamic |f_B|.
+    /// Ratio of the dynamic |f_B|.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
-    /// Of n_B on a fixed base, weight included.
+    /// Ratio of n_B on a fixed base, weight included.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moment: Option<f64>,
-    /// Of the torques of all motors, weight included.
+    /// Ratio of the torques of all motors, weight included.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<f64>,
 }
 
-/// Instants at which a motion is looked at.
-const INSTANTS: usize = 2000;
+/// Number of instants at which a motion is sampled.
+const SAMPLES: usize = 2000;
 
-/// Rounding's part of a root mean square.
-const NOTHING: f64 = 1e-12;
+/// Root mean squares up to this, in N or N m, are treated as zero.
+const ZERO_BELOW: f64 = 1e-12;
 
 impl Measures {
-    /// Of a machine beside the bare one; a motion is one of as many drives.
+    /// Compares a machine with the bare one; a motion has as many drives as both.
     pub fn of(bare: &Machine, machine: &Machine, motion: Option<&Motion>) -> Self {
         let (before, after) = (Inertia::of(bare), Inertia::of(machine));
         let [was, is] = [&before, &after].map(|inertia| inertia.total_momentum());
@@ -70,20 +71,20 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
             sum[1] += wrench.total().moment.powi(2);
             sum[2] += torque.iter().map(|x| x * x).sum::<f64>();
         }
-        sum.map(|sum| (sum / INSTANTS as f64).sqrt())
+        sum.map(|sum| (sum / SAMPLES as f64).sqrt())
     };
     let (was, is) = (squares(bare), squares(machine));
-    let [force, moment, torque] = [0, 1, 2].map(|i| (was[i] > NOTHING).then(|| is[i] / was[i]));
+    let [force, moment, torque] = [0, 1, 2].map(|i| (was[i] > ZERO_BELOW).then(|| is[i] / was[i]));
     Beta { force, moment, torque }
 }
 
-/// Between the instants, so that no step of the acceleration is looked at from the wrong side.
+/// Samples a motion at the middle of equal time intervals, to avoid sampling exactly at jumps of the acceleration.
 pub(super) fn instants(motion: &Motion) -> impl Iterator<Item = crate::planning::Reference> {
-    let dt = motion.duration() / INSTANTS as f64;
-    (0..INSTANTS).map(move |i| motion.at((i as f64 + 0.5) * dt))
+    let dt = motion.duration() / SAMPLES as f64;
+    (0..SAMPLES).map(move |i| motion.at((i as f64 + 0.5) * dt))
 }
 
-/// Greatest |q̈_k| of a motion, rad/s².
+/// Returns the largest |q̈_k| of a motion, rad/s².
 pub fn greatest_accelerations(motion: &Motion) -> PerDrive {
     let mut most = PerDrive::zeros(motion.at(0.0).q.len());
     for r in instants(motion) {

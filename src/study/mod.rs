@@ -1,7 +1,7 @@
-//! Many runs: side by side, around a nominal machine, by frequency; one run over time, and what its joints carry; what a
-//! plan costs, a workspace holds and counterweights come to; a machine, and its front, beside another; a motion from
-//! elsewhere, and the nearest one without reactions; the equations of the paper with today's numbers in them; and a
-//! machine that is built, from what its base felt.
+//! Studies built on runs and machines. Runs side by side, around a nominal machine, and by frequency; signals and joint
+//! loads of one run. Cost of a plan, contents of a workspace, counterweights, and Pareto fronts of several machines.
+//! Imported motions and the nearest ones without reactions; the equations of the paper with present values; and the
+//! trim of a built machine from measured base forces.
 
 pub mod advice;
 pub mod balance_constants;

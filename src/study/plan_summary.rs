@@ -1,4 +1,4 @@
-//! [`PlanSummary`]: what a planned task costs; or why it cannot be planned, and what would do.
+//! [`PlanSummary`]: cost of a planned task, or why it cannot be planned, and what would make it feasible.
 
 use serde::Serialize;
 
@@ -13,45 +13,45 @@ use crate::planning::pose_space::PoseSpace;
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run};
 
-/// What a task comes to.
+/// Summary of a task.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlanSummary {
-    /// Whether it can be planned.
+    /// Whether the task can be planned.
     pub feasible: bool,
-    /// Why not.
+    /// Why it cannot be planned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Name of the scenario.
     pub scenario: String,
-    /// At the start, rad.
+    /// Pose constant at the start, rad.
     pub b: f64,
     /// Whether the machine has a b.
     #[serde(skip)]
     pub has_b: bool,
-    /// The b that serve all points of the task, rad.
+    /// Intervals of b that serve all points of the task, rad.
     pub b_common: Vec<[f64; 2]>,
-    /// What the plan costs.
+    /// Cost of the plan.
     #[serde(flatten)]
     pub cost: Option<PlanCost>,
-    /// What is in the way.
+    /// What prevents the plan.
     #[serde(flatten)]
     pub obstacle: Option<Obstacle>,
 }
 
-/// What a planned motion costs, if it is followed exactly.
+/// Cost of a planned motion, if it is followed exactly.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlanCost {
-    /// T, s.
+    /// Duration T, s.
     pub duration: f64,
-    /// All drives, rad.
+    /// Angles of all drives at the start, rad.
     pub q_start: Vec<f64>,
-    /// All drives, rad.
+    /// Angles of all drives at the end, rad.
     pub q_end: Vec<f64>,
-    /// Least and greatest b on the way, rad.
+    /// Smallest and largest b along the motion, rad.
     pub b_range: [f64; 2],
-    /// Largest torque of each motor, either way, N m.
+    /// Largest |torque| of each motor, N m.
     pub peak_torque: Vec<f64>,
-    /// Largest rate of each motor, rad/s.
+    /// Largest |rate| of each motor, rad/s.
     pub peak_speed: Vec<f64>,
     /// Largest |n_B|, N m.
     pub peak_base_moment: f64,
@@ -59,64 +59,64 @@ pub struct PlanCost {
     pub moment_impulse: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// For the fastest motion: the limit that leads.
+    /// For the fastest motion: the limit that is reached most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limiting: Option<String>,
-    /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
+    /// For the fastest smooth motion: T/T* − 1, where T* has no limits on jerk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
-    /// T with corners rounded off, s, where the motion rests at them because that is faster.
+    /// T with rounded corners, s, if the motion stops at the corners because that is faster.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub blended: Option<f64>,
-    /// Of a change of b.
+    /// Cost of a change of b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceOfB>,
-    /// Three ways to make the same motion of the end effector.
+    /// Three ways to perform the same motion of the end effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alternatives: Option<Verdicts>,
-    /// The limit of a drive that is passed by most, and by what factor.
+    /// The limit of a drive that is exceeded most, and by what factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
-    /// The drives at the start and after each cycle, rad.
+    /// Angles of the drives at the start and after each cycle, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cycles: Option<Vec<Vec<f64>>>,
-    /// Largest change of a drive from the start to the end of each cycle of a closed path, rad.
+    /// Largest change of a drive angle from the start to the end of each cycle of a closed path, rad.
     #[serde(skip)]
     pub drift: Vec<f64>,
 }
 
-/// What a change of b costs.
+/// Cost of a change of b.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PriceOfB {
-    /// rad.
+    /// Change of b, rad.
     pub delta_b: f64,
-    /// Of any motion in this time: its largest |n_B|, N m.
+    /// Smallest possible peak |n_B| of any motion of this duration, N m.
     pub least_peak: f64,
-    /// How much a base that floats freely turns, rad.
+    /// Rotation of a freely floating base, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_turn: Option<f64>,
 }
 
-/// What is in the way of a plan, and what would do.
+/// What prevents a plan, and what would make it feasible.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Obstacle {
-    /// Where the path is blocked.
+    /// Point at which the path is blocked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub blocked: Option<Box<Blocked>>,
-    /// The b nearest to the one asked for at which it can be done, rad.
+    /// Nearest b to the requested one at which the task is feasible, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mending_b: Option<f64>,
-    /// The least move of one point after which all have a b in common.
+    /// Smallest move of one point after which all points have a b in common.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mend: Option<Mend>,
 }
 
 impl PlanSummary {
-    /// Of the task of a scenario, from its run, or from why there is none. `space` is the pose space of its machine, if
-    /// that has a b; a change of b may have a base that floats freely.
+    /// Summarises the task of a scenario, from its run or from the reason that there is none. `space` is the pose space
+    /// of its machine, if that has a b. With `base`, a change of b is assessed for that freely floating base.
     ///
     /// # Errors
-    /// If the numbers of the base are wrong.
+    /// Fails if the parameters of the base are invalid.
     pub fn of(
         scenario: &Scenario,
         space: Option<&PoseSpace>,
@@ -142,10 +142,10 @@ impl PlanSummary {
 }
 
 impl PlanCost {
-    /// Of the plan of a run.
+    /// Returns the cost of the plan of a run.
     ///
     /// # Errors
-    /// If the numbers of the base are wrong.
+    /// Fails if the parameters of the base are invalid.
     pub fn of(run: &Run, base: Option<&FloatingBase>) -> Result<Self, PriceError> {
         let plan = run.plan();
         let forecast = &plan.forecast;
@@ -181,7 +181,7 @@ impl PlanCost {
 }
 
 impl Obstacle {
-    /// Of a refusal.
+    /// Returns the obstacle that a refusal states.
     pub fn of(refusal: &Refusal) -> Self {
         Self {
             blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },

@@ -1,4 +1,4 @@
-//! [`PoseMeasures`]: the poses that put the end effector on a point while b is held, and what each is good for.
+//! [`PoseMeasures`]: the poses that reach a point at a given b, with their kinematic measures.
 
 use serde::Serialize;
 
@@ -8,32 +8,33 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 
-/// A pose and its measures.
+/// A pose and its kinematic measures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PoseMeasures {
     /// Absolute drive angles, unwrapped, rad.
     pub q: Vec<f64>,
     /// Relative angles, rad.
     pub a: Vec<f64>,
-    /// |det ∂(x, y)/∂(a_1, a_2)|, m²: 0 on a fold; of three drives.
+    /// |det ∂(x, y)/∂(a_1, a_2)|, m²: 0 on a fold. Only for three drives.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub det: Option<f64>,
     /// √det(J Jᵀ) of the Jacobian in absolute drive angles, m².
     pub manipulability: f64,
-    /// The largest singular value of J, N m/N.
+    /// Largest singular value of J: drive torque per force at the end effector, N m/N.
     pub worst_torque_per_force: f64,
-    /// min |sin(q_k − q_l)|: 0 at a change point.
+    /// min |sin(q_k − q_l)|; 0 at a change point.
     pub transmission: f64,
-    /// Signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1); of three drives.
+    /// Signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). Only for three drives.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<[i8; 3]>,
 }
 
-/// Sines below this are a change point's.
-const AT_CHANGE: f64 = 1e-9;
+/// A sine with absolute value below this is treated as zero: a change point.
+const ZERO_SINE_BELOW: f64 = 1e-9;
 
 impl PoseMeasures {
-    /// All poses of a point, m, at b, rad; of four drives and more the one nearest to the middle of the limits.
+    /// Returns all poses that reach a point, m, at b, rad; with four drives or more, the one nearest to the middle of
+    /// the joint limits.
     pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
         match space.planes() {
             Ok(planes) => planes.map().poses(p, b).iter().map(|pose| Self::on_plane(planes.map(), *pose)).collect(),
@@ -43,7 +44,7 @@ impl PoseMeasures {
 
     fn on_plane(map: &PlaneMap, pose: PlanePoint) -> Self {
         let dexterity = map.dexterity(pose.a);
-        let sign = |sine: f64| if sine.abs() < AT_CHANGE { 0 } else { sine.signum() as i8 };
+        let sign = |sine: f64| if sine.abs() < ZERO_SINE_BELOW { 0 } else { sine.signum() as i8 };
         Self {
             q: map.lift(pose).to_vec(),
             a: pose.a.to_vec(),
@@ -59,7 +60,7 @@ impl PoseMeasures {
         let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
         let squares: Vector = arms.iter().map(|j| j * j).sum();
         let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
-        // The two eigenvalues of J Jᵀ: half of (lengths ± |squares|).
+        // The eigenvalues of J Jᵀ are ½ (lengths ± |squares|).
         Self {
             q: q.to_vec(),
             a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),

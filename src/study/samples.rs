@@ -1,4 +1,4 @@
-//! [`Samples`]: signals of a run over time, ready to be drawn at any scale, summed up and copied out.
+//! [`Samples`]: signals of a run over time, for drawing at any scale, statistics and CSV.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -8,19 +8,19 @@ use crate::query::Growing;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 
-/// The samples of some signals of one run. One that is wanted anew has fewer for a while.
+/// Samples of some signals of one run. A signal that was added later has fewer samples until it catches up.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
     times: Vec<f64>,
-    /// By path.
+    /// Series by the path of the signal.
     series: Vec<(String, Series)>,
-    /// The signal of each series, where it grows.
+    /// Signal of each series; empty if the series do not grow.
     signals: Vec<Signal>,
 }
 
 impl Growing for Samples {
     type Item = Frame;
-    /// The signals that are wanted.
+    /// Requested signals.
     type Input = Vec<Signal>;
 
     fn begin(wanted: &Vec<Signal>) -> Self {
@@ -35,7 +35,7 @@ impl Growing for Samples {
 
     fn take(&mut self, frames: &[Frame]) {
         let count = self.count();
-        // A frame is large: it is read once for all signals.
+        // A frame is large, so it is read once for all signals.
         for (place, frame) in (count..).zip(frames) {
             if self.times.len() == place {
                 self.times.push(frame.time);
@@ -53,7 +53,7 @@ impl Growing for Samples {
         self.series.iter_mut().for_each(|(_, series)| series.truncate(count));
     }
 
-    /// Series of signals that are still wanted stay.
+    /// Keeps the series of signals that are still requested.
     fn turn_to(&mut self, wanted: &Vec<Signal>) {
         let mut known: Vec<(Signal, (String, Series))> =
             std::mem::take(&mut self.signals).into_iter().zip(std::mem::take(&mut self.series)).collect();
@@ -67,37 +67,37 @@ impl Growing for Samples {
 }
 
 impl Samples {
-    /// Signals by path, whose samples were taken at times, s; those with another number of samples are left out.
+    /// Returns signals by path with their sampling times, s. A signal with another number of samples is left out.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
         Self { times, series, signals: Vec::new() }
     }
 
-    /// The samples of a signal.
+    /// Returns the samples of a signal.
     pub fn series(&self, path: &str) -> Option<&Series> {
         self.series.iter().find(|(known, _)| known == path).map(|(_, series)| series)
     }
 
-    /// When each was taken, s.
+    /// Returns the sampling times, s.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The samples from one time to another, s, both included.
+    /// Returns the indices of the samples in a time interval, s, both bounds included.
     pub fn within(&self, [from, to]: [f64; 2]) -> Range<usize> {
         let start = self.times.partition_point(|t| *t < from - 1e-9);
         start..self.times.partition_point(|t| *t <= to + 1e-9).max(start)
     }
 
-    /// The same range with one sample more on each side, so that a line goes on to the edges.
+    /// Returns the same indices with one more sample on each side, so that a line extends to the edges.
     fn beyond(&self, shown: [f64; 2]) -> Range<usize> {
         let range = self.within(shown);
         range.start.saturating_sub(1)..(range.end + 1).min(self.times.len())
     }
 
-    /// The line of a signal over time, as it is drawn in so many columns of pixels: of each column the first, the least,
-    /// the greatest and the last sample, so that no peak is lost and the picture is that of all samples. Columns stand
-    /// still while the range moves.
+    /// Returns the line of a signal over time, reduced for drawing in `columns` columns of pixels. Each column keeps
+    /// its first, smallest, largest and last sample, so that no peak is lost and the picture equals that of all
+    /// samples. Columns are fixed in time while the interval moves.
     pub fn line(&self, path: &str, shown: [f64; 2], columns: usize) -> Vec<[f64; 2]> {
         let Some(series) = self.series(path) else { return Vec::new() };
         let range = self.beyond(shown);
@@ -119,8 +119,8 @@ impl Samples {
         points
     }
 
-    /// One signal against another over a time, in at most about so many points. Of each stretch of samples those stand
-    /// for it where either is least or greatest.
+    /// Returns one signal against another over a time interval, reduced to about `most` points. Each block of samples
+    /// keeps its first and last sample, and those where either signal is smallest or largest.
     pub fn line_against(&self, across: &str, path: &str, shown: [f64; 2], most: usize) -> Vec<[f64; 2]> {
         let (Some(x), Some(y)) = (self.series(across), self.series(path)) else { return Vec::new() };
         let range = self.within(shown);
@@ -142,22 +142,22 @@ impl Samples {
         points
     }
 
-    /// The least and the greatest value of a signal over a time; none where there is no number.
+    /// Returns the smallest and the largest value of a signal in a time interval; `None` if no sample is finite.
     pub fn bounds(&self, path: &str, shown: [f64; 2]) -> Option<[f64; 2]> {
         let series = self.series(path)?;
         Some(series.extremes(self.within(shown))?.map(|i| series.values()[i]))
     }
 
-    /// What a signal comes to over a time.
+    /// Returns the statistics of a signal in a time interval.
     pub fn statistics(&self, path: &str, shown: [f64; 2]) -> Option<Statistics> {
         self.series(path)?.statistics(self.within(shown))
     }
 
-    /// Every sample of a time as CSV, in SI units, with the head that `simulate` writes.
+    /// Returns every sample of a time interval as CSV, in SI units, with the header that `simulate` writes.
     pub fn csv(&self, shown: [f64; 2]) -> String {
         let mut text = String::from("time s");
         for signal in &self.signals {
-            // Paths and units hold neither commas nor quotes.
+            // Paths and units contain neither commas nor quotes.
             let _ = write!(text, ",{} {}", signal.path, signal.unit);
         }
         text.push('\n');

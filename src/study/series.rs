@@ -1,15 +1,15 @@
-//! A [`Series`]: the samples of one signal, with what is needed to draw and to sum up any stretch of them at once.
+//! [`Series`]: the samples of one signal, with fast extremes and statistics of any range.
 //!
-//! Above the samples stands a pyramid: blocks of 16 samples, of 16 such blocks and so on, each with its least and its
-//! greatest sample, sum and sum of squares. A stretch of a million samples is so made up of some hundred blocks, and no
-//! peak is lost. Sums are taken block by block, so nothing is lost by cancellation either.
+//! Above the samples stands a pyramid of blocks: of 16 samples, of 16 such blocks, and so on. Each block stores its
+//! smallest and largest sample, sum and sum of squares. A range of a million samples then consists of some hundred
+//! blocks, and no peak is lost. Sums are formed block by block, without cancellation.
 
 use std::ops::Range;
 
-/// Samples in a block, and blocks in a larger one.
-const SHARE: usize = 16;
+/// Number of samples in a block, and of blocks in the next larger one.
+const BLOCK_LEN: usize = 16;
 
-/// What is known of a stretch of samples. What is no finite number counts for nothing.
+/// Statistics of a block of samples; samples that are not finite are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Block {
     least: (usize, f64),
@@ -32,7 +32,7 @@ impl Block {
         }
     }
 
-    /// With the block after it; of equal samples the first counts.
+    /// Joins the block with the next one; of equal samples, the first is kept.
     fn and(self, next: Self) -> Self {
         Self {
             least: if next.least.1 < self.least.1 { next.least } else { self.least },
@@ -44,18 +44,18 @@ impl Block {
     }
 }
 
-/// What a stretch of samples comes to.
+/// Statistics of a range of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// How many samples are numbers.
+    /// Number of finite samples.
     pub count: usize,
-    /// The least.
+    /// Smallest sample.
     pub least: f64,
-    /// The greatest.
+    /// Largest sample.
     pub greatest: f64,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
-    /// The root of the mean of their squares.
+    /// Root mean square.
     pub rms: f64,
 }
 
@@ -63,29 +63,31 @@ pub struct Statistics {
 #[derive(Clone, Debug, Default)]
 pub struct Series {
     values: Vec<f64>,
-    /// Whole blocks, of each size.
+    /// Complete blocks of each size.
     levels: Vec<Vec<Block>>,
 }
 
 impl Series {
-    /// The samples.
+    /// Returns the samples.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// One more sample.
+    /// Appends a sample.
     pub fn push(&mut self, value: f64) {
         self.values.push(value);
         let mut count = self.values.len();
         let mut level = 0;
-        while count.is_multiple_of(SHARE) {
+        while count.is_multiple_of(BLOCK_LEN) {
             let block = match level {
                 0 => {
-                    let from = count - SHARE;
+                    let from = count - BLOCK_LEN;
                     let samples = self.values[from..].iter().enumerate();
                     samples.fold(Block::EMPTY, |all, (i, value)| all.and(Block::of(from + i, *value)))
                 }
-                _ => self.levels[level - 1][count - SHARE..].iter().fold(Block::EMPTY, |all, block| all.and(*block)),
+                _ => {
+                    self.levels[level - 1][count - BLOCK_LEN..].iter().fold(Block::EMPTY, |all, block| all.and(*block))
+                }
             };
             if level == self.levels.len() {
                 self.levels.push(Vec::new());
@@ -96,25 +98,25 @@ impl Series {
         }
     }
 
-    /// Only the first samples, so many of them.
+    /// Keeps the first `count` samples.
     pub fn truncate(&mut self, count: usize) {
         self.values.truncate(count);
         let mut size = 1;
         for level in &mut self.levels {
-            size *= SHARE;
+            size *= BLOCK_LEN;
             level.truncate(count / size);
         }
     }
 
-    /// What is known of a stretch.
+    /// Returns the statistics of a range.
     fn block(&self, range: Range<usize>) -> Block {
         let (mut from, to) = (range.start, range.end.min(self.values.len()));
         let mut all = Block::EMPTY;
         while from < to {
-            // The largest whole block that begins here and does not reach too far.
+            // The largest complete block that begins here and ends within the range.
             let (mut size, mut level) = (1, 0);
-            while level < self.levels.len() && from.is_multiple_of(size * SHARE) && from + size * SHARE <= to {
-                size *= SHARE;
+            while level < self.levels.len() && from.is_multiple_of(size * BLOCK_LEN) && from + size * BLOCK_LEN <= to {
+                size *= BLOCK_LEN;
                 level += 1;
             }
             all = all.and(match level {
@@ -126,13 +128,13 @@ impl Series {
         all
     }
 
-    /// Where the least and the greatest sample of a stretch stand; none where no sample is a number.
+    /// Returns the indices of the smallest and the largest sample in a range; `None` if no sample is finite.
     pub fn extremes(&self, range: Range<usize>) -> Option<[usize; 2]> {
         let block = self.block(range);
         (block.count > 0).then_some([block.least.0, block.greatest.0])
     }
 
-    /// What a stretch comes to; none where no sample is a number.
+    /// Returns the statistics of a range; `None` if no sample is finite.
     pub fn statistics(&self, range: Range<usize>) -> Option<Statistics> {
         let block = self.block(range);
         let count = block.count as f64;

@@ -1,20 +1,21 @@
-//! What of the base wrench lies at which frequency: amplitude spectral density, cumulative RMS, jitter limits.
+//! Spectra of the base wrench: amplitude spectral density, cumulative RMS, jitter limits.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | x_n, h | samples, and the time between two | its own; s |
+//! | x_n, h | samples, and the time between two | unit of the signal; s |
 //! | w_n | window; Hann: ½ (1 − cos(2π n/N)) | 1 |
-//! | X_m | Σ_n w_n x_n e^{−2πi nm/N} | its own |
+//! | X_m | Σ_n w_n x_n e^{−2πi nm/N} | unit of the signal |
 //! | f_m | m/(N h), m = 0 … N/2 | Hz |
 //! | P_m | one-sided power spectral density, c_m h \|X_m\|² / Σ w_n²; c = 1 at 0 and at N/2, else 2 | unit²/Hz |
 //! | A_m | amplitude spectral density √P_m | unit/√Hz |
 //! | r_m | cumulative RMS, √(Σ_{i ≤ m} P_i / (N h)) | unit |
 //!
-//! By Parseval r at the end is the window-weighted RMS, √(Σ (w x)² / Σ w²): with no window that of the samples, with
-//! Hann one that counts the middle of the record most. The mean is left in: it stands at f = 0 and, through a Hann
-//! window, at the next line too. A motion that passes once is no stationary signal: its density falls as its record
-//! grows longer, so densities compare over records of one length.
+//! By Parseval's theorem the last r is the window-weighted RMS, √(Σ (w x)² / Σ w²). Without a window it is the RMS of
+//! the samples; with the Hann window, the middle of the record has the largest weight. The mean is not removed: it
+//! appears at f = 0 and, with the Hann window, at the next frequency too. A motion that happens once is not a
+//! stationary signal: its density falls as the record grows longer. So densities are comparable only between records of
+//! one length.
 //!
 //! # Source
 //! P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra* (1967), with one segment;
@@ -27,14 +28,15 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use thiserror::Error;
 
-/// How samples are weighted before they are transformed.
+/// Window function of the samples before the transform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Window {
-    /// ½ (1 − cos(2π n/N)), periodic: little leaks far away.
+    /// Hann window ½ (1 − cos(2π n/N)), periodic: little leakage to distant frequencies.
     #[default]
     Hann,
-    /// None: every sample alike. Right for a motion from rest to rest that the record holds as a whole.
+    /// No window: all samples have the same weight. Right for a motion from rest to rest that the record contains as a
+    /// whole.
     Rectangular,
 }
 
@@ -61,32 +63,32 @@ impl FromStr for Window {
 /// Why there is no spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SpectrumError {
-    /// Too few samples to tell frequencies apart.
+    /// Too few samples to resolve frequencies.
     #[error(
         "no spectrum comes of {}: want at least {least}, with a longer record or a smaller step",
         counted(count, "sample")
     )]
     TooFew {
-        /// Samples that were given.
+        /// Number of samples given.
         count: usize,
-        /// How many it takes.
+        /// Minimum number of samples.
         least: usize,
     },
-    /// A sample, or the time between two.
+    /// A sample is not finite.
     #[error("sample {index} is not finite: want a run that does not diverge")]
     NotFinite {
-        /// The sample, counted from 0.
+        /// Index of the sample, from 0.
         index: usize,
     },
-    /// The time between two samples.
+    /// The time between two samples is not above 0.
     #[error("a step of {step} s: want one above 0 s")]
     Step {
-        /// s.
+        /// Time between two samples, s.
         step: f64,
     },
 }
 
-/// The fewest samples of a spectrum.
+/// Minimum number of samples of a spectrum.
 pub const LEAST: usize = 8;
 
 /// A one-sided spectrum of one signal.
@@ -94,17 +96,17 @@ pub const LEAST: usize = 8;
 pub struct Spectrum {
     /// f_m, Hz.
     pub frequency: Vec<f64>,
-    /// A_m, the signal's unit by √Hz.
+    /// A_m, unit of the signal/√Hz.
     pub density: Vec<f64>,
-    /// r_m, the signal's unit.
+    /// r_m, unit of the signal.
     pub cumulative_rms: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Of samples `step` seconds apart.
+    /// Returns the spectrum of samples that are `step` seconds apart.
     ///
     /// # Errors
-    /// If there are fewer than [`LEAST`] samples, one is not finite, or the step is not above 0.
+    /// Fails if there are fewer than [`LEAST`] samples, one is not finite, or the step is not above 0.
     pub fn of(samples: &[f64], step: f64, window: Window) -> Result<Self, SpectrumError> {
         let count = samples.len();
         if count < LEAST {
@@ -120,7 +122,7 @@ impl Spectrum {
         let mut weighted: Vec<f64> = samples.iter().zip(&weights).map(|(x, w)| x * w).collect();
         let transform = RealFftPlanner::new().plan_fft_forward(count);
         let mut lines = transform.make_output_vec();
-        // Both are as long as the transform wants them.
+        // Unreachable: both arrays have the length of the transform.
         if transform.process(&mut weighted, &mut lines).is_err() {
             return Err(SpectrumError::TooFew { count, least: LEAST });
         }
@@ -139,25 +141,25 @@ impl Spectrum {
         Ok(spectrum)
     }
 
-    /// The window-weighted RMS of the whole signal.
+    /// Returns the window-weighted RMS of the whole signal.
     pub fn rms(&self) -> f64 {
         self.cumulative_rms.last().copied().unwrap_or(0.0)
     }
 
-    /// The frequency below which a share of the power lies, Hz.
+    /// Returns the frequency below which a fraction of the power lies, Hz.
     pub fn below(&self, share: f64) -> f64 {
         let wanted = share.sqrt() * self.rms();
         let at = self.cumulative_rms.iter().position(|r| *r >= wanted).unwrap_or(0);
         self.frequency.get(at).copied().unwrap_or(0.0)
     }
 
-    /// Where the density is greatest, Hz, and what it is there, the signal's unit by √Hz.
+    /// Returns the frequency with the largest density, Hz, and that density, unit of the signal/√Hz.
     pub fn greatest(&self) -> [f64; 2] {
         let lines = self.frequency.iter().zip(&self.density);
         lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or([0.0; 2], |(frequency, density)| [*frequency, *density])
     }
 
-    /// How the density stands against a limit; `None` if no line above 0 Hz lies where the limit is defined.
+    /// Compares the density with a limit; `None` if no frequency above 0 Hz lies where the limit is defined.
     pub fn against(&self, limit: &JitterLimit) -> Option<JitterVerdict> {
         let lines = self.frequency.iter().zip(&self.density).skip(1);
         let ratios = lines.filter_map(|(f, density)| {
@@ -174,31 +176,31 @@ impl Spectrum {
     }
 }
 
-/// A spectrum against its limit, where it comes nearest to it or passes it most.
+/// Comparison of a spectrum with its limit, at the frequency with the largest ratio.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct JitterVerdict {
-    /// Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
-    /// A there, unit/√Hz.
+    /// Density A at this frequency, unit/√Hz.
     pub density: f64,
-    /// The limit there, unit/√Hz.
+    /// Limit at this frequency, unit/√Hz.
     pub limit: f64,
-    /// Density by limit.
+    /// Density divided by limit.
     pub ratio: f64,
-    /// Whether the density keeps to the limit at every frequency above 0 at which there is one.
+    /// Whether the density is within the limit at every frequency above 0 Hz where the limit is defined.
     pub within: bool,
 }
 
-/// A jitter limit: the greatest amplitude spectral density that will do, by frequency.
+/// A jitter limit: upper bound on the amplitude spectral density, by frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JitterLimit {
-    /// Frequency, Hz, rising, and limit, unit/√Hz.
+    /// Frequency, Hz, ascending, and limit, unit/√Hz.
     points: Vec<(f64, f64)>,
 }
 
 impl JitterLimit {
-    /// The limit at a frequency, Hz, between two points as a straight line of log against log. One point is a limit at
-    /// every frequency; of several, none holds below the first or above the last.
+    /// Returns the limit at a frequency, Hz, interpolated linearly in the logarithms of both. One point is a limit at
+    /// every frequency; several points set no limit below the first or above the last.
     pub fn at(&self, frequency: f64) -> Option<f64> {
         if let [(_, only)] = self.points[..] {
             return Some(only);
@@ -213,7 +215,7 @@ impl JitterLimit {
         Some(v0 * (v1 / v0).powf(share))
     }
 
-    /// Frequencies, Hz, and limits, unit/√Hz, that it is made of; one point holds everywhere.
+    /// Returns frequencies, Hz, and limits, unit/√Hz, of the points; one point holds at every frequency.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
@@ -222,7 +224,7 @@ impl JitterLimit {
 impl FromStr for JitterLimit {
     type Err = String;
 
-    /// One number for all frequencies, or pairs `f:v,f:v` with rising f.
+    /// Reads one number for all frequencies, or pairs `f:v,f:v` with ascending f.
     fn from_str(text: &str) -> Result<Self, String> {
         const WANT: &str = "want one number above 0, or pairs FREQUENCY:LIMIT with rising frequencies in Hz, all above \
                             0, such as 1:0.01,10:0.001";

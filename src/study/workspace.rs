@@ -1,4 +1,4 @@
-//! [`WorkspaceReport`]: the reactionless workspace of a b: its boundary and area, what lies inside, and points in it.
+//! [`WorkspaceReport`]: the reactionless workspace at a b: boundary, area, interior curves, and given points.
 
 use serde::Serialize;
 
@@ -8,97 +8,97 @@ use crate::mechanics::planar::{Vector, unit};
 use crate::planning::pose_space::{Outline, Planes, PoseSpace};
 use crate::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
-/// What the end effector reaches while b is held.
+/// Region that the end effector reaches while b is held.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorkspaceReport {
-    /// m²; 0 of a curve.
+    /// Area, m²; 0 if the workspace is a curve.
     pub area: f64,
-    /// ∫|det|, m²: more than the area where several poses reach one point; of three drives.
+    /// ∫|det|, m²: larger than the area if several poses reach one point. Only for three drives.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sheet_area: Option<f64>,
-    /// Of the curve, m; of other numbers of drives.
+    /// Length of the curve, m. Only for machines without closed-form planes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub length: Option<f64>,
-    /// m.
+    /// Smallest x, m.
     pub x_min: f64,
-    /// m.
+    /// Largest x, m.
     pub x_max: f64,
-    /// m.
+    /// Smallest y, m.
     pub y_min: f64,
-    /// m.
+    /// Largest y, m.
     pub y_max: f64,
-    /// The boundary, m: outer loops run counter-clockwise.
+    /// Boundary loops, m: outer loops run counter-clockwise.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// The curve of two drives, m; of other numbers of drives than three.
+    /// The curve that two drives reach, m. Only for machines without closed-form planes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<Vec<[f64; 2]>>,
-    /// What lies inside; of three drives.
+    /// Curves and areas inside the workspace. Only for three drives.
     #[serde(flatten)]
     pub inside: Option<Inside>,
-    /// Points that were asked about.
+    /// Points of the request.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointInWorkspace>,
 }
 
-/// What lies inside the workspace of three drives.
+/// Curves and areas inside the workspace of three drives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inside {
-    /// Whether a fold runs through it.
+    /// Whether a fold runs through the interior.
     pub interior_singularity: bool,
-    /// The most poses of a point.
+    /// Maximum number of poses at one point.
     pub sheets: usize,
-    /// Area that so many poses reach, from one on, m².
+    /// Areas reached by at least 1, 2, 3, … poses, m².
     pub areas_by_poses: Vec<f64>,
-    /// Where two poses meet, m.
+    /// Folds, where two poses meet, m.
     pub fold_curves: Vec<Vec<[f64; 2]>>,
-    /// Where folds turn back, m.
+    /// Cusps, where folds turn back, m.
     pub cusps: Vec<[f64; 2]>,
-    /// Joint limits inside, m.
+    /// Joint limits in the interior, m.
     pub inner_limits: Vec<Vec<[f64; 2]>>,
-    /// Where the linkage goes flat.
+    /// Change points, where the linkage becomes flat.
     pub change_point_curves: Vec<ChangePointCurve>,
-    /// The parts on both sides of these.
+    /// Parts of the workspace on both sides of the change points.
     pub areas_by_side: Vec<AreaOfSide>,
 }
 
-/// Change points of two drives.
+/// Curve of change points of two drives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChangePointCurve {
-    /// The drives, counted from 1.
+    /// The two drives, from 1.
     pub pair: [usize; 2],
-    /// q_l − q_k, in half turns.
+    /// q_l − q_k, in multiples of π.
     pub half_turns: i32,
-    /// m.
+    /// Points of the curve, m.
     pub line: Vec<[f64; 2]>,
 }
 
-/// What poses with `half_turns` π ≤ q_l − q_k ≤ (`half_turns` + 1) π reach.
+/// Part of the workspace that poses with `half_turns` π ≤ q_l − q_k ≤ (`half_turns` + 1) π reach.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AreaOfSide {
-    /// The drives, counted from 1.
+    /// The two drives, from 1.
     pub pair: [usize; 2],
-    /// From where on.
+    /// Lower bound of q_l − q_k, in multiples of π.
     pub half_turns: i32,
-    /// m².
+    /// Area, m².
     pub area: f64,
     /// ∫|det|, m².
     pub sheet_area: f64,
 }
 
-/// A point, and how the machine takes it.
+/// A point, and the poses that reach it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointInWorkspace {
-    /// m.
+    /// The point, m.
     pub point: [f64; 2],
-    /// From the boundary, negative outside, or from the curve, m.
+    /// Distance from the boundary, negative outside, or from the curve, m.
     pub distance: f64,
-    /// Its poses.
+    /// Poses that reach the point.
     pub poses: Vec<PoseMeasures>,
 }
 
 impl WorkspaceReport {
-    /// Of a machine with its pose space at b, rad, with points that are asked about, m; none where the joint limits leave
-    /// no pose.
+    /// Returns the workspace of a machine at b, rad, with an entry for each of the given points, m; `None` if the joint
+    /// limits permit no pose.
     pub fn of(machine: &Machine, space: &PoseSpace, b: f64, points: &[Vector]) -> Option<Self> {
         let located = |distance: &dyn Fn(Vector) -> f64| {
             let one = |p: &Vector| PointInWorkspace {
@@ -180,12 +180,12 @@ impl Inside {
     }
 }
 
-/// Drives as people count them.
+/// Returns the two drives of a pair, counted from 1.
 fn drives(pair: usize) -> [usize; 2] {
     PAIRS[pair].map(|k| k + 1)
 }
 
-/// The parts on the sides of each pair that has change points inside.
+/// Returns the parts on the sides of each pair of drives that has change points inside.
 fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<AreaOfSide> {
     let divided = (0..PAIRS.len()).filter(|&pair| changes.iter().any(|c| c.pair == pair));
     let part = |(pair, half_turns): (usize, i32)| {

@@ -1,4 +1,4 @@
-//! [`Alternative`]: other ways to do the same task.
+//! [`Alternative`]: alternative motions for the same task.
 
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::posed::serve;
@@ -7,44 +7,44 @@ use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
 use crate::session::settled;
 use crate::simulation::plant::Wheel;
 
-/// A way to bring the end effector from A to B.
+/// A method of moving the end effector from A to B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alternative {
-    /// As the scenario says.
+    /// The scenario's own method.
     AsGiven,
-    /// On one plane of joint space: the base feels nothing.
+    /// Motion on one plane of joint space, without reactions on the base.
     Reactionless,
     /// The end effector on a straight line with minimum-norm rates, as in case 1.
     StraightLine,
     /// Another pose at the end, as in case 2.
     OtherPose,
-    /// As the straight line, with a reaction wheel that takes up the moment while it can.
+    /// As [`StraightLine`](Self::StraightLine), with a reaction wheel that takes up the moment within its limits.
     Wheel,
-    /// As the straight line, slower.
+    /// As [`StraightLine`](Self::StraightLine), slower.
     Slowly,
 }
 
-/// How many times longer [`Alternative::Slowly`] takes: forces and moments fall with the square.
+/// Factor on the duration for [`Alternative::Slowly`]; forces and moments fall with its square.
 pub const SLOWER: f64 = 4.0;
 
-/// The wheel of [`Alternative::Wheel`], if the base has none: of a size that a satellite of a few hundred kilograms
+/// Wheel of [`Alternative::Wheel`] if the base has none, of the size that a satellite of a few hundred kilograms
 /// carries.
-const WHEEL: Wheel = Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0) };
+const DEFAULT_WHEEL: Wheel = Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0) };
 
-/// How far drive 1 ends from where the reactionless motion would have it, rad, if the task does not say; as in case 2.
-const OTHER_POSE: f64 = -0.2375;
+/// Offset of the final angle of drive 1 from its initial one, rad, if the task states no final angle; as in case 2.
+const OTHER_POSE_OFFSET_RAD: f64 = -0.2375;
 
 impl Alternative {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 6] =
         [Self::AsGiven, Self::Reactionless, Self::StraightLine, Self::OtherPose, Self::Wheel, Self::Slowly];
 
-    /// Whether a machine has such a way: without redundancy the end effector's motion leaves drive 1 none of its own.
+    /// Returns whether a machine has this method; without redundancy, the end effector's motion determines drive 1.
     pub fn is_of(self, scenario: &Scenario) -> bool {
         self != Self::OtherPose || scenario.machine.is_redundant()
     }
 
-    /// Short name, as in file names and on the command line.
+    /// Returns the short name, as in file names and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::AsGiven => "as-given",
@@ -56,7 +56,7 @@ impl Alternative {
         }
     }
 
-    /// A few words.
+    /// Returns the title.
     pub fn title(self) -> &'static str {
         match self {
             Self::AsGiven => "As given",
@@ -68,12 +68,12 @@ impl Alternative {
         }
     }
 
-    /// The scenario of this way: the same points, machine, plant, base and control.
+    /// Returns the scenario of this method: the same points, machine, plant, base and control.
     pub fn of(self, scenario: &Scenario) -> Scenario {
         if self == Self::AsGiven {
             return scenario.clone();
         }
-        // Edits before the first step belong to the task; later ones would make it another run.
+        // Edits before the first step belong to the task; later ones would change the run.
         let start = settled(scenario).map_or_else(|_| scenario.clone(), |(start, _)| start);
         let scenario = &start;
         let mut other = start.clone();
@@ -87,7 +87,7 @@ impl Alternative {
             Self::AsGiven => {}
             Self::Reactionless => {
                 set("kind", word("reactionless"));
-                // The shape stays where this kind of task has it.
+                // Otherwise, keep the shape that the scenario states.
                 if matches!(scenario.task.shape(), Shape::Line) && scenario.task.shape.is_none() {
                     set("shape", word("joint-line"));
                 }
@@ -109,7 +109,7 @@ impl Alternative {
             set("b_to", word("default"));
         }
         if self == Self::Slowly {
-            // The fastest has no time of its own to multiply.
+            // The fastest law ignores the time, so scaling it would have no effect.
             if scenario.task.law.is_fastest() {
                 set("law", word("quintic"));
             }
@@ -122,10 +122,10 @@ impl Alternative {
             other.duration = other.duration.map(|duration| SLOWER * duration);
         }
         if self == Self::OtherPose && other.task.first_drive_to.is_none() {
-            other.task.first_drive_to = start_of_first_drive(scenario).map(|q| q + OTHER_POSE);
+            other.task.first_drive_to = start_of_first_drive(scenario).map(|q| q + OTHER_POSE_OFFSET_RAD);
         }
         if self == Self::Wheel {
-            other.base.wheel.get_or_insert(WHEEL);
+            other.base.wheel.get_or_insert(DEFAULT_WHEEL);
         } else {
             other.base.wheel = None;
         }
@@ -136,7 +136,8 @@ impl Alternative {
     }
 }
 
-/// Where drive 1 is at A at the b of the task, rad, where that is on planes or leaves freedoms.
+/// Returns the angle of drive 1 at A and the task's b, rad, if the machine has planes or free drives at a point and a
+/// b.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
     let points = scenario.task.points();
     let space = PoseSpace::of(&scenario.machine).ok()?;

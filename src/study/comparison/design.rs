@@ -1,4 +1,4 @@
-//! [`Design`]: a machine beside that of another run, by what it weighs, how far it is balanced and what that has cost.
+//! [`Design`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another run.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::session::scenario::Task;
 use crate::settings::number::counted;
 use crate::study::measures::{Beta, Measures};
 
-/// A machine with the task that it does.
+/// A machine with its task and motion.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     machine: Machine,
@@ -20,22 +20,23 @@ pub struct Candidate {
     motion: Arc<Motion>,
 }
 
-/// A machine by itself, and beside another one.
+/// Measures of a machine, and its comparison with another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     /// kg.
     pub mass: f64,
     /// Σ D_k, kg m².
     pub inertia: f64,
-    /// What is left of (7), largest |g_k|, kg m, and of (8), largest |C_kl|, kg m².
+    /// Residuals: of (7), largest |g_k|, kg m; and of (8), largest |C_kl|, kg m².
     pub left: [f64; 2],
-    /// Beside the machine of the first run, in the motion of that; without β where that says nothing.
+    /// Comparison with the machine of the first run, in the first run's motion; without β if that motion does not
+    /// apply.
     pub beside: Option<Measures>,
-    /// Why something is not set beside it.
+    /// Why a comparison is missing.
     pub apart: Option<String>,
 }
 
-/// Columns of designs, in order.
+/// Columns of a table of designs, in order.
 pub const DESIGN: [Column<Design>; 10] = [
     column("mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
     column("inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
@@ -77,13 +78,13 @@ pub const DESIGN: [Column<Design>; 10] = [
 ];
 
 impl Candidate {
-    /// Of a run at its end: with what edits have made of its machine.
+    /// Returns the machine, task and motion of a run at its end, after all edits.
     pub fn of(run: &Run) -> Self {
         let scenario = run.scenario();
         Self { machine: scenario.machine.clone(), task: scenario.task.clone(), motion: run.plan().motion.clone() }
     }
 
-    /// Beside the first of several.
+    /// Compares this machine with the first of several.
     pub fn beside(&self, first: &Self) -> Design {
         let inertia = Inertia::of(&self.machine);
         let mut design = Design {
@@ -100,7 +101,7 @@ impl Candidate {
             return design;
         }
         let motion = match (self.is_alike(first), self.differs(first)) {
-            // To itself everything is as 1.
+            // Compared with itself, every β is 1.
             (true, _) => None,
             (_, Some(what)) => {
                 design.apart = Some(format!("{what} differs from that of the first: no β of the same motion"));
@@ -112,12 +113,12 @@ impl Candidate {
         design
     }
 
-    /// Whether it is the same machine.
+    /// Returns whether the machines are equal.
     pub fn is_alike(&self, other: &Self) -> bool {
         self.machine == other.machine
     }
 
-    /// What keeps one motion of the drives from doing the task of both.
+    /// Returns why one motion of the drives cannot perform both tasks; `None` if it can.
     fn differs(&self, first: &Self) -> Option<&'static str> {
         if self.machine.end_effector() != first.machine.end_effector() {
             return Some("the arm's length");
@@ -127,7 +128,7 @@ impl Candidate {
     }
 }
 
-/// The figures that there are, and why others are not.
+/// Serialised as the available columns, and the reason if others are missing.
 impl Serialize for Design {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

@@ -1,24 +1,24 @@
-//! [`Difference`]: a signal at two instants, of one run at two times or of two runs.
+//! [`Difference`]: values of a signal at two instants, of one run or of two.
 
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 
-/// A signal at two instants.
+/// Values of a signal at two instants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// At the first.
+    /// Value at the first instant.
     pub from: f64,
-    /// At the second.
+    /// Value at the second instant.
     pub to: f64,
 }
 
 impl Difference {
-    /// Of a signal.
+    /// Returns the values of a signal in two frames.
     pub fn of(signal: &Signal, from: &Frame, to: &Frame) -> Self {
         Self { from: signal.value(from), to: signal.value(to) }
     }
 
-    /// Second less first.
+    /// Returns the second value less the first.
     pub fn by(&self) -> f64 {
         self.to - self.from
     }

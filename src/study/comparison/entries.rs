@@ -1,4 +1,4 @@
-//! [`Comparison`]: a table of runs that a person extends, sorts and draws over the present run.
+//! [`Comparison`]: a table of runs that the user extends, sorts, and overlays on the present run.
 
 use std::sync::Arc;
 
@@ -11,20 +11,20 @@ use crate::settings::number::nine_digits;
 /// One row of the comparison.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// What it is called.
+    /// Title of the row.
     pub title: String,
-    /// The run, or why there is none.
+    /// The run, or why it failed.
     pub outcome: Result<Arc<Compared>, String>,
-    /// Whether it is laid over plots and scene.
+    /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
-    /// Added by a person: it stays when the task changes.
+    /// Whether the user added the row; it then stays when the task changes.
     pub kept: bool,
-    /// Its machine beside that of the first run of the table.
+    /// Comparison of its machine with that of the first run in the table.
     pub design: Option<Design>,
 }
 
 impl Entry {
-    /// What stands in a column: those of runs come first, then those of designs.
+    /// Returns the value in a column; columns of runs come first, then those of designs.
     pub fn value(&self, column: usize) -> Option<f64> {
         match column.checked_sub(COLUMNS.len()) {
             None => (COLUMNS.get(column)?.value)(&self.outcome.as_ref().ok()?.summary),
@@ -33,21 +33,21 @@ impl Entry {
     }
 }
 
-/// Runs side by side: the ways of one task, and what was kept.
+/// Table of runs: the alternatives for one task, and the runs that the user kept.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     task: Scenario,
     entries: Vec<Entry>,
     sort: Option<(usize, bool)>,
     beside: Beside,
-    /// The ways that it shows.
+    /// The alternatives that the table shows.
     ways: Option<Arc<<Ways as Query>::Answer>>,
 }
 
-/// What a way is called, and its run, or why there is none.
+/// Title of an alternative, and its run or why it failed.
 pub type Outcome = (String, Result<Arc<Compared>, String>);
 
-/// The runs of the ways of a scenario's task: a way in a portion.
+/// Query for the runs of all alternatives for a scenario's task, one in each portion.
 #[derive(Debug)]
 pub struct Ways {
     scenario: Shared<Scenario>,
@@ -57,7 +57,7 @@ pub struct Ways {
 
 impl Query for Ways {
     type Input = Shared<Scenario>;
-    /// The scenario, and what its ways come to.
+    /// The scenario, and the outcomes of its alternatives.
     type Answer = (Shared<Scenario>, Vec<Outcome>);
 
     fn begin(scenario: Self::Input) -> Self {
@@ -80,12 +80,13 @@ impl Query for Ways {
 }
 
 impl Comparison {
-    /// One without any run yet.
+    /// Returns a table without runs.
     pub fn empty(scenario: &Scenario) -> Self {
         Self { task: scenario.clone(), entries: Vec::new(), sort: None, beside: Beside::default(), ways: None }
     }
 
-    /// Puts the ways of a task in place of its own, if it does not show these; what was kept, shown and sorted stays so.
+    /// Replaces the alternatives by those of another task, unless the table shows them already. Kept rows, overlays and
+    /// the sort order stay.
     pub fn follow(&mut self, found: &Arc<<Ways as Query>::Answer>) {
         if self.ways.as_ref().is_some_and(|ways| Arc::ptr_eq(ways, found)) {
             return;
@@ -103,22 +104,22 @@ impl Comparison {
         self.set_beside();
     }
 
-    /// The scenario whose ways stand there.
+    /// Returns the scenario whose alternatives the table shows.
     pub fn task(&self) -> &Scenario {
         &self.task
     }
 
-    /// One more run, kept until it is removed.
+    /// Runs a scenario and adds it as a row that stays until it is removed.
     ///
     /// # Errors
-    /// If it cannot be done.
+    /// Fails if the scenario cannot be run.
     pub fn keep(&mut self, scenario: Scenario) -> Result<(), Refusal> {
         let run = Compared::of(scenario)?;
         self.keep_run(run);
         Ok(())
     }
 
-    /// The same of a run that has been done.
+    /// Adds a finished run as a row that stays until it is removed.
     pub fn keep_run(&mut self, mut run: Compared) {
         let own = run.scenario.name.clone();
         let taken = |name: &str| self.entries.iter().any(|e| e.title == name);
@@ -135,7 +136,7 @@ impl Comparison {
         self.set_beside();
     }
 
-    /// Sets every machine beside that of the first run.
+    /// Compares every machine with that of the first run.
     fn set_beside(&mut self) {
         self.beside = Beside::default();
         for entry in &mut self.entries {
@@ -143,12 +144,12 @@ impl Comparison {
         }
     }
 
-    /// Whether the machines of the runs differ, so that there are designs to compare.
+    /// Returns whether the machines of the runs differ, so that there are designs to compare.
     pub fn has_designs(&self) -> bool {
         self.beside.differ()
     }
 
-    /// Takes a kept run away.
+    /// Removes a kept run.
     pub fn remove(&mut self, entry: usize) {
         if self.entries.get(entry).is_some_and(|e| e.kept) {
             self.entries.remove(entry);
@@ -156,14 +157,14 @@ impl Comparison {
         }
     }
 
-    /// Lays a run over plots and scene, or not.
+    /// Sets whether a run is overlaid on plots and scene.
     pub fn show(&mut self, entry: usize, shown: bool) {
         if let Some(entry) = self.entries.get_mut(entry) {
             entry.shown = shown && entry.outcome.is_ok();
         }
     }
 
-    /// Sorts by a column, the other way the second time, not at all the third.
+    /// Sorts by a column: ascending the first time, descending the second, not at all the third.
     pub fn sort_by(&mut self, column: usize) {
         self.sort = match self.sort {
             Some((c, false)) if c == column => Some((c, true)),
@@ -172,17 +173,17 @@ impl Comparison {
         };
     }
 
-    /// The column that it is sorted by, and whether downwards.
+    /// Returns the sort column, and whether the order is descending.
     pub fn sorted(&self) -> Option<(usize, bool)> {
         self.sort
     }
 
-    /// All rows as they were put there.
+    /// Returns all rows in the order of insertion.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Places of the rows in the order of the table; what could not be done stands last.
+    /// Returns the indices of the rows in the order of the table; rows without a value come last.
     pub fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.entries.len()).collect();
         let Some((column, down)) = self.sort else { return order };
@@ -195,13 +196,13 @@ impl Comparison {
         order
     }
 
-    /// Runs that are laid over, with their places.
+    /// Iterates over the overlaid runs with their indices.
     pub fn shown(&self) -> impl Iterator<Item = (usize, &Compared)> {
         let all = self.entries.iter().enumerate().filter(|(_, e)| e.shown);
         all.filter_map(|(i, e)| Some((i, e.outcome.as_deref().ok()?)))
     }
 
-    /// The table as text, its cells parted by tabs, in the order shown: for a spreadsheet.
+    /// Returns the table as tab-separated text for a spreadsheet, in the order shown.
     pub fn to_text(&self) -> String {
         let designs = if self.has_designs() { &DESIGN[..] } else { &[] };
         let heads = COLUMNS.iter().map(|c| format!("{} {}", c.head, c.unit));

@@ -1,4 +1,4 @@
-//! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
+//! Comparison of runs on one time axis: alternatives for one task, or any scenarios.
 
 mod alternative;
 mod design;
@@ -20,19 +20,19 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Watch, replay_while};
 use crate::simulation::frame::Frame;
 
-/// The most frames that are kept of one run; a longer one keeps every second, third … of them, and its last.
-const MOST: usize = 4000;
+/// Maximum number of frames stored per run. A longer run keeps every second, fourth, eighth … frame, and its last.
+const MAX_FRAMES: usize = 4000;
 
 /// A run to compare with others.
 #[derive(Clone, Debug)]
 pub struct Compared {
-    /// What it was of.
+    /// The scenario.
     pub scenario: Scenario,
-    /// In the order of time, evenly spaced but for the last.
+    /// Frames in the order of time, evenly spaced except the last.
     pub frames: Sequence<Frame>,
-    /// What it came to.
+    /// Results of the run.
     pub summary: Summary,
-    /// Its machine as edits have left it, and its task.
+    /// Its machine after all edits, its task and its motion.
     pub candidate: Candidate,
 }
 
@@ -45,16 +45,16 @@ impl Compared {
         Self::of_while(scenario, &mut |_| true)
     }
 
-    /// The same, while it is wanted.
+    /// Runs a scenario as long as `watch` returns `true`.
     ///
     /// # Errors
-    /// As [`of`](Self::of), and if it is not wanted any more.
+    /// As [`of`](Self::of), and if `watch` returns `false`.
     pub fn of_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
         let (mut frames, mut every): (Vec<Frame>, u64) = (Vec::new(), 1);
         let run = replay_while(&scenario, |run, frame| {
             let wanted = !frame.step.is_multiple_of(256) || watch(frame.step as f64 / run.last_step().max(1) as f64);
             if frame.step.is_multiple_of(every) {
-                if frames.len() >= MOST {
+                if frames.len() >= MAX_FRAMES {
                     every *= 2;
                     frames.retain(|f| f.step.is_multiple_of(every));
                 }
@@ -73,28 +73,29 @@ impl Compared {
         Ok(Self { scenario, frames, summary, candidate: Candidate::of(&run) })
     }
 
-    /// The machine that control believes in.
+    /// Returns the machine that control assumes.
     pub fn machine(&self) -> &Machine {
         &self.scenario.machine
     }
 
-    /// How long it takes, s.
+    /// Returns the duration, s.
     pub fn duration(&self) -> f64 {
         self.frames.last().map_or(0.0, |f| f.time)
     }
 
-    /// The frame at a time, s, or the nearest before it; the last after the end.
+    /// Returns the last frame up to a time, s; the first frame before the start.
     pub fn at(&self, time: f64) -> Option<&Frame> {
         let after = self.frames.partition_point(|f| f.time <= time + 1e-9);
         self.frames.get(after.saturating_sub(1))
     }
 }
 
-/// The ways to do a scenario's task, each with its scenario; as it is given only if that is none of the others.
+/// Returns the alternatives for a scenario's task, each with its scenario. The scenario as given is included only if it
+/// equals none of the others.
 pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
     let mut all: Vec<(Alternative, Scenario)> =
         Alternative::ALL.into_iter().filter(|way| way.is_of(scenario)).map(|way| (way, way.of(scenario))).collect();
-    // A wheel makes no other way of the task, but for the one that is about it.
+    // A wheel does not change the task, so a scenario with a wheel still counts as given.
     let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
         all.remove(0);

@@ -1,31 +1,31 @@
-//! [`Rows`]: what runs come to side by side, without their frames.
+//! [`Rows`]: results of several runs, without their frames.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::{COLUMNS, Candidate, Compared, Design, Summary};
 use crate::session::scenario::Scenario;
 
-/// What a run comes to, or why there is none.
+/// Results of a run, or why it failed.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Name of the scenario.
     pub name: String,
-    /// In which way it does a task, where ways of one are compared.
+    /// Name of the alternative, if alternatives for one task are compared.
     pub way: Option<&'static str>,
-    /// What it comes to, or why there is nothing.
+    /// Results, or why there are none.
     pub outcome: Result<Summary, String>,
-    /// Its machine beside that of the first run.
+    /// Comparison of its machine with that of the first run.
     pub design: Option<Design>,
 }
 
-/// Runs side by side, in order.
+/// Results of several runs, in order.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
     rows: Vec<Row>,
     beside: Beside,
 }
 
-/// What sets machines beside the first of them.
+/// Compares machines with the first of them.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
     first: Option<Candidate>,
@@ -33,21 +33,21 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// Sets the next machine beside the first; the first itself beside itself.
+    /// Compares the next machine with the first; the first is compared with itself.
     pub fn set(&mut self, next: &Candidate) -> Design {
         let first = self.first.get_or_insert_with(|| next.clone());
         self.differ |= !next.is_alike(first);
         next.beside(first)
     }
 
-    /// Whether one of the machines differs from the first, so that there are designs to compare.
+    /// Returns whether any machine differs from the first, so that there are designs to compare.
     pub fn differ(&self) -> bool {
         self.differ
     }
 }
 
 impl Rows {
-    /// Runs a scenario to its end, as one more row.
+    /// Runs a scenario to its end and adds it as a row.
     pub fn run(&mut self, way: Option<&'static str>, scenario: &Scenario) {
         let outcome = Compared::of(scenario.clone()).map_err(|why| why.to_string());
         let design = outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
@@ -55,19 +55,19 @@ impl Rows {
         self.rows.push(Row { name: scenario.name.clone(), way, outcome, design });
     }
 
-    /// All of them.
+    /// Returns all rows.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// Whether the machines of the runs differ.
+    /// Returns whether the machines of the runs differ.
     pub fn have_designs(&self) -> bool {
         self.beside.differ()
     }
 }
 
 impl Row {
-    /// What it is called beside others: its way, where it is one of several.
+    /// Returns the title: the alternative, or else the scenario's name.
     pub fn title(&self) -> &str {
         self.way.unwrap_or(&self.name)
     }
@@ -79,7 +79,7 @@ impl Serialize for Rows {
     }
 }
 
-/// Only the columns that hold something.
+/// Serialised as the columns that have a value.
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

@@ -1,37 +1,37 @@
-//! [`Summary`]: what a run came to, one row of a table.
+//! [`Summary`]: results of a run, as one row of a table.
 
 use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
 use crate::simulation::frame::Frame;
 
-/// What a run came to.
+/// Results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Name of the scenario.
     pub name: String,
-    /// Its title.
+    /// Title of the scenario.
     pub title: String,
-    /// s.
+    /// Duration, s.
     pub time: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_force: f64,
-    /// Its root mean square, N.
+    /// Root mean square of the dynamic |f_B|, N.
     pub rms_force: f64,
     /// ∫ |f_B| dt, N s.
     pub force_impulse: f64,
-    /// Largest |n_B|, what the arm transmits, N m, where a reaction wheel leaves the base another moment.
+    /// Largest |n_B| that the arm transmits, N m; only if a reaction wheel changes the moment on the base.
     pub peak_arm_moment: Option<f64>,
-    /// Largest moment that the base feels, past a reaction wheel, N m.
+    /// Largest |moment| on the base, after the reaction wheel, N m.
     pub peak_moment: f64,
-    /// Its root mean square, N m.
+    /// Root mean square of the moment on the base, N m.
     pub rms_moment: f64,
-    /// Its impulse ∫ |n| dt, N m s.
+    /// Impulse of the moment on the base, ∫ |n| dt, N m s.
     pub moment_impulse: f64,
     /// Largest |p_B|, m.
     pub base_shift: f64,
     /// Largest |θ|, rad.
     pub base_tilt: f64,
-    /// How far from its target the end effector is at the end, m.
+    /// Distance of the end effector from its target at the end, m.
     pub miss: f64,
     /// Largest |τ_k| of any drive, N m.
     pub peak_torque: f64,
@@ -39,13 +39,13 @@ pub struct Summary {
     pub energy: f64,
     /// Largest rate of a reaction wheel, rad/s.
     pub wheel_rate: Option<f64>,
-    /// When a reaction wheel first could not give what was wanted, s.
+    /// Time at which a reaction wheel first could not deliver the requested torque, s.
     pub saturated_at: Option<f64>,
-    /// Whether the arm transmitted nothing.
+    /// Whether the arm transmitted no reactions.
     pub reactionless: bool,
     /// The first audit that failed, in words.
     pub fault: Option<String>,
-    /// What is to be said of it.
+    /// Verdict on the run.
     pub verdict: Verdict,
 }
 
@@ -54,19 +54,19 @@ pub struct Summary {
 pub struct Column<T = Summary> {
     /// Key in JSON.
     pub key: &'static str,
-    /// Head of the column.
+    /// Header of the column.
     pub head: &'static str,
-    /// What it is, in words.
+    /// Meaning, in words.
     pub meaning: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// Decimals that are shown.
+    /// Number of decimals shown.
     pub decimals: usize,
-    /// Its value; `None` where there is none.
+    /// Returns the value; `None` if the row has none.
     pub value: fn(&T) -> Option<f64>,
 }
 
-/// The table's columns, in order.
+/// Columns of the table, in order.
 pub const COLUMNS: [Column; 15] = [
     column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
     column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
@@ -88,7 +88,7 @@ pub const COLUMNS: [Column; 15] = [
 ];
 
 impl Column {
-    /// Its name in a CSV file, where it goes with its unit: an angle is called one.
+    /// Returns the name in a CSV file, next to the unit; there the angle of the base is called an angle, not a tilt.
     pub fn name(&self) -> &'static str {
         if self.key == "base_tilt" { "base_angle" } else { self.key }
     }
@@ -106,7 +106,7 @@ pub(super) const fn column<T>(
 }
 
 impl Summary {
-    /// Of a run's last frame.
+    /// Returns the results of a run from its last frame.
     pub fn of(scenario: &Scenario, last: &Frame) -> Self {
         let (peaks, totals, verdict) = (&last.peaks, &last.totals, Verdict::of(scenario, last));
         Self {

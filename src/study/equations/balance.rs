@@ -1,5 +1,5 @@
-//! Sections 2 and 4 and the appendix: what balance asks of masses and lengths, (7)–(10), and the columns γ and D,
-//! (A1)–(A3).
+//! Sections 2 and 4 and the appendix: the balance conditions on masses and lengths, (7)–(10), and the columns of γ and
+//! D, (A1)–(A3).
 
 use nalgebra::DMatrix;
 
@@ -13,10 +13,10 @@ use crate::mechanics::machine::{Inertia, Link, Machine};
 use crate::mechanics::planar::Vector;
 use crate::settings::number::subscript;
 
-/// Said where masses lie off the axes of their links.
+/// Note for machines with masses off the axes of their links.
 const OFF_AXIS: &str = "Some masses lie off the axes of their links; the terms are what they do along them.";
 
-/// A machine as far as balance goes.
+/// The data of a machine that its balance depends on.
 pub(super) struct Balance<'a> {
     pub machine: &'a Machine,
     pub inertia: &'a Inertia,
@@ -105,7 +105,7 @@ impl Balance<'_> {
         }
     }
 
-    /// One row of A l_c.
+    /// Returns the terms of one row of A l_c.
     fn row(&self, a: &DMatrix<f64>, row: usize) -> Vec<Term> {
         let links = self.machine.links().iter().enumerate().filter(|(j, _)| a[(row, *j)] != 0.0);
         let is_payload = |origin: Origin| matches!(origin, Origin::Body(Body::Payload, _));
@@ -255,12 +255,12 @@ impl Balance<'_> {
     }
 }
 
-/// Where a body is along its link, m.
+/// Returns the distance of a body's centre of mass from the root of its link, along the link, m.
 fn own(mass: &Mass) -> f64 {
     mass.arms.iter().filter(|arm| arm.is_own).map(|arm| arm.value).sum()
 }
 
-/// g₁, C₁₂.
+/// Returns the symbol of a condition: g₁, C₁₂.
 fn symbol(condition: Condition) -> String {
     match condition {
         Condition::Force(k) => format!("g{}", subscript(k + 1)),

@@ -1,5 +1,5 @@
-//! [`Bodies`]: a machine link by link, with symbols. What is summed here over links, counterweights and payload meets
-//! the closed forms of [`Inertia`](crate::mechanics::machine::Inertia) in the equations.
+//! [`Bodies`]: a machine link by link, with symbols. The equations compare sums over links, counterweights and payload
+//! with the closed forms of [`Inertia`](crate::mechanics::machine::Inertia).
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -16,39 +16,39 @@ use crate::mechanics::balance::Body;
 use crate::mechanics::machine::{Attach, Length, Machine, PlaceOnLink, Point};
 use crate::mechanics::planar::{MAX_DRIVES, Vector, cross, dot};
 
-/// A step along the links of a drive.
+/// One step along a link, on the way from the base to a point.
 #[derive(Clone, Debug)]
 pub(super) struct Arm {
     pub drive: usize,
-    /// ±1.
+    /// Direction, ±1.
     pub sign: f64,
     pub symbol: String,
-    /// m.
+    /// Length of the step, m.
     pub value: f64,
-    /// Whether it is the body's own l_c, and not a length.
+    /// Whether it is the body's own l_c, as opposed to a length of a link.
     pub is_own: bool,
 }
 
-/// What has a mass.
+/// A body with mass: a link, a counterweight or the payload.
 #[derive(Clone, Debug)]
 pub(super) struct Mass {
     pub origin: Origin,
-    /// The drive whose orientation it has.
+    /// The drive that determines its orientation.
     pub drive: usize,
     pub kilograms: f64,
-    /// kg m².
+    /// Moment of inertia, kg m².
     pub inertia: f64,
     pub mass_symbol: String,
-    /// None where it has no inertia of its own.
+    /// Empty if it has no inertia of its own.
     pub inertia_symbol: String,
     pub arms: Vec<Arm>,
-    /// Off its link's axis, m.
+    /// Distance off its link's axis, m.
     pub normal: f64,
-    /// a_k, m.
+    /// Coefficients a_k, m.
     pub a: [Vector; MAX_DRIVES],
 }
 
-/// A rotor: of which drive, J in kg m², and how it turns with the drives.
+/// A rotor: its drive, J in kg m², and its rate per rate of each drive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rotor {
     pub drive: usize,
@@ -56,11 +56,11 @@ pub(super) struct Rotor {
     pub rates: [f64; MAX_DRIVES],
 }
 
-/// All of a machine.
+/// All bodies of a machine.
 pub(super) struct Bodies {
     pub masses: Vec<Mass>,
     pub rotors: Vec<Rotor>,
-    /// The end effector.
+    /// Steps from the base to the end effector.
     pub tip: Vec<Arm>,
 }
 
@@ -105,17 +105,17 @@ impl Bodies {
         Self { masses: links.chain(weights).chain(payload).collect(), rotors: rotors.collect(), tip }
     }
 
-    /// A number of each body.
+    /// Returns a value for each body with mass.
     pub fn each(&self, value: impl Fn(&Mass) -> f64) -> Vec<(Origin, f64)> {
         self.masses.iter().map(|mass| (mass.origin, value(mass))).collect()
     }
 
-    /// A number of each rotor.
+    /// Returns J times a value for each rotor.
     pub fn each_rotor(&self, value: impl Fn(&Rotor) -> f64) -> Vec<(Origin, f64)> {
         self.rotors.iter().map(|rotor| (Origin::Rotor(rotor.drive), rotor.inertia * value(rotor))).collect()
     }
 
-    /// Whether a mass lies off the axis of its link.
+    /// Returns whether a mass lies off the axis of its link.
     pub fn has_normals(&self) -> bool {
         self.masses.iter().any(|mass| mass.normal != 0.0)
     }
@@ -141,13 +141,13 @@ fn mass(
     Mass { origin, drive: part.drive, kilograms, inertia, mass_symbol, inertia_symbol, arms, normal, a }
 }
 
-/// Ways along links, with the names of the lengths that are gone.
+/// Finds the steps from the base to points on links, with the symbols of the lengths.
 struct Walk<'a> {
     machine: &'a Machine,
 }
 
 impl Walk<'_> {
-    /// The root of a link.
+    /// Returns the steps to the root of a link.
     fn root(&self, link: usize) -> Vec<Arm> {
         let (spec, part) = (self.machine.spec(), &self.machine.resolved_links()[link]);
         match (part.parent, &spec.links[link].attach) {
@@ -156,7 +156,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A point of a link.
+    /// Returns the steps to a point of a link.
     fn point(&self, point: &Point, link: usize) -> Vec<Arm> {
         let (spec, part) = (self.machine.spec(), &self.machine.resolved_links()[link]);
         let mut arms = self.root(link);
@@ -179,7 +179,7 @@ impl Walk<'_> {
     }
 }
 
-/// How bodies move at an instant.
+/// Kinematics of the bodies at an instant.
 pub(super) struct Motion {
     n: usize,
     e: [Vector; MAX_DRIVES],
@@ -192,7 +192,7 @@ const I: Vector = Vector::new(0.0, 1.0);
 impl Motion {
     pub fn of(state: &State) -> Self {
         let mut e = [Vector::default(); MAX_DRIVES];
-        // Not the unit vectors of the closed forms, so that both are found apart.
+        // Computed independently of the closed forms' unit vectors, so that the two sides are independent.
         e.iter_mut().zip(state.q.iter()).for_each(|(e, q)| *e = Vector::new(q.cos(), q.sin()));
         Self { n: state.q.len(), e, qd: *state.qd.padded(), qdd: *state.qdd.padded() }
     }
@@ -206,42 +206,42 @@ impl Motion {
         self.e[k]
     }
 
-    /// r_c, m.
+    /// Returns the position r_c, m.
     pub fn place(&self, mass: &Mass) -> Vector {
         self.sum(|k| mass.a[k] * self.e[k])
     }
 
-    /// ∂r_c/∂q_k, m.
+    /// Returns ∂r_c/∂q_k, m.
     pub fn column(&self, mass: &Mass, k: usize) -> Vector {
         I * mass.a[k] * self.e[k]
     }
 
-    /// ṙ_c, m/s.
+    /// Returns the velocity ṙ_c, m/s.
     pub fn velocity(&self, mass: &Mass) -> Vector {
         self.sum(|k| self.column(mass, k) * self.qd[k])
     }
 
-    /// r̈_c, m/s².
+    /// Returns the acceleration r̈_c, m/s².
     pub fn acceleration(&self, mass: &Mass) -> Vector {
         self.sum(|k| self.column(mass, k) * self.qdd[k]) + self.turning(mass)
     }
 
-    /// What of that comes from rates alone, m/s².
+    /// Returns the part of r̈_c that depends on rates only, m/s².
     pub fn turning(&self, mass: &Mass) -> Vector {
         -self.sum(|k| mass.a[k] * self.e[k] * self.qd[k] * self.qd[k])
     }
 
-    /// Rate of a rotor, rad/s.
+    /// Returns the rate of a rotor, rad/s.
     pub fn rotor_rate(&self, rotor: &Rotor) -> f64 {
         (0..self.n).map(|k| rotor.rates[k] * self.qd[k]).sum()
     }
 
-    /// Acceleration of a rotor, rad/s².
+    /// Returns the acceleration of a rotor, rad/s².
     pub fn rotor_acceleration(&self, rotor: &Rotor) -> f64 {
         (0..self.n).map(|k| rotor.rates[k] * self.qdd[k]).sum()
     }
 
-    /// τ_k by the work of all bodies in a turn of drive k alone, N m.
+    /// Returns τ_k by virtual work: the work of all bodies when drive k alone turns, N m.
     pub fn torque(&self, bodies: &Bodies, k: usize, gravity: Vector) -> f64 {
         let body = |mass: &Mass| {
             let turns = if mass.drive == k { mass.inertia * self.qdd[k] } else { 0.0 };
@@ -251,7 +251,7 @@ impl Motion {
         bodies.masses.iter().map(body).sum::<f64>() + bodies.rotors.iter().map(rotor).sum::<f64>()
     }
 
-    /// What a body brings to D_k, kg m².
+    /// Returns a body's contribution to D_k, kg m².
     pub fn momentum(&self, mass: &Mass, k: usize) -> f64 {
         let turns = if mass.drive == k { mass.inertia } else { 0.0 };
         mass.kilograms * cross(self.place(mass), self.column(mass, k)) + turns

@@ -1,19 +1,19 @@
-//! [`Equation`]: what an equation says, and today's numbers in it.
+//! [`Equation`]: an equation of the paper with its present values.
 
 use crate::mechanics::balance::Body;
 use crate::mechanics::machine::Machine;
 
-/// What a part of a term comes from.
+/// Body that a part of a term comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// A body, and the link that it is or rides on, counted from 0.
+    /// A body, and the link that it is or is mounted on, from 0.
     Body(Body, usize),
-    /// The rotor of the motor of a drive, counted from 0.
+    /// The rotor of a drive's motor, from 0.
     Rotor(usize),
 }
 
 impl Origin {
-    /// The link that it is or rides on.
+    /// Returns the link that the body is or is mounted on.
     pub fn link(self) -> Option<usize> {
         match self {
             Self::Body(_, link) => Some(link),
@@ -21,7 +21,7 @@ impl Origin {
         }
     }
 
-    /// What it is called.
+    /// Returns the name.
     pub fn words(self, machine: &Machine) -> String {
         let spec = machine.spec();
         match self {
@@ -36,39 +36,39 @@ impl Origin {
 /// A term of a sum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// As [`pieces`](super::pieces) reads it, without its sign.
+    /// Symbol in the notation of [`pieces`](super::pieces), without its sign.
     pub symbol: String,
-    /// Whether the symbol is taken away.
+    /// Whether the symbol has a minus sign.
     pub is_negative: bool,
-    /// With its sign.
+    /// Value, with its sign.
     pub value: f64,
-    /// What makes it up; the sum is the value. Empty where no body is in it, such as an angle.
+    /// Contributions of bodies, which add up to the value. Empty if no body is involved, such as for an angle.
     pub parts: Vec<(Origin, f64)>,
 }
 
 impl Term {
-    /// A term that no body is in.
+    /// Returns a term without contributions of bodies.
     pub(super) fn plain(symbol: impl Into<String>, value: f64) -> Self {
         Self { symbol: symbol.into(), is_negative: false, value, parts: Vec::new() }
     }
 
-    /// A term that is the sum of its parts.
+    /// Returns a term whose value is the sum of its parts.
     pub(super) fn sum(symbol: impl Into<String>, parts: Vec<(Origin, f64)>) -> Self {
         let value = parts.iter().map(|(_, part)| part).sum();
         Self { symbol: symbol.into(), is_negative: false, value, parts }
     }
 
-    /// The same with what is in it.
+    /// Returns the term with contributions of bodies.
     pub(super) fn from(self, parts: Vec<(Origin, f64)>) -> Self {
         Self { parts, ..self }
     }
 
-    /// The same with its symbol taken away; its value has its sign already.
+    /// Returns the term with a minus sign at its symbol; the value has its sign already.
     pub(super) fn negative(self) -> Self {
         Self { is_negative: true, ..self }
     }
 
-    /// The links that it comes from, each once, in rising order.
+    /// Returns the links that contribute, each once, in ascending order.
     pub fn links(&self) -> Vec<usize> {
         let mut links: Vec<usize> = self.parts.iter().filter_map(|(origin, _)| origin.link()).collect();
         links.sort_unstable();
@@ -77,26 +77,27 @@ impl Term {
     }
 }
 
-/// One equality: both sides are found on ways of their own, so that they agree is something found.
+/// One equality. Both sides are computed independently, so their agreement is a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is of: an axis, a drive, a pair of drives; empty where the equation has one line.
+    /// Axis, drive or pair of drives; empty if the equation has one line.
     pub name: String,
-    /// Of its numbers.
+    /// Unit of the values.
     pub unit: &'static str,
     /// Terms of the left side.
     pub left: Vec<Term>,
-    /// Terms of the right side; none is 0.
+    /// Terms of the right side; empty for 0.
     pub right: Vec<Term>,
-    /// The sides count as equal up to this.
+    /// Absolute tolerance on the difference of both sides.
     pub tolerance: f64,
 }
 
-/// The part of all terms together that rounding may take.
-const ROUNDING: f64 = 1e-12;
+/// Relative rounding tolerance: fraction of the sum of all |terms|.
+const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 impl Line {
-    /// One whose sides agree but for rounding; `scale` is as large as what was added up to its terms.
+    /// Returns a line whose sides agree within rounding; `scale` is the sum of the absolute values that were summed in
+    /// the terms.
     pub(super) fn new(
         name: impl Into<String>,
         unit: &'static str,
@@ -105,21 +106,21 @@ impl Line {
         scale: f64,
     ) -> Self {
         let terms: f64 = left.iter().chain(&right).map(|term| term.value.abs()).sum();
-        Self { name: name.into(), unit, left, right, tolerance: ROUNDING * terms.max(scale) }
+        Self { name: name.into(), unit, left, right, tolerance: ROUNDING_TOLERANCE * terms.max(scale) }
     }
 
-    /// Both sides.
+    /// Returns the values of both sides.
     pub fn sides(&self) -> [f64; 2] {
         [&self.left, &self.right].map(|side| side.iter().map(|term| term.value).sum())
     }
 
-    /// Left side less right side.
+    /// Returns the residual: left side less right side.
     pub fn off(&self) -> f64 {
         let [left, right] = self.sides();
         left - right
     }
 
-    /// Whether it holds.
+    /// Returns whether both sides agree within the tolerance.
     pub fn holds(&self) -> bool {
         self.off().abs() <= self.tolerance
     }
@@ -128,32 +129,32 @@ impl Line {
 /// An equation of the paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
-    /// As the paper counts: `7`, `A1`.
+    /// Number in the paper: `7`, `A1`.
     pub number: &'static str,
-    /// In plain words.
+    /// Title in plain words.
     pub title: &'static str,
-    /// What it says, in one sentence.
+    /// Meaning, in one sentence.
     pub says: &'static str,
-    /// Its general form, as [`pieces`](super::pieces) reads it; empty where its lines are that.
+    /// General form in the notation of [`pieces`](super::pieces); empty if the lines are the general form.
     pub form: &'static str,
-    /// What else is to be known: where the paper prints it differently, what is left out.
+    /// Notes: deviations from the printed equation, omissions.
     pub notes: Vec<String>,
-    /// What is equal; or why it has no meaning for this machine.
+    /// Lines of the equation, or why it does not apply to this machine.
     pub lines: Result<Vec<Line>, String>,
 }
 
 impl Equation {
-    /// Whether every line holds; none where there are none.
+    /// Returns whether every line holds; `None` if there are no lines.
     pub fn holds(&self) -> Option<bool> {
         Some(self.lines.as_ref().ok()?.iter().all(Line::holds))
     }
 
-    /// Whether it asks for the best of many that will do: not to be that is no fault.
+    /// Returns whether the equation selects the optimum among many solutions, so that not meeting it is no fault.
     pub fn is_choice(&self) -> bool {
         self.number == "10"
     }
 
-    /// The line that is furthest off, measured by what counts as equal.
+    /// Returns the line with the largest ratio of residual to tolerance.
     pub fn worst(&self) -> Option<&Line> {
         let far = |line: &Line| line.off().abs() / line.tolerance.max(f64::MIN_POSITIVE);
         self.lines.as_ref().ok()?.iter().max_by(|a, b| far(a).total_cmp(&far(b)))

@@ -1,11 +1,12 @@
-//! Every numbered equation of the paper with today's numbers in it: what it says, its terms, their values, and which
-//! links they come from.
+//! Every numbered equation of the paper with its present values: its meaning, its terms, their values, and the links
+//! that contribute.
 //!
-//! Both sides of an equation are found on ways of their own, one link by link and the other by the closed forms that all
-//! else in the program uses, so that they agree is something found.
+//! The two sides of an equation are computed independently: one link by link, the other by the closed forms that the
+//! rest of the program uses. So their agreement is a check.
 //!
 //! # Source
-//! Papadopoulos and Abu-Abed; the sign of gravity in (4) and the weight of (10) are put right, and said to be.
+//! Papadopoulos and Abu-Abed. The sign of gravity in (4) and the weight of (10) are corrected; notes state the
+//! corrections.
 
 mod balance;
 mod bodies;
@@ -33,8 +34,8 @@ pub use written::{Cell, cells};
 pub const NUMBERS: [&str; 19] =
     ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "A1", "A2", "A3"];
 
-/// All of them for a machine at an instant, in the order of [`NUMBERS`]. The state has as many drives as the machine.
-/// Penalties are those of (10); where they do not fit the machine, all are 1.
+/// Returns all equations for a machine at an instant, in the order of [`NUMBERS`]. The state has as many drives as the
+/// machine. Penalties are those of (10); if they do not fit the machine, all are 1.
 pub fn equations(machine: &Machine, state: &State, penalties: Preset) -> Vec<Equation> {
     let inertia = Inertia::of(machine);
     let bodies = bodies::Bodies::of(machine);
@@ -65,12 +66,12 @@ pub fn equations(machine: &Machine, state: &State, penalties: Preset) -> Vec<Equ
     ]
 }
 
-/// Couplings up to this share of the inertia of all are rounding of a table.
-const ROUNDED: f64 = 1e-3;
+/// Couplings up to this fraction of the total inertia are attributed to the rounding of a table.
+const COUPLING_TOLERANCE: f64 = 1e-3;
 
-/// Why the mass matrix is not constant.
+/// Returns why the mass matrix is not constant; `None` if it is.
 fn not_constant(inertia: &Inertia) -> Option<String> {
-    (inertia.pose_dependence() > ROUNDED).then(|| {
+    (inertia.pose_dependence() > COUPLING_TOLERANCE).then(|| {
         let left = Short((inertia.invariance_residual() * 1e4).round() * 1e-4);
         format!("the mass matrix of this machine changes with its pose: (8) leaves up to {left} kg m²")
     })

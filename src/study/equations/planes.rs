@@ -1,4 +1,4 @@
-//! Section 5: zero momentum, its integral b, and the end effector on a plane of joint space, (12)–(16).
+//! Section 5: zero angular momentum, its integral b, and the end effector on a plane of joint space, (12)–(16).
 
 use super::bodies::{Arm, Mass};
 use super::equation::{Equation, Line, Origin, Term};
@@ -8,22 +8,23 @@ use super::symbol::{named, of};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Machine, RelativeAngle};
 
-/// A simulated machine keeps to its plane up to this part of what adds up, as what is called reactionless does.
-const HELD: f64 = 1e-6;
+/// Tolerance of lines on the plane, as a fraction of the sum of |terms|: that of a simulated motion that counts as
+/// reactionless.
+const PLANE_TOLERANCE: f64 = 1e-6;
 
-/// λ of a machine that has a b, or why it has none.
+/// The equations of the plane of a pose constant; λ of the machine, or why it has no b.
 pub(super) struct Plane<'a> {
     pub instant: &'a Reactions<'a>,
     pub lambda: Result<Vec<f64>, String>,
 }
 
-/// How an angle turns drives against the first: which drives come after it, and which way it counts.
+/// A relative angle and its effect on the drive angles.
 struct Joint {
     symbol: String,
-    /// rad.
+    /// Value, rad.
     value: f64,
     offset: f64,
-    /// ±1 or 0 for each drive: q_k − q_1 = Σ way (a − offset).
+    /// Coefficient for each drive, ±1 or 0: q_k − q_1 = Σ way (a − offset).
     ways: Vec<f64>,
 }
 
@@ -40,7 +41,7 @@ impl Plane<'_> {
         self.machine().drives()
     }
 
-    /// λ_k times the symbol of a number of drive k.
+    /// Returns a term for each drive: λ_k times a value of drive k, with its symbol.
     fn terms(&self, lambda: &[f64], letter: &str, value: impl Fn(usize) -> f64, parts: bool) -> Vec<Term> {
         let first = lambda.iter().position(|lambda| *lambda != 0.0).unwrap_or_default();
         let term = |k: usize| {
@@ -52,7 +53,7 @@ impl Plane<'_> {
         (0..self.drives()).map(term).collect()
     }
 
-    /// What bodies bring to the constant part of D_k/D_1, times a number.
+    /// Returns the contributions of bodies to the constant part of D_k/D_1, times a factor.
     fn shares(&self, k: usize, by: f64) -> Vec<(Origin, f64)> {
         let instant = self.instant;
         let share = by / instant.inertia.pose_inertia();
@@ -81,7 +82,7 @@ impl Plane<'_> {
                 Line { name: String::new(), unit: "", left, right, tolerance: 1e-9 }
             });
             let left = self.terms(&lambda, "q\u{307}", |k| state.qd[k], true);
-            let tolerance = HELD * left.iter().map(|term| term.value.abs()).sum::<f64>();
+            let tolerance = PLANE_TOLERANCE * left.iter().map(|term| term.value.abs()).sum::<f64>();
             let law = Line { name: String::new(), unit: "rad/s", left, right: Vec::new(), tolerance };
             [law].into_iter().chain(ratio).collect()
         });
@@ -102,7 +103,7 @@ impl Plane<'_> {
             let sum: f64 = left.iter().map(|term| term.value).sum();
             let scale: f64 = left.iter().map(|term| term.value.abs()).sum();
             let right = vec![Term::plain("b", state.b.unwrap_or(sum))];
-            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: HELD * scale }]
+            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
         });
         let notes = match state.when {
             When::Plan(_) => vec!["b is the one that the motion starts with.".to_owned()],
@@ -143,14 +144,14 @@ impl Plane<'_> {
         }
     }
 
-    /// Angles that lead from the first drive to all others.
+    /// Returns the relative angles on the paths from the first drive to all others.
     fn joints(&self) -> Result<Vec<Joint>, String> {
         let (n, q) = (self.drives(), &self.instant.state.q);
         let angles = self.machine().angles();
         let spec = self.machine();
         let mut ways: Vec<Option<Vec<f64>>> = vec![None; n];
         ways[0] = Some(vec![0.0; angles.len()]);
-        // As often as the longest way is long.
+        // n passes suffice: no path is longer.
         for _ in 0..n {
             for (i, angle) in angles.iter().enumerate() {
                 for (from, to, sign) in [(angle.from, angle.to, 1.0), (angle.to, angle.from, -1.0)] {
@@ -174,7 +175,7 @@ impl Plane<'_> {
         Ok(all.filter(|joint| joint.ways.iter().any(|way| *way != 0.0)).collect())
     }
 
-    /// b* and what each angle brings to q_1, (15).
+    /// Returns the terms of q_1, (15): b* and the contribution of each relative angle.
     fn first_angle(&self) -> Result<Vec<Term>, String> {
         let (lambda, joints) = (self.lambda.clone()?, self.joints()?);
         let sum: f64 = lambda.iter().sum();
@@ -210,7 +211,7 @@ impl Plane<'_> {
         let lines = self.first_angle().map(|right| {
             let scale: f64 = 1.0 + right.iter().map(|term| term.value.abs()).sum::<f64>();
             let left = vec![Term::plain(of("q", self.name(0)), q)];
-            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: HELD * scale }]
+            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
         });
         Equation {
             number: "15",
@@ -255,7 +256,7 @@ impl Plane<'_> {
                 if (arm.sign < 0.0) != flips { term.negative() } else { term }
             };
             let arms = instant.bodies.tip.iter();
-            // The sine of nothing is no term.
+            // A drive with no angle between it and the first contributes no sine.
             arms.filter(|arm| function == "cos" || joints.iter().any(|joint| joint.ways[arm.drive] != 0.0))
                 .map(term)
                 .collect()
@@ -269,7 +270,7 @@ impl Plane<'_> {
             unit: "m",
             left: vec![Term::plain(name, left)],
             right,
-            tolerance: HELD * reach,
+            tolerance: PLANE_TOLERANCE * reach,
         };
         let turned = |a: &str, x: f64, b: &str, y: f64, minus: bool| {
             let last = Term::plain(format!("v {b}(b* + φ)"), y);
@@ -284,7 +285,7 @@ impl Plane<'_> {
     }
 }
 
-/// a₁ + a₂ − 0.3, the angle from the first drive to another.
+/// Returns the symbol of the angle from the first drive to another: a₁ + a₂ − 0.3.
 fn sum_of(joints: &[Joint], drive: usize, offset: f64) -> String {
     let mut words = String::new();
     for joint in joints.iter().filter(|joint| joint.ways[drive] != 0.0) {
@@ -304,7 +305,7 @@ fn sum_of(joints: &[Joint], drive: usize, offset: f64) -> String {
     words
 }
 
-/// An angle, as π where it is.
+/// Formats an angle; ±π is written as such.
 fn angle(x: f64) -> String {
     let pi = std::f64::consts::PI;
     match x {

@@ -1,4 +1,4 @@
-//! Products of masses and lengths: the terms of (7), (8) and (A3) with their symbols, as the paper groups them.
+//! Products of masses and lengths: the terms of (7), (8) and (A3) with their symbols, grouped as in the paper.
 
 use std::collections::BTreeMap;
 
@@ -6,19 +6,19 @@ use super::bodies::{Arm, Bodies, Mass};
 use super::equation::{Origin, Term};
 use crate::mechanics::balance::{Body, Condition};
 
-/// A mass times lengths.
+/// Product of a mass and one or two lengths.
 struct Product {
     sign: f64,
-    /// How often: 2 of what stands twice in a square.
+    /// Multiplicity: 2 for the mixed term of a square.
     count: usize,
     lengths: Vec<String>,
-    /// Whether an l_c is among them: then no other mass has them.
+    /// Whether an l_c is a factor; then the product belongs to this mass alone.
     is_own: bool,
     mass: (usize, String),
     part: (Origin, f64),
 }
 
-/// The terms of g_k, kg m.
+/// Returns the terms of g_k, kg m.
 pub(super) fn first_moment(bodies: &Bodies, k: usize) -> Vec<Term> {
     grouped(moments(bodies, k))
 }
@@ -31,12 +31,12 @@ fn moments(bodies: &Bodies, k: usize) -> impl Iterator<Item = Product> {
     bodies.masses.iter().enumerate().flat_map(of)
 }
 
-/// The terms of C_kl, kg m²; for k = l without masses off the axes of their links.
+/// Returns the terms of C_kl, kg m²; for k = l without the distances of masses from the axes of their links.
 pub(super) fn coupling(bodies: &Bodies, k: usize, l: usize) -> Vec<Term> {
     grouped(couplings(bodies, k, l))
 }
 
-/// What of g_k or C_kl stays wherever the centres of mass of links are put.
+/// Returns the terms of g_k or C_kl that do not depend on the centres of mass of the links.
 pub(super) fn given(bodies: &Bodies, condition: Condition) -> Vec<Term> {
     let stays = |product: &Product| !product.is_own || matches!(product.part.0, Origin::Body(Body::Payload, _));
     match condition {
@@ -59,7 +59,7 @@ fn couplings(bodies: &Bodies, k: usize, l: usize) -> impl Iterator<Item = Produc
 
 fn product((at, mass): (usize, &Mass), value: f64, sign: f64, arms: &[&Arm]) -> Product {
     let mut lengths: Vec<String> = arms.iter().map(|arm| arm.symbol.clone()).collect();
-    // Lengths before the l_c, as the paper writes.
+    // The lengths of links come before the l_c, as in the paper.
     lengths.sort_by_key(|symbol| (arms.iter().any(|arm| arm.is_own && arm.symbol == *symbol), symbol.clone()));
     Product {
         sign,
@@ -71,11 +71,11 @@ fn product((at, mass): (usize, &Mass), value: f64, sign: f64, arms: &[&Arm]) -> 
     }
 }
 
-/// What has the same lengths and sign is one term: (m_5 + m_7) l_1.
+/// Combines products with the same lengths and sign into one term: (m_5 + m_7) l_1.
 fn grouped(products: impl Iterator<Item = Product>) -> Vec<Term> {
     let mut groups: BTreeMap<(Vec<String>, bool, usize), Vec<Product>> = BTreeMap::new();
     for product in products {
-        // One of a body with an l_c stands for itself, but for the two halves of a product in a square.
+        // A product with an l_c forms a group of its own, together only with the equal mixed product of a square.
         let own = if product.is_own { product.mass.0 } else { usize::MAX };
         let group = groups.entry((product.lengths.clone(), product.sign < 0.0, own)).or_default();
         match group.iter_mut().find(|known| known.mass.0 == product.mass.0) {

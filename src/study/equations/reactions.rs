@@ -8,7 +8,7 @@ use crate::mechanics::dynamics::{self, MassMatrix, Surroundings};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
 
-/// A machine at an instant, link by link and in closed form.
+/// A machine at an instant: its bodies, and its closed forms.
 pub(super) struct Reactions<'a> {
     pub machine: &'a Machine,
     pub inertia: &'a Inertia,
@@ -22,7 +22,7 @@ pub(super) struct Reactions<'a> {
 
 type Parts = Vec<(Origin, f64)>;
 
-/// The two axes of the base, and what of a vector is along each.
+/// The two axes of the base, with the function that picks the component along each.
 pub(super) const AXES: [Axis; 2] = [("x", |v| v.re), ("y", |v| v.im)];
 pub(super) type Axis = (&'static str, fn(Vector) -> f64);
 
@@ -126,7 +126,7 @@ impl<'a> Reactions<'a> {
         }
     }
 
-    /// H_kl q̈_l, link by link.
+    /// Returns the contributions of bodies to H_kl q̈_l.
     fn inertial_parts(&self, k: usize, l: usize) -> Parts {
         let body = |mass: &Mass| {
             let turns = if k == l && mass.drive == k { mass.inertia } else { 0.0 };
@@ -173,7 +173,7 @@ impl<'a> Reactions<'a> {
         }
     }
 
-    /// What (4) is summed from, all of one sign.
+    /// Returns the absolute values that are summed in (4), as a scale for rounding.
     fn scale_of_torque(&self, k: usize) -> Parts {
         let gravity = self.machine.gravity();
         let size = |mass: &Mass| {
@@ -244,7 +244,7 @@ impl<'a> Reactions<'a> {
         }
     }
 
-    /// D_k at this instant, kg m², (A3).
+    /// Returns D_k at this instant, kg m², (A3).
     pub fn momentum_row(&self, k: usize) -> f64 {
         self.h.momentum_row(k)
     }
@@ -281,7 +281,7 @@ impl<'a> Reactions<'a> {
     }
 }
 
-/// Σ of sizes.
+/// Returns the sum of absolute values.
 pub(super) fn total(parts: &[(Origin, f64)]) -> f64 {
     parts.iter().map(|(_, part)| part.abs()).sum()
 }

@@ -1,4 +1,4 @@
-//! [`State`]: the instant that the numbers are of.
+//! [`State`]: the instant at which the equations are evaluated.
 
 use thiserror::Error;
 
@@ -10,63 +10,63 @@ use crate::session::{Refusal, Run, replay_while};
 use crate::settings::number::fixed;
 use crate::simulation::frame::Frame;
 
-/// How the drives stand and move, as seen from the base.
+/// Angles, rates and accelerations of the drives relative to the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// rad.
+    /// Drive angles, rad.
     pub q: DriveAngles,
-    /// rad/s.
+    /// Drive rates, rad/s.
     pub qd: PerDrive,
-    /// rad/s².
+    /// Drive accelerations, rad/s².
     pub qdd: PerDrive,
-    /// The b that is to be held, rad: the one that control aims at, or that the motion starts with.
+    /// The required b, rad: the control's reference, or that of the start of the motion; `None` if there is none.
     pub b: Option<f64>,
-    /// When that is.
+    /// Time of the instant.
     pub when: When,
 }
 
-/// An instant.
+/// Time of an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// Of the run, s.
+    /// Time in the run, s.
     Run(f64),
-    /// Of the planned motion, s, because the run rests and most terms would be 0.
+    /// Time in the planned motion, s; used while the run is at rest, because most terms would be 0.
     Plan(f64),
-    /// A pose that was given.
+    /// No time: the state was given.
     Given,
 }
 
 /// Why a scenario has no state at a time.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoInstant {
-    /// It cannot be run so far.
+    /// The scenario cannot be run up to this time.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Its run ends before.
+    /// The run ends before this time.
     #[error("want a time up to the end of the run, {} s", fixed(*end, 3))]
     Later {
-        /// s.
+        /// Duration of the run, s.
         end: f64,
     },
 }
 
-/// Slower than this, rad/s and rad/s², is rest.
-const REST: f64 = 1e-4;
-/// The instant of a motion that stands for it, as a part of its time: rates and accelerations are both large there.
-const PART: f64 = 0.25;
+/// Rates and accelerations below this, rad/s and rad/s², count as rest.
+const REST_BELOW: f64 = 1e-4;
+/// Fraction of a motion's duration at which it is evaluated instead: rates and accelerations are both large there.
+const PLAN_FRACTION: f64 = 0.25;
 
 impl State {
-    /// Of a pose, at rest.
+    /// Returns the state of a pose at rest.
     pub fn at_rest(q: DriveAngles) -> Self {
         Self::given(Reference::at_rest(q))
     }
 
-    /// Of angles, rates and accelerations.
+    /// Returns the state with given angles, rates and accelerations.
     pub fn given(Reference { q, qd, qdd }: Reference) -> Self {
         Self { q, qd, qdd, b: None, when: When::Given }
     }
 
-    /// Of an instant of a run, relative to its base.
+    /// Returns the state of a frame of a run, relative to the base.
     pub fn now(frame: &Frame) -> Self {
         let n = frame.q.len();
         Self {
@@ -78,10 +78,10 @@ impl State {
         }
     }
 
-    /// Of a scenario's run at a time, s, as edits leave it.
+    /// Runs a scenario, with its edits, to a time, s, and returns the state there.
     ///
     /// # Errors
-    /// If it cannot be run so far, or ends before.
+    /// Fails if the scenario cannot be run up to this time, or the run ends before.
     pub fn at(scenario: &Scenario, time: f64) -> Result<Self, NoInstant> {
         let (mut found, mut end) = (None, 0.0);
         let done = replay_while(scenario, |_, frame| {
@@ -97,12 +97,12 @@ impl State {
         }
     }
 
-    /// Of an instant of a run; while it rests, a quarter into its planned motion.
+    /// Returns the state of a frame; while the run is at rest, that of a quarter of its planned motion.
     pub fn of(run: &Run, frame: &Frame) -> Self {
-        let rests = frame.qd.max_abs().max(frame.qdd.max_abs()) < REST;
+        let rests = frame.qd.max_abs().max(frame.qdd.max_abs()) < REST_BELOW;
         match run.motion().filter(|_| rests) {
             Some(motion) => {
-                let time = PART * motion.duration();
+                let time = PLAN_FRACTION * motion.duration();
                 let lambda = Inertia::of(&run.scenario().machine).lambda();
                 let b = Some(lambda.dot(&motion.at(0.0).q));
                 Self { b, when: When::Plan(time), ..Self::given(motion.at(time)) }
@@ -112,7 +112,7 @@ impl State {
     }
 }
 
-/// The b that control aims at.
+/// Returns the b that control tracks.
 fn held(frame: &Frame) -> Option<f64> {
     Some(frame.b_reference).filter(|b| b.is_finite())
 }

@@ -1,4 +1,4 @@
-//! [`Stated`]: equations with their numbers as plain data, without what draws symbols: what JSON has of them.
+//! [`Stated`]: equations with their values as plain data for JSON, with symbols as plain text.
 
 use serde::Serialize;
 
@@ -15,86 +15,86 @@ pub struct Stated {
     /// Instant of the run, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
-    /// Instant of the planned motion, s, where the run rests.
+    /// Instant of the planned motion, s, if the run is at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub planned_time: Option<f64>,
-    /// Angles of the drives as seen from the base, rad.
+    /// Drive angles relative to the base, rad.
     pub q: Vec<f64>,
-    /// Their rates, rad/s.
+    /// Drive rates, rad/s.
     pub qd: Vec<f64>,
-    /// Their accelerations, rad/s².
+    /// Drive accelerations, rad/s².
     pub qdd: Vec<f64>,
-    /// The b that is to be held, rad.
+    /// The required b, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b: Option<f64>,
-    /// The equations that were asked for.
+    /// The requested equations.
     pub equations: Vec<StatedEquation>,
 }
 
 /// An equation in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StatedEquation {
-    /// As the paper counts: `7`, `A1`.
+    /// Number in the paper: `7`, `A1`.
     pub number: &'static str,
-    /// In plain words.
+    /// Title in plain words.
     pub title: &'static str,
-    /// What it says, in one sentence.
+    /// Meaning, in one sentence.
     pub says: String,
-    /// Its general form; empty where its lines are that.
+    /// General form; empty if the lines are the general form.
     pub form: String,
-    /// What else is to be known.
+    /// Notes: deviations from the printed equation, omissions.
     pub notes: Vec<String>,
-    /// Why it has no meaning for this machine.
+    /// Why it does not apply to this machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
-    /// Whether every line holds; none where there are none.
+    /// Whether every line holds; `None` if there are no lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<bool>,
-    /// What is equal.
+    /// Lines of the equation.
     pub lines: Vec<StatedLine>,
 }
 
 /// One equality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StatedLine {
-    /// What it is of: an axis, a drive, a pair of drives; empty where the equation has one line.
+    /// Axis, drive or pair of drives; empty if the equation has one line.
     pub name: String,
-    /// Of its numbers.
+    /// Unit of the values.
     pub unit: &'static str,
-    /// The left side.
+    /// Value of the left side.
     pub left: f64,
-    /// The right side.
+    /// Value of the right side.
     pub right: f64,
-    /// Whether both are equal but for rounding.
+    /// Whether both sides agree within the tolerance.
     pub holds: bool,
     /// Terms of the left side.
     pub left_terms: Vec<StatedTerm>,
-    /// Terms of the right side; none is 0.
+    /// Terms of the right side; empty for 0.
     pub right_terms: Vec<StatedTerm>,
 }
 
 /// A term of a sum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StatedTerm {
-    /// With its sign.
+    /// Symbol, with its sign.
     pub symbol: String,
-    /// With its sign.
+    /// Value, with its sign.
     pub value: f64,
-    /// What makes it up, without what brings nothing.
+    /// Contributions of bodies that are not zero.
     pub parts: Vec<StatedPart>,
 }
 
-/// What one body brings to a term.
+/// Contribution of one body to a term.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StatedPart {
-    /// What the body is called.
+    /// Name of the body.
     pub from: String,
-    /// In the unit of the line.
+    /// Value, in the unit of the line.
     pub value: f64,
 }
 
 impl Stated {
-    /// Equations of a machine in a state.
+    /// Converts equations of a machine in a state.
     pub fn of<'a>(machine: &Machine, state: &State, equations: impl IntoIterator<Item = &'a Equation>) -> Self {
         let (time, planned_time) = match state.when {
             When::Run(time) => (Some(time), None),
@@ -115,7 +115,7 @@ impl Stated {
 }
 
 impl StatedEquation {
-    /// Of an equation of a machine.
+    /// Converts an equation of a machine.
     pub fn of(machine: &Machine, equation: &Equation) -> Self {
         Self {
             number: equation.number,

@@ -1,17 +1,17 @@
-//! Symbols with indices. They are kept as text in which `_{…}` holds an index, `l_{c1}`, and a transpose is `ᵀ`.
+//! Symbols with indices. As text, `_{…}` encloses an index, `l_{c1}`, and a transpose is `ᵀ`.
 
-/// How high a piece of a symbol stands.
+/// Vertical position of a piece of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// On the line.
+    /// On the baseline.
     Line,
-    /// Below it, and smaller.
+    /// Subscript.
     Index,
-    /// Above it, and smaller.
+    /// Superscript.
     Raised,
 }
 
-/// The pieces of a symbol. The T of a transpose is one of them, because few fonts have it raised.
+/// Splits a symbol into pieces. The T of a transpose is a piece of its own, because few fonts have it as a superscript.
 pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
     symbol.split("_{").enumerate().flat_map(|(i, piece)| {
         let (index, rest) = if i == 0 { ("", piece) } else { piece.split_once('}').unwrap_or((piece, "")) };
@@ -23,7 +23,7 @@ pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
     })
 }
 
-/// A symbol as plain text: indices of digits as small digits, m₁, others behind a low line, l_c1.
+/// Returns a symbol as plain text: numeric indices as subscript digits, m₁, others after an underscore, l_c1.
 pub fn plain(symbol: &str) -> String {
     let small = |c: char| c.to_digit(10).and_then(|digit| char::from_u32('₀' as u32 + digit));
     let digits = |text: &str| text.chars().map(small).collect::<Option<String>>();
@@ -35,7 +35,7 @@ pub fn plain(symbol: &str) -> String {
     pieces(symbol).map(piece).collect()
 }
 
-/// A name of a machine file as a symbol: `l12` is l with the index 12.
+/// Converts a name of a machine file to a symbol: `l12` is l with the index 12.
 pub(super) fn named(name: &str) -> String {
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
     match letters.len() < name.len() && !letters.is_empty() {
@@ -44,7 +44,7 @@ pub(super) fn named(name: &str) -> String {
     }
 }
 
-/// A letter with an index.
+/// Returns a letter with an index.
 pub(super) fn of(letter: &str, index: impl std::fmt::Display) -> String {
     format!("{letter}_{{{index}}}")
 }

@@ -1,4 +1,4 @@
-//! [`Cell`]: a line of an equation as it is written, each number below its symbol.
+//! [`Cell`]: layout of an equation's line, with each value below its symbol.
 
 use super::equation::{Line, Term};
 use crate::settings::number::fixed;
@@ -6,20 +6,20 @@ use crate::settings::number::fixed;
 /// A term, or the sign between the sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell<'a> {
-    /// Before the symbol: `+`, `−`, `=` or nothing.
+    /// Sign before the symbol: `+`, `−`, `=` or empty.
     pub sign: &'static str,
-    /// As [`pieces`](super::pieces) reads it.
+    /// Symbol in the notation of [`pieces`](super::pieces).
     pub symbol: &'a str,
-    /// Before the number.
+    /// Sign before the value.
     pub number_sign: &'static str,
-    /// Without its sign.
+    /// Value without its sign.
     pub number: String,
-    /// What it is of.
+    /// The term; `None` for the equals sign and for 0.
     pub term: Option<&'a Term>,
 }
 
-/// A line with so many decimals: terms of the left side, `=`, terms of the right side. Where that is 0, what the left side
-/// comes to stands below it.
+/// Lays out a line with a number of decimals: terms of the left side, `=`, terms of the right side. If the right side
+/// is 0, the value of the left side is written below it.
 pub fn cells(line: &Line, decimals: usize) -> Vec<Cell<'_>> {
     let left = line.left.iter().enumerate().map(|(i, term)| of_term(term, i == 0, decimals));
     let mut all: Vec<Cell<'_>> = left.collect();
@@ -47,7 +47,7 @@ fn sign(is_negative: bool, is_first: bool) -> &'static str {
     }
 }
 
-/// A number with its sign apart; what rounds to zero has none of its own.
+/// Returns the sign and the absolute value of a number; a value that rounds to zero has no minus sign.
 fn signed(value: f64, is_first: bool, decimals: usize) -> (&'static str, String) {
     let number = fixed(value.abs(), decimals);
     let is_zero = number.bytes().all(|b| matches!(b, b'0' | b'.'));

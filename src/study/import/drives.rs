@@ -1,4 +1,4 @@
-//! A motion given by drive angles: moved onto a plane with the end effector where it was, or turned as a whole.
+//! A motion given by drive angles: moved onto a plane with the same motion of the end effector, or turned as a whole.
 
 use super::judge::{Candidate, Judge};
 use super::request::{ImportError, Keep, Request};
@@ -11,10 +11,10 @@ use crate::query::{Watch, part};
 use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::counted;
 
-/// Up to this share of the work it is found what the given motion does; the rest is a search.
-const ACCOUNT: f64 = 0.3;
+/// Fraction of the work for assessing the given motion; the rest is the search.
+const ACCOUNT_SHARE: f64 = 0.3;
 
-/// The motion given by drive angles, and what might be proposed, the best first.
+/// Returns the motion given by drive angles, and candidates for a proposal, the best first.
 pub(super) fn of_drives(
     asked: &Request,
     judge: &Judge,
@@ -23,9 +23,9 @@ pub(super) fn of_drives(
     goes_on: Watch<'_>,
 ) -> Result<Ways, ImportError> {
     let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
-    let given = judge.given(running(path, samples), &mut part(goes_on, [0.0, ACCOUNT]));
+    let given = judge.given(running(path, samples), &mut part(goes_on, [0.0, ACCOUNT_SHARE]));
     let mean = given.account.b_mean;
-    // Whole turns of all drives are nothing: the one nearest to where the motion is.
+    // All drives turned by whole turns give the same pose; choose the equivalent b nearest to the motion.
     let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
     let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
     let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
@@ -40,12 +40,13 @@ pub(super) fn of_drives(
             }
             Err(stop) => Some(stop),
         };
-        let near = || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT, 1.0]));
+        let near =
+            || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT_SHARE, 1.0]));
         lost = if let Err(OwnWay { drives }) = space.follows_curves() {
             Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
         } else if let Some((b, _)) = asked.b.is_none().then(near).flatten() {
             let why = "of all b that reach every point of its path, the one that moves the drives least";
-            // Between the samples that chose it the path may still leave the workspace by a little.
+            // Between the samples that determined b, the path may leave the workspace slightly.
             let stop = match add(b, why.into()) {
                 Some(stop) => stop.nearest_b().map_or(Some(stop), |other| add(other, why.into())),
                 None => None,

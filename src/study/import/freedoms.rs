@@ -1,4 +1,5 @@
-//! A motion of the end effector held to a b, where a point and a b leave freedoms: the first posture that can be planned.
+//! A motion of the end effector at constant b, for machines with free drives at a point and a b: the first posture that
+//! can be planned.
 
 use super::judge::{Candidate, Judge};
 use crate::mechanics::planar::{DriveAngles, Vector};
@@ -11,14 +12,15 @@ use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::fixed;
 use crate::study::advice::Advice;
 
-/// Points of a path of which it is asked which b reach them.
-const ASKED: usize = 25;
-/// Which b are tried, the best first, as shares of the range of those that reach all of the path.
-const TRIED: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
-/// Postures that are tried at each, the best first.
+/// Number of points of a path at which the reachable b are computed.
+const PATH_POINTS: usize = 25;
+/// The b to try, the best first, as fractions of the interval of those that reach all of the path.
+const B_FRACTIONS: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
+/// Postures to try at each b, the best first.
 const POSTURES: [Posture; 4] = [Posture::LeastRates, Posture::MidRange, Posture::LeastTorque, Posture::Orientation];
 
-/// The pose in which minimum-norm rates begin, and the motion at the b that was asked for, rad, or at one that serves.
+/// Returns the initial pose for minimum-norm rates, and the motion at the requested b, rad, or at one that serves the
+/// path.
 pub(super) fn held(
     asked: Option<f64>,
     judge: &Judge,
@@ -27,10 +29,10 @@ pub(super) fn held(
     goes_on: Watch<'_>,
 ) -> (Option<DriveAngles>, Result<Vec<Candidate>, Advice>) {
     let start = |b: f64| space.near(samples.point(0), b);
-    let points: Vec<Vector> = (0..ASKED).map(|i| curve.at(i as f64 / (ASKED - 1) as f64).p).collect();
+    let points: Vec<Vector> = (0..PATH_POINTS).map(|i| curve.at(i as f64 / (PATH_POINTS - 1) as f64).p).collect();
     let (mut tried, range) = match (asked, widest(space, &points)) {
         (Some(b), _) => (vec![b], None),
-        (None, Ok([low, high])) => (TRIED.map(|share| low + share * (high - low)).to_vec(), Some([low, high])),
+        (None, Ok([low, high])) => (B_FRACTIONS.map(|share| low + share * (high - low)).to_vec(), Some([low, high])),
         (None, Err(why)) => return (start(0.0), Err(why.into())),
     };
     tried.dedup();
@@ -63,7 +65,7 @@ pub(super) fn held(
     (start(tried[0]), Err(refused.unwrap_or_default().into()))
 }
 
-/// The widest range of b that reach all of some points, or which is in the way.
+/// Returns the widest interval of b that reach all points, or the reason that there is none.
 fn widest(space: &PoseSpace, points: &[Vector]) -> Result<[f64; 2], String> {
     let mut sets = Vec::with_capacity(points.len());
     for (i, p) in points.iter().enumerate() {

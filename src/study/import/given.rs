@@ -1,4 +1,4 @@
-//! [`GivenMotion`]: samples as a motion of a machine takes them.
+//! [`GivenMotion`]: a motion given by samples, adapted to a machine.
 
 use std::f64::consts::TAU;
 
@@ -9,21 +9,21 @@ use crate::planning::curves::{Coordinates, Samples};
 /// A motion given by samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenMotion {
-    /// What the samples are of.
+    /// Coordinates that the samples give.
     pub coordinates: Coordinates,
-    /// Names of their columns beside the time.
+    /// Names of the columns, without the time.
     pub names: Vec<String>,
     /// Times, s, and drive angles, rad, or coordinates of the end effector, m.
     pub samples: Samples,
-    /// By how much each drive was lifted, whole turns, so that the relative angles begin within their limits, rad.
+    /// Whole turns added to each drive, so that the relative angles start within their limits, rad.
     pub lifted: Vec<f64>,
-    /// The cut-off, Hz, and the greatest change of a sample by smoothing, rad or m.
+    /// Cut-off frequency of smoothing, Hz, and largest change of a sample by it, rad or m.
     pub smoothing: Option<[f64; 2]>,
 }
 
 impl GivenMotion {
-    /// Samples of a machine's drive angles or end effector. Single drives are lifted by whole turns where that brings the
-    /// first pose within the joint limits, because angles may have been wrapped.
+    /// Builds a motion from samples of a machine's drive angles or end effector. Whole turns are added to single drives
+    /// if that brings the first pose within the joint limits, because angles may have been wrapped.
     pub fn new(machine: &Machine, coordinates: Coordinates, names: Vec<String>, samples: Samples) -> Self {
         let mut lifted = vec![0.0; samples.columns()];
         let first = samples.values(0);
@@ -44,10 +44,10 @@ impl GivenMotion {
         Self { coordinates, names, samples, lifted, smoothing: None }
     }
 
-    /// The same smoothed without delay: half of the amplitude is left at the cut-off, Hz.
+    /// Returns the motion smoothed without delay; at the cut-off frequency, Hz, half of the amplitude remains.
     ///
     /// # Errors
-    /// If the cut-off is not below half of the mean rate.
+    /// Fails if the cut-off frequency is not below half of the mean sampling rate.
     pub fn smoothed(self, cut_off: f64) -> Result<Self, SamplesError> {
         let samples = self.samples.smoothed(cut_off)?;
         let all = |samples: &Samples| samples.rows().flat_map(|row| row[1..].to_vec()).collect::<Vec<_>>();
@@ -56,7 +56,8 @@ impl GivenMotion {
         Ok(Self { samples, smoothing, ..self })
     }
 
-    /// Largest second derivative of each column at the samples, its unit/s²; none if times are too close for a spline.
+    /// Returns the largest second derivative of each column at the samples, in its unit/s²; `None` if times are too
+    /// close for a spline.
     pub(super) fn second_derivatives(&self) -> Option<Vec<f64>> {
         let path = self.samples.path(0.0)?;
         let per = self.samples.duration().powi(-2);

@@ -1,4 +1,4 @@
-//! [`Imported`]: what a given motion does to the base, and what is proposed in its place.
+//! [`Imported`]: the reactions of a given motion, and the motion proposed in its place.
 
 use serde::Serialize;
 
@@ -9,62 +9,62 @@ use crate::session::scenario::Scenario;
 use crate::settings::number::fixed;
 use crate::study::advice::{Advice, Remedy};
 
-/// What a given motion does to the base, and what is proposed in its place.
+/// The reactions of a given motion, and the motion proposed in its place.
 #[derive(Clone, Debug, Serialize)]
 pub struct Imported {
-    /// The machine's name.
+    /// Name of the machine.
     pub machine: String,
-    /// `drives` or `tip`.
+    /// What the samples give: `drives` or `tip`.
     pub content: &'static str,
-    /// How many samples.
+    /// Number of samples.
     pub samples: usize,
-    /// Time of the first, s.
+    /// Time of the first sample, s.
     pub start: f64,
-    /// From the first to the last, s.
+    /// Time from the first to the last sample, s.
     pub duration: f64,
-    /// Cut-off of smoothing, Hz.
+    /// Cut-off frequency of smoothing, Hz.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothed_at: Option<f64>,
-    /// Greatest change of a sample by smoothing, rad or m.
+    /// Largest change of a sample by smoothing, rad or m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothed_by: Option<f64>,
-    /// How far the second derivative of each column can be trusted, rad/s² or m/s².
+    /// Uncertainty of the second derivative of each column, rad/s² or m/s².
     pub uncertainty: Vec<f64>,
-    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end
+    /// Smallest and largest b at the samples, rad; the spline between them may exceed these. `None` for the end
     /// effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_samples: Option<[f64; 2]>,
-    /// The given motion, of the end effector with minimum-norm rates; none where these cannot follow.
+    /// Assessment of the given motion, for the end effector with minimum-norm rates; `None` if these cannot follow it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub given: Option<Account>,
     /// Whether there is a proposal.
     pub feasible: bool,
-    /// Why there is none.
+    /// Why there is no proposal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<Advice>,
     /// The nearest motion without reactions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proposal: Option<Proposal>,
-    /// What a person should know of the motions, a sentence each.
+    /// Remarks on the motions, one sentence each.
     #[serde(skip)]
     pub notes: Vec<Advice>,
-    /// The proposal, and the motion as it was given, both to be carried out.
+    /// Scenarios that run the proposal and the given motion.
     #[serde(skip)]
     pub scenarios: Option<[Scenario; 2]>,
-    /// The motion as it was given, to be carried out, whether there is a proposal or not.
+    /// Scenario that runs the given motion, whether there is a proposal or not.
     #[serde(skip)]
     pub as_given: Option<Scenario>,
 }
 
-/// A second derivative that is uncertain by more than this fraction of its peak is noted.
+/// Uncertainty of a second derivative, as a fraction of its peak, above which it is noted.
 const MAX_UNCERTAINTY: f64 = 0.05;
-/// Smaller peaks of a second derivative, rad/s² or m/s², are rest.
+/// Peaks of a second derivative below this, rad/s² or m/s², count as rest.
 const MIN_PEAK: f64 = 1e-9;
-/// A motion that ends slower than this fraction of its greatest rate ends at rest.
+/// Final rate, as a fraction of the largest rate, up to which a motion counts as ending at rest.
 const MAX_END_SPEED: f64 = 1e-3;
 
 impl Imported {
-    /// Of a given motion, without a proposal; `given` is what the motion of the drives does.
+    /// Returns the report on a given motion, without a proposal; `given` is its assessment.
     pub(super) fn of(motion: &GivenMotion, judge: &Judge, given: Option<Account>) -> Self {
         let samples = &motion.samples;
         let lambda = judge.model.lambda();
@@ -94,7 +94,7 @@ impl Imported {
     }
 
     fn notes_of(&self, motion: &GivenMotion) -> Vec<Advice> {
-        // Without these there is no spline, and the motion is none.
+        // Without second derivatives there is no spline, and so no motion to remark on.
         let Some(peaks) = motion.second_derivatives() else { return Vec::new() };
         let is_of_drives = motion.coordinates == Coordinates::Drives;
         let unit = if is_of_drives { "rad/s²" } else { "m/s²" };
@@ -126,7 +126,7 @@ impl Imported {
         notes
     }
 
-    /// Takes a proposal, the scenario that carries it out, and that of the motion as it was given.
+    /// Adds a proposal, with the scenarios that run it and the given motion.
     pub(super) fn propose(&mut self, proposal: Proposal, scenarios: [Scenario; 2]) {
         if let Some((limit, factor)) = &proposal.account.over {
             let times = fixed(*factor, 2);

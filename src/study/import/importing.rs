@@ -1,4 +1,4 @@
-//! [`Importing`]: the query for what a given motion does, and for the motion that is proposed in its place.
+//! [`Importing`]: the query that assesses a given motion and searches for a reactionless one in its place.
 
 use super::drives::of_drives;
 use super::given::GivenMotion;
@@ -12,37 +12,37 @@ use crate::planning::pose_space::NoPoseSpace;
 use crate::query::{Portion, Query, Watch, part};
 use crate::session::Refusal;
 
-/// The shortest step of a proposal, s.
+/// Minimum integration step of a proposal's scenario, s.
 const MIN_STEP: f64 = 1e-4;
-/// How many instants of a motion are looked at: so many for each sample, at least and at most.
+/// Number of instants at which a motion is evaluated: per sample, and its lower and upper bound.
 const INSTANTS_PER_SAMPLE: usize = 8;
 const MIN_INSTANTS: usize = 4000;
 const MAX_INSTANTS: usize = 200_000;
-/// Up to these shares of the work the machine is looked at, and ways are searched for; in the rest these are tried.
-const LOOKED: f64 = 0.05;
-const SEARCHED: f64 = 0.5;
+/// Fractions of the work done once the machine is analysed, and once candidates are found; the rest is simulating them.
+const ANALYSED_AT: f64 = 0.05;
+const SEARCHED_AT: f64 = 0.5;
 
-/// What a given motion does, and the first of the motions near it that has no reactions: in a portion the machine is
-/// looked at, then candidates are searched for, then each is tried in one of its own.
+/// Assesses a given motion and finds the first motion near it that has no reactions. One portion analyses the machine,
+/// the next searches for candidates, and each further one simulates a candidate.
 pub struct Importing {
     request: Request,
     stage: Stage,
 }
 
-/// How far it is.
+/// Stage of the work.
 enum Stage {
     Begun,
     Looked(Box<Judge>),
     Trying(Box<Trying>),
 }
 
-/// Motions that are tried one after the other.
+/// Candidates, simulated one after the other.
 struct Trying {
     judge: Judge,
     given: Option<Given>,
-    /// The best first.
+    /// Candidates, the best first.
     candidates: Vec<Candidate>,
-    /// How many were tried.
+    /// Number of candidates simulated.
     tried: usize,
     imported: Imported,
 }
@@ -56,7 +56,7 @@ impl Query for Importing {
     }
 
     fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
-        // What is not wanted once stays so, and whatever was found by then is of no use.
+        // Once the progress callback has returned false, the result is incomplete and is dropped.
         let mut stopped = false;
         let mut goes_on = |done: f64| {
             stopped = stopped || !goes_on(done);
@@ -78,12 +78,12 @@ impl Importing {
                 let instants = INSTANTS_PER_SAMPLE * motion.samples.count();
                 let judge = Judge::new(&self.request.scenario.0, instants.clamp(MIN_INSTANTS, MAX_INSTANTS));
                 self.stage = Stage::Looked(judge.into());
-                Portion::More(LOOKED)
+                Portion::More(ANALYSED_AT)
             }
-            Stage::Looked(judge) => match ways(&self.request, &judge, &mut part(goes_on, [LOOKED, SEARCHED])) {
+            Stage::Looked(judge) => match ways(&self.request, &judge, &mut part(goes_on, [ANALYSED_AT, SEARCHED_AT])) {
                 Ok(ways) => {
                     self.stage = Stage::Trying(Trying::of(motion, *judge, ways).into());
-                    Portion::More(SEARCHED)
+                    Portion::More(SEARCHED_AT)
                 }
                 Err(why) => Portion::Done(Err(why)),
             },
@@ -99,7 +99,7 @@ impl Importing {
     }
 }
 
-/// What a motion is, and what might be proposed.
+/// Assesses the motion and searches for candidates.
 fn ways(request: &Request, judge: &Judge, goes_on: Watch<'_>) -> Result<Ways, ImportError> {
     let motion = &*request.motion.0;
     let (samples, drives) = (&motion.samples, motion.coordinates == Coordinates::Drives);
@@ -114,7 +114,7 @@ fn ways(request: &Request, judge: &Judge, goes_on: Watch<'_>) -> Result<Ways, Im
     }
 }
 
-/// The step of a scenario that carries a motion out, s.
+/// Returns the integration step of a scenario that runs the motion, s.
 fn step_of(motion: &GivenMotion, judge: &Judge) -> f64 {
     motion.samples.spacing().clamp(MIN_STEP, judge.scenario.step.max(MIN_STEP))
 }
@@ -132,12 +132,12 @@ impl Trying {
         Self { judge, given, candidates, tried: 0, imported }
     }
 
-    /// How much of all is done once so much of the next candidate is.
-    fn share(&self, of_next: f64) -> f64 {
-        SEARCHED + (1.0 - SEARCHED) * (self.tried as f64 + of_next) / self.candidates.len().max(1) as f64
+    /// Returns the fraction of the whole work done, given the fraction of the next candidate.
+    fn share(&self, fraction_of_next: f64) -> f64 {
+        SEARCHED_AT + (1.0 - SEARCHED_AT) * (self.tried as f64 + fraction_of_next) / self.candidates.len().max(1) as f64
     }
 
-    /// Simulates the next candidate; whether another one is to be tried.
+    /// Simulates the next candidate; returns whether another call is needed.
     fn next(&mut self, motion: &GivenMotion, goes_on: Watch<'_>) -> bool {
         let Some(candidate) = self.candidates.get(self.tried) else { return false };
         let step = step_of(motion, &self.judge);

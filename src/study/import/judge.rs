@@ -1,4 +1,4 @@
-//! What motions of a machine do to its base, and whether a proposed motion has no reactions, as it is meant to.
+//! Assessment of motions of a machine by their reactions, and the check that a proposed motion has none.
 
 use serde::Serialize;
 
@@ -17,10 +17,10 @@ use crate::session::scenario::{Scenario, Task, TaskKind};
 use crate::session::{Refusal, Run, replay_while};
 use crate::study::advice::{Advice, Remedy};
 
-/// Up to this share of the work a proposal is simulated; in the rest it is found what it does.
-const SIMULATED: f64 = 0.8;
+/// Fraction of the work for simulating a proposal; the rest is its assessment.
+const SIMULATION_SHARE: f64 = 0.8;
 
-/// What a motion does, if it is followed exactly.
+/// Assessment of a motion that is followed exactly.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Account {
     /// Largest |n_B|, N m.
@@ -33,75 +33,75 @@ pub struct Account {
     pub peak_base_force: f64,
     /// Root mean square of the dynamic |f_B|, N.
     pub rms_base_force: f64,
-    /// Largest torque of each motor, either way, N m.
+    /// Largest |torque| of each motor, N m.
     pub peak_torque: Vec<f64>,
-    /// Largest rate of each motor, rad/s.
+    /// Largest |rate| of each motor, rad/s.
     pub peak_speed: Vec<f64>,
-    /// The limit of a drive that is passed by most, and by what factor.
+    /// The limit of a drive that is exceeded most, and by what factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
-    /// By how much a relative angle passes its limits at most, rad; 0 if all keep them.
+    /// Largest violation of the limits of a relative angle, rad; 0 if there is none.
     pub past_limits: f64,
-    /// Least and greatest b on the way, rad.
+    /// Smallest and largest b along the motion, rad.
     pub b_range: [f64; 2],
     /// Mean of b over time, rad.
     pub b_mean: f64,
     /// Angular momentum about B at the start, kg m²/s.
     pub angular_momentum_start: f64,
-    /// The same at the end, kg m²/s.
+    /// Angular momentum about B at the end, kg m²/s.
     pub angular_momentum_end: f64,
     /// Largest |q̇_k| at the end, rad/s.
     pub speed_end: f64,
-    /// n_B over time, to be drawn: s, N m.
+    /// Points of n_B over time, for drawing: s, N m.
     #[serde(skip)]
     pub moment: Vec<[f64; 2]>,
 }
 
-/// A motion that is proposed, simulated.
+/// A proposed motion, simulated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
-    /// `same-tip`, `turned`, `on-plane` or `as-given`.
+    /// How it was obtained: `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,
-    /// Why it is this one, in words.
+    /// Why this motion was chosen, in words.
     pub why: String,
-    /// rad.
+    /// Mean pose constant, rad.
     pub b: f64,
-    /// Greatest distance of the end effector from the given motion, m.
+    /// Largest distance of the end effector from the given motion, m.
     pub tip_deviation: f64,
-    /// Greatest distance of each drive from the given motion, rad.
+    /// Largest deviation of each drive from the given motion, rad.
     pub joint_deviation: Vec<f64>,
-    /// Root mean square over time and drives in the metric of kinetic energy, rad.
+    /// Deviation in the metric of kinetic energy, root mean square over time and drives, rad.
     pub rms_deviation: f64,
-    /// What it does, if it is followed exactly.
+    /// Assessment of the motion if it is followed exactly.
     #[serde(flatten)]
     pub account: Account,
-    /// Largest |n_B| when it is simulated, N m.
+    /// Largest |n_B| in the simulation, N m.
     pub simulated_peak_base_moment: f64,
-    /// Largest dynamic |f_B| when it is simulated, N.
+    /// Largest dynamic |f_B| in the simulation, N.
     pub simulated_peak_base_force: f64,
-    /// Whether the simulated motion leaves the base alone.
+    /// Whether the simulated motion is reactionless.
     pub reactionless: bool,
 }
 
-/// In so many parts n_B over time is drawn.
-const DRAWN: usize = 240;
+/// Number of intervals at which n_B is sampled for drawing.
+const DRAWN_INTERVALS: usize = 240;
 
-/// A motion that might be proposed.
+/// A candidate for the proposal.
 pub(super) struct Candidate {
     pub way: &'static str,
     pub why: String,
     pub task: Task,
 }
 
-/// A motion as it is given, and what it does.
+/// The given motion and its assessment.
 pub(super) struct Given {
     pub motion: Motion,
     pub account: Account,
 }
 
-/// The machine with what is needed to assess motions of it.
+/// A machine with everything needed to assess its motions.
 pub(super) struct Judge {
-    /// Everything but the task.
+    /// The scenario, whose task is not used.
     pub scenario: Scenario,
     pub machine: Machine,
     pub model: Inertia,
@@ -111,7 +111,7 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    /// Of the machine of a scenario, whose motions are looked at at so many instants.
+    /// Builds the assessor of a scenario's machine, which evaluates motions at a number of instants.
     pub fn new(scenario: &Scenario, instants: usize) -> Self {
         let scenario = Scenario { compare_b: None, edits: Vec::new(), ..scenario.clone() };
         let machine = scenario.machine.clone();
@@ -125,15 +125,15 @@ impl Judge {
         }
     }
 
-    /// n_B at instants that are enough to draw it, s, N m.
+    /// Returns n_B at the instants for drawing, s, N m.
     fn moment(&self, motion: &Motion) -> Vec<[f64; 2]> {
         let at = |i: usize| {
-            let t = motion.duration() * i as f64 / DRAWN as f64;
+            let t = motion.duration() * i as f64 / DRAWN_INTERVALS as f64;
             let r = motion.at(t);
             let (_, wrench) = inverse_with_wrench(&self.model, &r.q.units(), &r.qd, &r.qdd, &self.around);
             [t, wrench.total().moment + 0.0]
         };
-        (0..=DRAWN).map(at).collect()
+        (0..=DRAWN_INTERVALS).map(at).collect()
     }
 
     fn past_limits(&self, motion: &Motion) -> f64 {
@@ -146,11 +146,11 @@ impl Judge {
             angles.fold(0.0, f64::max)
         };
         let most = (0..=self.instants).map(past).fold(0.0, f64::max);
-        // What rounding passes by is none.
+        // Violations within rounding are treated as zero.
         if most > 1e-6 { most } else { 0.0 }
     }
 
-    /// What a motion does.
+    /// Assesses a motion.
     fn account(&self, motion: &Motion, goes_on: Watch<'_>) -> Account {
         let limits = Limits::of(&self.machine);
         let f = Forecast::at_while(motion, (&self.model, &self.around, &limits), self.instants, goes_on);
@@ -177,27 +177,27 @@ impl Judge {
 }
 
 impl Judge {
-    /// A motion as it is given.
+    /// Returns a given motion with its assessment.
     pub fn given(&self, motion: Motion, goes_on: Watch<'_>) -> Given {
         Given { account: self.account(&motion, goes_on), motion }
     }
 
-    /// Whether a task can be planned.
+    /// Checks that a task can be planned.
     ///
-    /// Errors say why it cannot.
+    /// The error says why it cannot.
     pub fn plans(&self, task: &Task) -> Result<(), String> {
         let own = Scenario { task: task.clone(), ..self.scenario.clone() };
         Run::new(&own).map(|_| ()).map_err(|refusal| refusal.to_string())
     }
 
-    /// A motion as a scenario of its own, with the step, s.
+    /// Returns a scenario that runs a task with an integration step, s.
     pub fn scenario(&self, task: Task, step: f64, way: &str) -> Scenario {
         let title = format!("{} · {way}", self.scenario.title);
         Scenario { task, step, title, ..self.scenario.clone() }
     }
 
-    /// A given motion as a scenario of its own, of the end effector with minimum-norm rates from the pose of b, rad; none
-    /// if the samples make no task.
+    /// Returns a scenario that runs a given motion; for the end effector with minimum-norm rates from the pose at b,
+    /// rad. `None` if the samples give no valid task.
     pub fn as_given(&self, motion: &GivenMotion, b: f64, step: f64) -> Option<Scenario> {
         let sampled = |kind, b| Task::sampled(kind, motion.samples.clone(), Some(b), &self.machine).ok();
         let task = match motion.coordinates {
@@ -211,10 +211,10 @@ impl Judge {
         Some(Scenario { name: format!("{}-given", own.name), ..own })
     }
 
-    /// A candidate, planned and simulated; `goes_on` is told how much is done, from 0 to 1, and says whether the rest is
-    /// still wanted.
+    /// Plans, simulates and assesses a candidate. Calls `goes_on` with the fraction done, from 0 to 1, and stops if it
+    /// returns `false`.
     ///
-    /// Errors say why it cannot be carried out.
+    /// The error says why the candidate cannot be run.
     pub fn proposal(
         &self,
         candidate: &Candidate,
@@ -222,12 +222,12 @@ impl Judge {
         given: Option<&Given>,
         goes_on: Watch<'_>,
     ) -> Result<Proposal, Refusal> {
-        let run = replay_while(scenario, |run, frame| goes_on(SIMULATED * frame.time / run.planned_time()))?;
+        let run = replay_while(scenario, |run, frame| goes_on(SIMULATION_SHARE * frame.time / run.planned_time()))?;
         let peaks = run.frame().peaks;
         let (motion, tip) = (&run.plan().motion, self.machine.end_effector());
         let deviation =
             given.map(|Given { motion: given, .. }| Deviation::between(tip, &self.model, given, motion, self.instants));
-        let account = self.account(motion, &mut part(goes_on, [SIMULATED, 1.0]));
+        let account = self.account(motion, &mut part(goes_on, [SIMULATION_SHARE, 1.0]));
         Ok(Proposal {
             way: candidate.way,
             why: candidate.why.clone(),
@@ -242,7 +242,7 @@ impl Judge {
         })
     }
 
-    /// Why holding b is not enough.
+    /// Returns why constant b does not make the proposal reactionless.
     pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&Account>) -> Advice {
         let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {

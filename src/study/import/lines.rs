@@ -1,27 +1,27 @@
-//! [`Line`]: what a given motion and the proposed one do, number by number.
+//! [`Line`]: a value of the given motion next to that of the proposed one.
 
 use super::imported::Imported;
 use super::judge::{Account, Proposal};
 
-/// A number of both motions.
+/// A value of both motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// Name of the value.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// Of the motion as given; none where it has none.
+    /// Value of the given motion, if it has one.
     pub given: Option<f64>,
-    /// Of the proposal; none where there is none.
+    /// Value of the proposal, if there is one.
     pub proposed: Option<f64>,
-    /// To so many digits after the point a person wants it.
+    /// Number of decimals to show.
     pub decimals: usize,
-    /// Whether it is said of each motion that there is.
+    /// Whether the value exists for both kinds of motions.
     pub of_both: bool,
 }
 
 impl Imported {
-    /// What both motions do to the base and ask of the drives.
+    /// Returns the values of both motions: reactions on the base, torques, b.
     pub fn lines(&self) -> Vec<Line> {
         let (given, proposal) = (self.given.as_ref(), self.proposal.as_ref());
         let both = |name: String, of: &dyn Fn(&Account) -> f64, decimals: usize, unit: &'static str| Line {
@@ -43,7 +43,7 @@ impl Imported {
         lines.extend((0..drives).map(|k| both(format!("peak |τ_{}|", k + 1), &|a| a.peak_torque[k], 6, "N m")));
         lines.push(both("least b on the way".into(), &|a| a.b_range[0], 6, "rad"));
         lines.push(both("greatest b on the way".into(), &|a| a.b_range[1], 6, "rad"));
-        // The spline between the samples goes beyond them: both are said where they differ.
+        // The spline may exceed the samples: show both where they differ.
         let range = given.map(|a| a.b_range);
         if let Some(([low, high], [least, greatest])) = self.b_samples.zip(range)
             && (low - least).max(greatest - high) > 5e-7
@@ -62,7 +62,7 @@ impl Imported {
 }
 
 impl Proposal {
-    /// What only the proposal has.
+    /// Returns the values that only the proposal has.
     fn lines(&self, is_measured_from_given: bool) -> Vec<Line> {
         let line = |name: String, value: f64, decimals: usize, unit: &'static str| {
             let proposed = Some(value);
@@ -79,7 +79,7 @@ impl Proposal {
         lines
     }
 
-    /// What it keeps of the motion as given, in words.
+    /// Returns in words what the proposal keeps of the given motion.
     pub fn keeps(&self) -> &'static str {
         match self.way {
             "turned" => "the relative joint angles kept, the arm turned as a whole",

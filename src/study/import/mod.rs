@@ -1,14 +1,15 @@
-//! Motions given by samples: what such a motion does to the base, and the nearest one that does nothing.
+//! Motions given by samples: the reactions of such a motion, and the nearest motion without reactions.
 //!
-//! A quintic spline goes through every sample. What is proposed keeps the timing and holds b: with the end effector where
-//! it was if that is possible, else with the arm turned as a whole. It is simulated before it is called reactionless.
+//! A quintic spline interpolates all samples. The proposal keeps the timing and holds b constant: with the same motion
+//! of the end effector if possible, else with the arm turned as a whole. It counts as reactionless only after a
+//! simulation.
 //!
 //! | what | type |
 //! |---|---|
 //! | samples with angles within the joint limits, smoothed or not | [`GivenMotion`] |
-//! | what is asked | [`Request`] |
+//! | the request | [`Request`] |
 //! | the query | [`Importing`] |
-//! | what it comes to | [`Imported`], of [`Account`] and [`Proposal`]; [`Advice`](super::advice::Advice) in words |
+//! | the result | [`Imported`], with [`Account`] and [`Proposal`]; [`Advice`](super::advice::Advice) in words |
 
 mod drives;
 mod freedoms;

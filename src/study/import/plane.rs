@@ -1,4 +1,4 @@
-//! A motion of the end effector held to a plane b = const, where a machine has planes: followed on one sheet.
+//! A motion of the end effector on a plane b = const, for machines with closed-form planes: followed on one sheet.
 
 use super::judge::{Candidate, Judge};
 use crate::mechanics::planar::DriveAngles;
@@ -10,10 +10,11 @@ use crate::planning::reactionless::{BSet, between};
 use crate::session::scenario::{Task, TaskKind};
 use crate::study::advice::Advice;
 
-/// Points of a path of which it is asked which b reach them.
-const ASKED: usize = 257;
+/// Number of points of a path at which the reachable b are computed.
+const PATH_POINTS: usize = 257;
 
-/// The pose in which minimum-norm rates begin, and the motion on the plane that was asked for, rad, or on one that serves.
+/// Returns the initial pose for minimum-norm rates, and the motion on the requested plane, rad, or on one that serves
+/// the path.
 pub(super) fn held(
     asked: Option<f64>,
     judge: &Judge,
@@ -25,8 +26,8 @@ pub(super) fn held(
         Some(b) => (b, "b is the one asked for".to_owned()),
         None => {
             let serves = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
-            let all = serves(trace::common_b(map, curves, ASKED));
-            // Where no b serves all points, the first one's gives the reason.
+            let all = serves(trace::common_b(map, curves, PATH_POINTS));
+            // If no b serves all points, the b of the first point yields the reason.
             let first = map.reach(samples.point(0)).ok().and_then(serves);
             let what = if all.is_some() { "all of the path" } else { "its first point" };
             let range = all.or(first).unwrap_or([0.0; 2]);

@@ -1,4 +1,4 @@
-//! [`Request`]: what is asked of a given motion.
+//! [`Request`]: the request to import a given motion.
 
 use thiserror::Error;
 
@@ -16,18 +16,18 @@ pub enum Keep {
     Joints,
 }
 
-/// A given motion, and what is asked of the one that is proposed.
+/// A given motion, and requirements on the proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The machine, its base and its control; its task and its edits are left out. Proposals take its name, and its title
-    /// with what they keep.
+    /// Machine, base and control; the task and the edits are ignored. Scenarios of proposals take its name, and its
+    /// title followed by what they keep.
     pub scenario: Shared<Scenario>,
-    /// The motion.
+    /// The given motion.
     pub motion: Shared<GivenMotion>,
-    /// Pose constant of the proposal, rad; by default the one that moves the drives least, or the middle of those that
+    /// Pose constant of the proposal, rad. By default the one that moves the drives least, or the middle of those that
     /// serve the end effector's path.
     pub b: Option<f64>,
-    /// What the proposal keeps of given drive angles; by default the end effector's motion, where some plane reaches all
+    /// What the proposal keeps of given drive angles. By default the end effector's motion, if some plane reaches all
     /// of it.
     pub keep: Option<Keep>,
 }
@@ -35,13 +35,13 @@ pub struct Request {
 /// Why a motion cannot be imported.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ImportError {
-    /// The joint angles of a motion of the end effector are to be kept.
+    /// The joint angles of a motion of the end effector were to be kept.
     #[error("x and y give no joint angles to be kept")]
     NoJoints,
     /// No spline goes through the samples.
     #[error("want times further apart")]
     TooDense,
-    /// The machine has no poses in which its end effector can be put somewhere.
+    /// The machine has no pose space, so its end effector cannot be placed.
     #[error(transparent)]
     NoPoses(#[from] NoPoseSpace),
 }

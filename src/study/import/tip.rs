@@ -1,4 +1,4 @@
-//! A motion given by the end effector: with minimum-norm rates, and with b held.
+//! A motion given by the end effector: with minimum-norm rates, and at constant b.
 
 use super::freedoms;
 use super::judge::{Candidate, Given, Judge};
@@ -14,12 +14,12 @@ use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::{counted, fixed};
 use crate::study::advice::{Advice, Remedy};
 
-/// Up to this share of the work a b is searched for; in the rest it is found what minimum-norm rates do.
-const SEARCH: f64 = 0.6;
-/// b of the samples may differ by this much, rad, from that of the curve that they are meant to lie on.
-const ON_CURVE: f64 = 1e-3;
+/// Fraction of the work for the search for a b; the rest is the assessment of minimum-norm rates.
+const SEARCH_SHARE: f64 = 0.6;
+/// Maximum deviation of b along the motion from its mean, rad, for a path that counts as lying on the curve of one b.
+const MAX_B_DEVIATION_RAD: f64 = 1e-3;
 
-/// The usual inverse of a motion given by the end effector, and one that holds b.
+/// Returns the minimum-norm motion for samples of the end effector, and candidates at constant b.
 pub(super) fn of_tip(
     asked: &Request,
     judge: &Judge,
@@ -30,7 +30,7 @@ pub(super) fn of_tip(
     let curve = samples.curve().ok_or(ImportError::TooDense)?;
     let reaches_area = space.reaches_area();
     let (start, held) = if reaches_area {
-        let mut searching = part(goes_on, [0.0, SEARCH]);
+        let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
             Ok(planes) => plane::held(asked.b, judge, (space, planes), (samples, &curve)),
             Err(_) => freedoms::held(asked.b, judge, space, (samples, &curve), &mut searching),
@@ -40,12 +40,12 @@ pub(super) fn of_tip(
         (space.near(samples.point(0), asked.b.unwrap_or(0.0)), None)
     };
     let usual = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
-    let given = usual.map(|path| judge.given(running(path, samples), &mut part(goes_on, [SEARCH, 1.0])));
+    let given = usual.map(|path| judge.given(running(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
     let candidates = held.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
     Ok(Ways { given, candidates })
 }
 
-/// One and two drives: only what lies along the curve of a b is reactionless.
+/// Returns the candidate for one or two drives, where only motions along the curve of one b are reactionless.
 fn on_curve(
     judge: &Judge,
     space: &PoseSpace,
@@ -59,7 +59,7 @@ fn on_curve(
     };
     let rows = samples.stations().into_iter().map(|s| motion.path.at(s).q.to_vec());
     let ([low, high], mean) = (account.b_range, account.b_mean);
-    if (high - mean).max(mean - low) > ON_CURVE {
+    if (high - mean).max(mean - low) > MAX_B_DEVIATION_RAD {
         let why = format!("{drives} held to a b move the end effector along one curve of their own (");
         return Err(Advice::from(why).name(Remedy::Workspace).then(format!(
             "), and on this path b goes from {} to {} rad: want a path along such a curve, or samples of the drive \

@@ -1,4 +1,4 @@
-//! [`Ways`]: the ways in which a given motion might be made reactionless, the best first.
+//! [`Ways`]: candidates for a reactionless motion near a given one, the best first.
 
 use super::judge::{Candidate, Given, Judge};
 use super::request::ImportError;
@@ -11,20 +11,21 @@ use crate::query::Watch;
 use crate::session::scenario::{Task, TaskKind};
 use crate::study::advice::Advice;
 
-/// The motion that samples give, and what might be proposed in its place.
+/// The given motion, and candidates for the proposal.
 pub(super) struct Ways {
-    /// The motion as given; for the end effector with minimum-norm rates, if these can follow.
+    /// The given motion; for the end effector with minimum-norm rates, if these can follow it.
     pub given: Option<Given>,
-    /// What might be proposed, or why nothing can be.
+    /// Candidates, or why there are none.
     pub candidates: Result<Vec<Candidate>, Advice>,
 }
 
-/// A path that is run along as samples are timed.
+/// Returns the motion along a path with the timing of the samples.
 pub(super) fn running(path: PathTable, samples: &Samples) -> Motion {
     Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) }
 }
 
-/// As it is given: where every motion is reactionless, or none can be proposed.
+/// Returns the given motion as its own candidate: for machines whose every motion is reactionless, or that have no
+/// proposal.
 pub(super) fn as_given(
     judge: &Judge,
     samples: &Samples,

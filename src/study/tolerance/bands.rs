@@ -1,8 +1,9 @@
-//! How n_B(t) and |f_B|(t) are spread over the machines: exact where it can be, to first order, and as sampled.
+//! Spread of n_B(t) and |f_B|(t) over the random machines: exact where possible, to first order, and sampled.
 //!
 //! The mean and the variance of n_B and of the components of f_B are exact, from the moments of the constants. The mean
-//! and the deviation of |f_B| are not to be had so: a norm is not linear, and where the nominal f_B is zero it has no
-//! first order at all. They are sampled; so are all percentiles. [`Agreement`] says where the two part.
+//! and the standard deviation of |f_B| have no such closed form: a norm is not linear, and where the nominal f_B is
+//! zero it has no first-order expansion. They are sampled; so are all percentiles. [`Agreement`] says where first-order
+//! and other results differ.
 
 use serde::Serialize;
 
@@ -10,15 +11,15 @@ use super::deviate::CHUNK;
 use super::ensemble::Ensemble;
 use super::statistics::quantile;
 
-/// The percentiles of a band.
+/// Percentiles of a band.
 pub const PERCENTILES: [f64; 5] = [5.0, 25.0, 50.0, 75.0, 95.0];
 
-/// Both bands over time.
+/// Bands of moment and force over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bands {
     /// Instants, s.
     pub time: Vec<f64>,
-    /// Machines that were sampled for percentiles: the first of the seed's.
+    /// Number of machines sampled for percentiles: the first ones of the seed.
     pub samples: u64,
     /// n_B, N m.
     pub moment: MomentBand,
@@ -26,10 +27,10 @@ pub struct Bands {
     pub force: ForceBand,
 }
 
-/// n_B over time, N m.
+/// Band of n_B over time, N m.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MomentBand {
-    /// Of the nominal machine: the mean to first order, but for cut distributions.
+    /// n_B of the nominal machine: the mean to first order, unless distributions are truncated.
     pub nominal: Vec<f64>,
     /// Exact mean.
     pub mean: Vec<f64>,
@@ -37,45 +38,45 @@ pub struct MomentBand {
     pub deviation: Vec<f64>,
     /// Standard deviation to first order.
     pub first_order_deviation: Vec<f64>,
-    /// Mean as sampled.
+    /// Sampled mean.
     pub sampled_mean: Vec<f64>,
-    /// Standard deviation as sampled.
+    /// Sampled standard deviation.
     pub sampled_deviation: Vec<f64>,
-    /// By [`PERCENTILES`], then by instant, as sampled.
+    /// Sampled percentiles, by [`PERCENTILES`], then by instant.
     pub percentiles: Vec<Vec<f64>>,
 }
 
-/// |f_B| over time, N.
+/// Band of |f_B| over time, N.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceBand {
-    /// Of the nominal machine: the mean to first order.
+    /// |f_B| of the nominal machine: the mean to first order.
     pub nominal: Vec<f64>,
-    /// Exact root of the mean square over the machines.
+    /// Exact root mean square over the machines.
     pub rms: Vec<f64>,
-    /// The same with the components of f_B to first order.
+    /// Root mean square with the components of f_B to first order.
     pub first_order_rms: Vec<f64>,
-    /// Standard deviation to first order: of the component along the nominal f_B; 0 where that is zero.
+    /// First-order standard deviation of the component along the nominal f_B; 0 where that is zero.
     pub first_order_deviation: Vec<f64>,
-    /// Mean as sampled.
+    /// Sampled mean.
     pub sampled_mean: Vec<f64>,
-    /// Standard deviation as sampled.
+    /// Sampled standard deviation.
     pub sampled_deviation: Vec<f64>,
-    /// By [`PERCENTILES`], then by instant, as sampled.
+    /// Sampled percentiles, by [`PERCENTILES`], then by instant.
     pub percentiles: Vec<Vec<f64>>,
 }
 
-/// The most machines that percentiles are taken of.
-const MOST: u64 = 4096;
+/// Maximum number of machines sampled for percentiles.
+const MAX_MACHINES: u64 = 4096;
 
-/// All their courses are kept at once: this many numbers, but no fewer than a hundred machines.
-const KEPT: u64 = 4_000_000;
+/// Maximum number of stored values, machines times instants; at least a hundred machines are sampled all the same.
+const MAX_STORED_VALUES: u64 = 4_000_000;
 
 impl Bands {
-    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less, or fewer where instants
-    /// are many.
+    /// Computes the bands of an ensemble, with percentiles of its first `samples` machines. At most 4096 machines are
+    /// sampled, fewer if there are many instants.
     pub fn of(ensemble: &Ensemble, samples: u64) -> Self {
         let count = ensemble.time().len();
-        let samples = samples.clamp(1, MOST).min((KEPT / count as u64).max(100));
+        let samples = samples.clamp(1, MAX_MACHINES).min((MAX_STORED_VALUES / count as u64).max(100));
         let (mut moments, mut forces) = (vec![Vec::new(); count], vec![Vec::new(); count]);
         let mut sampler = ensemble.sampler();
         for chunk in 0..samples.div_ceil(CHUNK as u64) {
@@ -96,7 +97,7 @@ impl Bands {
     }
 }
 
-/// What a sample says at one instant.
+/// Sample statistics at one instant.
 struct Sampled {
     mean: f64,
     deviation: f64,
@@ -117,12 +118,12 @@ impl Sampled {
     }
 }
 
-/// Percentiles by instant, turned to instants by percentile.
+/// Transposes percentiles by instant to instants by percentile.
 fn by_percentile(sampled: &[Sampled]) -> Vec<Vec<f64>> {
     (0..PERCENTILES.len()).map(|i| sampled.iter().map(|s| s.percentiles[i]).collect()).collect()
 }
 
-/// Σ_p (slope_p σ_p)².
+/// Returns the first-order variance Σ_p (slope_p σ_p)².
 fn first_order(ensemble: &Ensemble, slopes: impl Fn(usize) -> f64) -> f64 {
     ensemble.parameters().iter().enumerate().map(|(p, parameter)| (slopes(p) * parameter.deviation).powi(2)).sum()
 }
@@ -161,7 +162,7 @@ impl ForceBand {
             }),
             first_order_deviation: at(&|s| {
                 let ([_, x, y], f) = (ensemble.slopes_at(s), ensemble.nominal()[s].1);
-                // What is left of a balanced machine by rounding has no direction.
+                // The nominal f_B of a balanced machine is rounding and has no direction.
                 let all = first_order(ensemble, |p| x[p].hypot(y[p])).sqrt();
                 if f.norm() <= 1e-9 * all {
                     return 0.0;
@@ -176,46 +177,46 @@ impl ForceBand {
     }
 }
 
-/// How far two courses are apart, in standard deviations of the instant.
+/// Difference of two results over time, in standard deviations at each instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Gap {
-    /// The greatest distance.
+    /// Largest difference.
     pub worst: f64,
-    /// When, s.
+    /// Time of the largest difference, s.
     pub time: f64,
-    /// Share of the instants at which it is more than [`Agreement`] tolerates.
+    /// Fraction of the instants at which the difference exceeds the tolerance of [`Agreement`].
     pub share: f64,
 }
 
-/// Where results to first order differ from those of all orders.
+/// Agreement of first-order results with exact or sampled ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// From how many standard deviations on two exact courses count as apart.
+    /// Tolerance between two exact results, in standard deviations.
     pub tolerance: f64,
-    /// The same where one is sampled: no less than four standard errors.
+    /// Tolerance if one result is sampled: at least four standard errors, in standard deviations.
     pub sampled_tolerance: f64,
     /// Mean of n_B: nominal against exact.
     pub moment_mean: Gap,
-    /// Deviation of n_B: first-order against exact.
+    /// Standard deviation of n_B: first-order against exact.
     pub moment_deviation: Gap,
     /// Root mean square of |f_B|: components to first order against exact.
     pub force_rms: Gap,
     /// Mean of |f_B|: nominal against sampled.
     pub force_mean: Gap,
-    /// Deviation of |f_B|: first-order against sampled.
+    /// Standard deviation of |f_B|: first-order against sampled.
     pub force_deviation: Gap,
-    /// Mean of n_B: sampled against exact, which is sampling alone and no matter of order.
+    /// Mean of n_B: sampled against exact. This is the sampling error, independent of the order.
     pub sampling: Gap,
 }
 
 impl Agreement {
-    /// The agreement of bands.
+    /// Compares the results in the bands.
     pub fn of(bands: &Bands) -> Self {
         let Bands { time, samples, moment, force } = bands;
         let tolerance = 0.05;
         let sampled_tolerance = (4.0 / (*samples as f64).sqrt()).max(tolerance);
         let gap = |a: &[f64], b: &[f64], deviation: &[f64], tolerance: f64| {
-            // Where the machines hardly differ there is nothing to be apart by.
+            // Instants at which the machines hardly differ are ignored.
             let least = 1e-6 * deviation.iter().fold(0.0_f64, |m, d| m.max(*d));
             let mut gap = Gap::default();
             for (s, t) in time.iter().enumerate().filter(|(s, _)| deviation[*s] > least) {

@@ -1,4 +1,4 @@
-//! A [`Batch`]: some machines of an ensemble, one after another, with what each comes to.
+//! [`Batch`]: consecutive machines of an ensemble with their outcomes.
 
 use std::ops::Range;
 
@@ -7,33 +7,33 @@ use super::ensemble::{Ensemble, Outcome, Sampler};
 use super::simulate::simulate;
 use crate::session::{Refusal, Run};
 
-/// How outcomes come about.
+/// Method of computing outcomes.
 #[derive(Clone, Copy, Debug)]
 pub enum Mode<'a> {
-    /// By perfect tracking.
+    /// With perfect tracking.
     Tracking,
-    /// By simulating each machine on the planned motion of a run.
+    /// By simulation of each machine on the planned motion of a run.
     Simulated(&'a Run),
 }
 
-/// Some machines, one after another.
+/// Consecutive machines with their outcomes.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// Their numbers.
+    /// Sample numbers of the machines.
     pub samples: Range<u64>,
-    /// What each comes to.
+    /// Outcome of each machine.
     pub outcomes: Vec<Outcome>,
-    /// The same with perfect tracking, where machines were simulated.
+    /// Outcomes with perfect tracking, if the machines were simulated.
     pub tracking: Vec<Outcome>,
-    /// Deviations of the parameters, by machine; empty if they were not asked for.
+    /// Deviations of the parameters, by machine; empty if not requested.
     pub deviations: Vec<Vec<f64>>,
 }
 
 impl Batch {
-    /// The machines of a chunk that are in a range.
+    /// Computes the machines of a chunk that lie in a range.
     ///
     /// # Errors
-    /// If one of them cannot be simulated.
+    /// Fails if one of them cannot be simulated.
     pub fn of(
         ensemble: &Ensemble,
         sampler: &mut Sampler,

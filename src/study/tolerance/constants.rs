@@ -1,39 +1,39 @@
-//! The constants θ that a base wrench is linear in, and how the machine's parameters make them.
+//! The constants θ in which the base wrench is linear, as functions of the machine's parameters.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ | Re g_1, Im g_1, Re g_2 … ; H_11, H_22 … ; Re C_12, Im C_12, Re C_13 … | kg m; kg m² |
-//! | a_jk | CM of body j is Σ_k a_jk e(q_k); bodies are the links and the payload | complex, m |
-//! | δ | deviations of the parameters | their own |
+//! | a_jk | centre of mass of body j: Σ_k a_jk e(q_k); bodies are the links, the payload and the counterweights | complex, m |
+//! | δ | deviations of the parameters | unit of the parameter |
 
 use super::deviate::CHUNK;
 use super::parameter::{Parameter, VariedQuantity};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
-/// How many constants a machine of n drives has.
+/// Returns the number of constants of a machine with n drives.
 pub(super) const fn count(n: usize) -> usize {
     n * n + 2 * n
 }
 
-/// Where Re g_k stands; Im g_k follows.
+/// Returns the index of Re g_k; Im g_k follows.
 pub(super) fn first(k: usize) -> usize {
     2 * k
 }
 
-/// Where H_kk stands.
+/// Returns the index of H_kk.
 pub(super) fn diagonal(n: usize, k: usize) -> usize {
     2 * n + k
 }
 
-/// Where Re C_kl stands, k < l; Im C_kl follows.
+/// Returns the index of Re C_kl, k < l; Im C_kl follows.
 pub(super) fn coupling(n: usize, k: usize, l: usize) -> usize {
-    // Pairs before those of k, and those of k before l.
+    // Pairs that start with a drive before k, and pairs (k, m) with m < l.
     3 * n + 2 * (k * (2 * n - k - 1) / 2 + (l - k - 1))
 }
 
-/// The machine of which constant i is 1 and every other 0.
+/// Returns the inertia with constant i equal to 1 and all others 0.
 pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
     let mut unit = Inertia::nothing(n, like.motors, like.end_effector);
     let one = |imaginary: bool| if imaginary { Vector::new(0.0, 1.0) } else { Vector::new(1.0, 0.0) };
@@ -52,11 +52,11 @@ pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
     pub nominal: f64,
-    /// Which parameter adds to it.
+    /// The parameter whose deviation is added.
     pub parameter: Option<usize>,
 }
 
-/// A link, or the payload.
+/// A link, the payload or a counterweight.
 #[derive(Clone, Debug)]
 pub(super) struct LinkConstants {
     pub drive: usize,
@@ -65,23 +65,23 @@ pub(super) struct LinkConstants {
     pub inertia: Term,
     pub com: Term,
     pub com_normal: Term,
-    /// Where its root is, m.
+    /// Coefficients of the root's position, m.
     pub root: [f64; MAX_DRIVES],
-    /// Drives on which the root lies, and the body's own.
+    /// Drives that the position depends on, including the body's own.
     pub on: Vec<usize>,
-    /// Lengths that vary: parameter, drive, metres of root per metre of length.
+    /// Lengths that vary: parameter, drive, change of the root's coefficient per change of length.
     pub stretch: Vec<(usize, usize, f64)>,
 }
 
-/// The bodies that vary in any way.
+/// Returns the bodies with any variation.
 ///
 /// # Errors
-/// If a length cannot vary alone, because a closure holds it against a number.
+/// Fails if a length cannot vary alone, because a closure of a loop fixes it.
 pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<LinkConstants>, MachineError> {
     let spec = machine.spec();
     let find = |quantity| parameters.iter().position(|p| p.quantity == quantity);
     let term = |nominal, quantity| Term { nominal, parameter: find(quantity) };
-    let nothing = Term { nominal: 0.0, parameter: None };
+    let zero = Term { nominal: 0.0, parameter: None };
     let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.resolved_links()).enumerate())
         .map(|(j, (link, part))| LinkConstants {
             drive: part.drive,
@@ -100,13 +100,13 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         sign: 1.0,
         mass: term(spec.payload.mass, VariedQuantity::PayloadMass),
         inertia: term(spec.payload.inertia, VariedQuantity::PayloadInertia),
-        com: nothing,
-        com_normal: nothing,
+        com: zero,
+        com_normal: zero,
         root: *machine.end_effector(),
         on: Vec::new(),
         stretch: Vec::new(),
     });
-    // Counterweights vary in nothing but where their link is.
+    // Counterweights vary only in the position of their link.
     let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
     let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
     bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
@@ -117,7 +117,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
             mass: fixed(weight.mass),
             inertia: fixed(weight.inertia()),
             com: fixed(weight.at),
-            com_normal: nothing,
+            com_normal: zero,
             root: part.root,
             on: Vec::new(),
             stretch: Vec::new(),
@@ -127,14 +127,14 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         if !matches!(parameter.quantity, VariedQuantity::Length(_)) {
             continue;
         }
-        // A root is affine in every length, so a length twice as long shows how, to rounding.
+        // A root is affine in every length, so doubling the length gives the slope, except for rounding.
         let longer = parameter.changed(machine, 2.0 * parameter.nominal)?;
         let parts = longer.resolved_links();
         let roots = parts.iter().map(|part| &part.root).chain([longer.end_effector()]);
         let roots = roots.chain(carriers.iter().map(|j| &parts[*j].root));
         for (body, root) in bodies.iter_mut().zip(roots) {
             for (k, (far, near)) in root.iter().zip(&body.root).enumerate() {
-                // Whole bars, forwards or backwards: nothing is lost by rounding the quotient, but its noise.
+                // The slope is the number of times that the length occurs, an integer: rounding it removes noise only.
                 let rate = (far - near) / parameter.nominal;
                 let rate = if (rate - rate.round()).abs() < 1e-6 { rate.round() } else { rate };
                 if rate != 0.0 {
@@ -157,10 +157,10 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
     Ok(bodies)
 }
 
-/// Machines side by side: as many as fill four vectors of the least x86-64.
+/// Number of machines evaluated together: four vectors of baseline x86-64.
 pub(super) const LANES: usize = 8;
 
-/// One number of each of these machines.
+/// One value for each of these machines.
 pub(super) type Lanes = [f64; LANES];
 
 #[inline(always)]
@@ -168,7 +168,8 @@ fn each(f: impl Fn(usize) -> f64) -> Lanes {
     std::array::from_fn(f)
 }
 
-/// θ of the bodies that vary, of one block of machines, into `theta`; `deviations` by parameter, then by machine.
+/// Computes θ of the bodies that vary, for one block of machines, into `theta`; `deviations` by parameter, then by
+/// machine.
 #[inline]
 pub(super) fn evaluate(
     n: usize,
@@ -214,7 +215,7 @@ pub(super) fn evaluate(
             for &l in &body.on[i + 1..] {
                 let at = coupling(n, k, l);
                 add(at, &|w| m[w] * (a[k][w] * a[l][w]));
-                // Im of conj(a_k) a_l: the body's own drive is the one with a part off its axis.
+                // Im(conj(a_k) a_l): only the coefficient of the body's own drive has a part off the axis.
                 if k == d {
                     add(at + 1, &|w| -m[w] * (off[w] * a[l][w]));
                 } else if l == d {

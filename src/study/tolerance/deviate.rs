@@ -1,14 +1,14 @@
-//! Random numbers that depend on (seed, parameter, sample) only, whatever is drawn before, beside or elsewhere.
+//! Random numbers that depend on (seed, parameter, sample) only, not on the order in which they are drawn.
 //!
 //! # Source
 //! ChaCha8 as a counter: the parameter is its stream, the sample its position. Normal deviates by the inverse of the
-//! distribution: M. J. Wichura, *Algorithm AS 241: The percentage points of the normal distribution* (1988), PPND16,
-//! relative error about 1e-16. One uniform number makes one deviate, so that positions are known beforehand.
+//! distribution function: M. J. Wichura, *Algorithm AS 241: The percentage points of the normal distribution* (1988),
+//! PPND16, relative error about 1e-16. Each deviate uses one uniform number, so positions are known in advance.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-/// Samples drawn together; chunk c holds samples c · CHUNK and on.
+/// Number of samples drawn together; chunk c holds the samples from c · CHUNK on.
 pub const CHUNK: usize = 256;
 
 /// The generator of random numbers.
@@ -23,27 +23,27 @@ impl Draws {
         Self { rng: ChaCha8Rng::seed_from_u64(seed), bytes: [0; 8 * CHUNK] }
     }
 
-    /// Uniform numbers in (0, 1), open at both ends, for the samples of a chunk.
+    /// Draws uniform numbers in the open interval (0, 1) for the samples of a chunk.
     pub(super) fn uniform(&mut self, stream: u64, chunk: u64, out: &mut [f64; CHUNK]) {
         self.rng.set_stream(stream);
-        // Two words of 32 bits a sample.
+        // Each sample takes two words of 32 bits.
         self.rng.set_word_pos(u128::from(chunk) * 2 * CHUNK as u128);
         self.rng.fill_bytes(&mut self.bytes);
         for (out, bytes) in out.iter_mut().zip(self.bytes.as_chunks().0) {
-            // 52 bits and a half: exact, and as far from 0 as from 1.
+            // The midpoints of 2⁵² equal intervals: exact, and symmetric about ½.
             *out = ((u64::from_le_bytes(*bytes) >> 12) as f64 + 0.5) * (1.0 / (1_u64 << 52) as f64);
         }
     }
 }
 
-/// Turns probabilities in (0, 1) into the normal deviates below which they lie, in place.
+/// Replaces probabilities in (0, 1) by the corresponding quantiles of the standard normal distribution.
 pub fn inverse_normal(p: &mut [f64]) {
     for block in p.chunks_mut(64) {
         let mut central = [0.0; 64];
-        // The middle 85 % of the range, for all: no branch, so that it runs on several numbers at once.
+        // Formula for the central 85 %, evaluated for all values: without branches the loop is vectorised.
         for (z, p) in central.iter_mut().zip(block.iter()) {
             let q = p - 0.5;
-            let r = CENTRE - q * q;
+            let r = CENTRAL_SQUARED - q * q;
             *z = q * (polynomial(&A, r) / polynomial(&B, r));
         }
         for (p, z) in block.iter_mut().zip(&central) {
@@ -52,10 +52,10 @@ pub fn inverse_normal(p: &mut [f64]) {
     }
 }
 
-/// 0.425².
-const CENTRE: f64 = 0.180625;
+/// Square of the half width of the central range, 0.425².
+const CENTRAL_SQUARED: f64 = 0.180625;
 
-/// A deviate of the outer 15 %.
+/// Returns the quantile for a probability in the outer 15 %.
 fn tail(p: f64) -> f64 {
     let r = (-libm::log(p.min(1.0 - p))).sqrt();
     let z = match r <= 5.0 {

@@ -1,19 +1,19 @@
-//! An [`Ensemble`]: random machines around a nominal one on one motion, a million a second.
+//! [`Ensemble`]: random machines around a nominal one on one motion, a million per second.
 //!
-//! While the drives track the motion perfectly the wrench is linear in the constants θ of the machine. What the motion
-//! does is tabulated once; each machine costs its θ and a sum per instant. Machines stand side by side, so that the
-//! compiler's vectors hold one number of several.
+//! With perfect tracking of the motion, the wrench is linear in the constants θ of the machine. The factors that depend
+//! on the motion are tabulated once; each machine then costs its θ and one sum per instant. Several machines are
+//! evaluated side by side, so that the compiler's vectors hold one value of each.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | t_s | instants (s + ½) T / S, over which means are taken (midpoint rule), and both ends, for peaks | s |
 //! | δθ | θ of a machine less θ of the nominal one | kg m; kg m² |
-//! | φ_i(t) | n_B(t) of the machine of which only θ_i = 1 | N m each |
-//! | ψ_i(t) | dynamic f_B(t) of it | N each |
-//! | n_B(t) | that of the nominal machine + Σ φ_i δθ_i | N m |
+//! | φ_i(t) | n_B(t) of the machine of which only θ_i = 1 | N m per unit of θ_i |
+//! | ψ_i(t) | dynamic f_B(t) of that machine | N per unit of θ_i |
+//! | n_B(t) | n_B(t) of the nominal machine + Σ φ_i δθ_i | N m |
 //!
-//! n_B is whole, with the moment of the weight; f_B is the dynamic part, as everywhere: M g is known beforehand.
+//! n_B includes the moment of the weight; f_B is the dynamic part only, as everywhere: M g is known in advance.
 
 use std::collections::BTreeMap;
 
@@ -31,20 +31,20 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 use crate::planning::{Motion, Reference};
 use crate::session::scenario::Spread;
 
-/// What one machine comes to on the motion.
+/// Reactions of one machine on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
     /// Largest |n_B|, N m.
     pub peak_moment: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_force: f64,
-    /// Root of the mean square of n_B over time, N m.
+    /// Root mean square of n_B over time, N m.
     pub rms_moment: f64,
-    /// Root of the mean square of the dynamic |f_B| over time, N.
+    /// Root mean square of the dynamic |f_B| over time, N.
     pub rms_force: f64,
 }
 
-/// Random machines around a nominal one, and a motion that all track perfectly.
+/// Random machines around a nominal one, and a motion that all of them track perfectly.
 #[derive(Clone, Debug)]
 pub struct Ensemble {
     machine: Machine,
@@ -53,32 +53,32 @@ pub struct Ensemble {
     seed: u64,
     references: Vec<Reference>,
     time: Vec<f64>,
-    /// n_B and f_B of the nominal machine.
+    /// n_B and f_B of the nominal machine, by instant.
     nominal: Vec<(f64, Vector)>,
-    /// φ and ψ of every constant, instants after instants.
+    /// φ and ψ, by constant, then by instant.
     influence: Vec<Vec<(f64, Vector)>>,
     moments: Moments,
     table: MotionTable,
 }
 
-/// What a machine needs at each instant, packed.
+/// Data for evaluating a machine at each instant, packed.
 #[derive(Clone, Debug)]
 struct MotionTable {
-    /// Constants that n_B hangs on, and those that f_B does.
+    /// Constants that n_B depends on, and those that f_B depends on.
     moment: Vec<usize>,
     force: Vec<usize>,
-    /// At each instant: n_B, f_Bx, f_By of the nominal machine, φ, ψ_x and ψ_y by turns.
+    /// For each instant: n_B, f_Bx, f_By of the nominal machine, then all φ, then ψ_x and ψ_y alternating.
     rows: Vec<f64>,
-    /// −θ(0) of the bodies that vary.
+    /// θ of the bodies that vary, without deviations; it is subtracted.
     offset: Vec<f64>,
 }
 
 impl Ensemble {
-    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion, at least one, and at both of its ends, where
-    /// the weight may load the base most.
+    /// Builds the machines around `machine` drawn by `seed`, on a motion at `instants` midpoints, at least one. Both
+    /// ends are added, because the weight may load the base most there.
     ///
     /// # Errors
-    /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
+    /// Fails if nothing varies, a key or spread is wrong, or a length cannot vary alone.
     pub fn new(
         machine: &Machine,
         motion: &Motion,
@@ -102,42 +102,42 @@ impl Ensemble {
         Ok(Self { machine, parameters, bodies, seed, references, time, nominal, influence, moments, table })
     }
 
-    /// The parameters that vary.
+    /// Returns the parameters that vary.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// The nominal machine.
+    /// Returns the nominal machine.
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
 
-    /// Which random machines.
+    /// Returns the seed of the random machines.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The instants, s.
+    /// Returns the instants, s.
     pub fn time(&self) -> &[f64] {
         &self.time
     }
 
-    /// The instants over which means are taken: all but both ends.
+    /// Returns the indices of the instants over which means are taken: all but both ends.
     pub fn between(&self) -> std::ops::Range<usize> {
         1..self.time.len() - 1
     }
 
-    /// The motion at the instants.
+    /// Returns the motion at the instants.
     pub fn references(&self) -> &[Reference] {
         &self.references
     }
 
-    /// n_B, N m, and dynamic f_B, N, of the nominal machine at the instants.
+    /// Returns n_B, N m, and dynamic f_B, N, of the nominal machine at the instants.
     pub fn nominal(&self) -> &[(f64, Vector)] {
         &self.nominal
     }
 
-    /// What the nominal machine comes to.
+    /// Returns the outcome of the nominal machine.
     pub fn nominal_outcome(&self) -> Outcome {
         let between = &self.nominal[self.between()];
         let peak = |f: fn(&(f64, Vector)) -> f64| self.nominal.iter().map(f).fold(0.0, f64::max);
@@ -150,10 +150,10 @@ impl Ensemble {
         }
     }
 
-    /// One machine of them, from its parameters' deviations in their order.
+    /// Returns the machine with given deviations, in the order of the parameters.
     ///
     /// # Errors
-    /// Never for deviations that were drawn.
+    /// Does not fail for deviations that were drawn.
     pub fn machine_of(&self, deviations: &[f64]) -> Result<Machine, MachineError> {
         let mut spec = self.machine.spec().clone();
         for (parameter, deviation) in self.parameters.iter().zip(deviations) {
@@ -162,7 +162,7 @@ impl Ensemble {
         Machine::new(spec)
     }
 
-    /// Something that draws and evaluates machines; one for each thread.
+    /// Returns a sampler, which draws and evaluates machines; use one for each thread.
     pub fn sampler(&self) -> Sampler<'_> {
         Sampler {
             ensemble: self,
@@ -173,12 +173,12 @@ impl Ensemble {
         }
     }
 
-    /// Exact mean of n_B and of f_B at an instant, over all machines.
+    /// Returns the exact mean of n_B and of f_B over all machines, at an instant.
     pub(super) fn mean_at(&self, s: usize) -> (f64, Vector) {
         self.applied(s, &self.moments.mean)
     }
 
-    /// n_B and f_B of the nominal machine with constants changed by δθ.
+    /// Returns n_B and f_B of the nominal machine with constants changed by δθ.
     fn applied(&self, s: usize, change: &DVector<f64>) -> (f64, Vector) {
         let sum = |(n, f): (f64, Vector), (i, x): (usize, &f64)| {
             let (phi, psi) = self.influence[i][s];
@@ -187,13 +187,13 @@ impl Ensemble {
         change.iter().enumerate().fold(self.nominal[s], sum)
     }
 
-    /// Exact variance of n_B and of f_Bx, f_By at an instant, over all machines.
+    /// Returns the exact variance of n_B, f_Bx and f_By over all machines, at an instant.
     pub(super) fn variance_at(&self, s: usize) -> [f64; 3] {
         let rows = self.rows_at(s);
         rows.map(|row| (&self.moments.covariance * &row).dot(&row).max(0.0))
     }
 
-    /// ∂n_B/∂δ, ∂f_Bx/∂δ, ∂f_By/∂δ at an instant, each by parameters.
+    /// Returns ∂n_B/∂δ, ∂f_Bx/∂δ, ∂f_By/∂δ at an instant, each by parameter.
     pub(super) fn slopes_at(&self, s: usize) -> [DVector<f64>; 3] {
         self.rows_at(s).map(|row| self.moments.slope.tr_mul(&row))
     }
@@ -243,19 +243,19 @@ impl MotionTable {
     }
 }
 
-/// Draws machines and evaluates them, a chunk at a time; allocates nothing once made.
+/// Draws and evaluates machines, a chunk at a time, without further allocation.
 #[derive(Clone, Debug)]
 pub struct Sampler<'a> {
     ensemble: &'a Ensemble,
     draws: Draws,
-    /// By parameter.
+    /// Deviations, by parameter.
     deviations: Vec<[f64; CHUNK]>,
     theta: Vec<Lanes>,
     outcomes: [Outcome; CHUNK],
 }
 
 impl Sampler<'_> {
-    /// Draws the machines of a chunk: samples `chunk` · [`CHUNK`] and on.
+    /// Draws the machines of a chunk: samples from `chunk` · [`CHUNK`] on.
     pub fn draw(&mut self, chunk: u64) {
         for (parameter, deviations) in self.ensemble.parameters.iter().zip(&mut self.deviations) {
             self.draws.uniform(parameter.stream, chunk, deviations);
@@ -263,16 +263,16 @@ impl Sampler<'_> {
         }
     }
 
-    /// Deviations of the drawn machines, in the parameters' own units: by parameter, then by machine.
+    /// Returns the deviations of the drawn machines, in the units of the parameters: by parameter, then by machine.
     pub fn deviations(&self) -> &[[f64; CHUNK]] {
         &self.deviations
     }
 
-    /// Draws the machines of a chunk and gives what each comes to.
+    /// Draws the machines of a chunk and returns the outcome of each.
     pub fn outcomes(&mut self, chunk: u64) -> &[Outcome; CHUNK] {
         self.draw(chunk);
         let table = &self.ensemble.table;
-        let (mut moment, mut force) = ([[0.0; LANES]; MOST], [[0.0; LANES]; MOST]);
+        let (mut moment, mut force) = ([[0.0; LANES]; MAX_CONSTANTS], [[0.0; LANES]; MAX_CONSTANTS]);
         let (moment, force) = (&mut moment[..table.moment.len()], &mut force[..table.force.len()]);
         for block in 0..CHUNK / LANES {
             self.constants(block);
@@ -292,7 +292,7 @@ impl Sampler<'_> {
         &self.outcomes
     }
 
-    /// Draws the machines of a chunk and shows n_B and |f_B| of all of them at each instant.
+    /// Draws the machines of a chunk and calls `see` with instant, machine, n_B, N m, and |f_B|, N.
     pub fn courses(&mut self, chunk: u64, mut see: impl FnMut(usize, usize, f64, f64)) {
         self.draw(chunk);
         let table = &self.ensemble.table;
@@ -308,24 +308,24 @@ impl Sampler<'_> {
         }
     }
 
-    /// θ of the bodies that vary, of one block of the drawn machines.
+    /// Computes θ of the bodies that vary, for one block of the drawn machines.
     fn constants(&mut self, block: usize) {
         let Ensemble { machine, bodies, .. } = self.ensemble;
         evaluate(machine.drives(), bodies, &self.deviations, block, &mut self.theta);
     }
 }
 
-/// The most constants of a machine.
-const MOST: usize = count(MAX_DRIVES);
+/// Maximum number of constants of a machine.
+const MAX_CONSTANTS: usize = count(MAX_DRIVES);
 
-/// δθ of the constants that count.
+/// Copies δθ of the constants that matter.
 fn gather(theta: &[Lanes], which: &[usize], offset: &[f64], out: &mut [Lanes]) {
     for (out, &i) in out.iter_mut().zip(which) {
         *out = theta[i].map(|x| x - offset[i]);
     }
 }
 
-/// n_B, f_Bx, f_By of some machines at one instant.
+/// Returns n_B, f_Bx, f_By of some machines at one instant.
 #[inline(always)]
 fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, Lanes) {
     let (nominal, row) = row.split_at(3);
@@ -345,7 +345,7 @@ fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, La
     (n, fx, fy)
 }
 
-/// The largest n_B² and |f_B|² over all instants, and their sums over all but the first and the last.
+/// Returns the largest n_B² and |f_B|² over all instants, and their sums over all but the first and the last.
 fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
     let [mut peak_n, mut peak_f, mut sum_n, mut sum_f] = [[0.0; LANES]; 4];
     let width = 3 + moment.len() + 2 * force.len();
@@ -355,7 +355,7 @@ fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
         let weight = if s == 0 || s == last { 0.0 } else { 1.0 };
         for w in 0..LANES {
             let (n, f) = (n[w] * n[w], fx[w] * fx[w] + fy[w] * fy[w]);
-            // Not f64::max, whose care for NaN takes longer than the rest; nothing here is NaN.
+            // Not f64::max: its treatment of NaN, which does not occur here, takes longer than the rest.
             peak_n[w] = if n > peak_n[w] { n } else { peak_n[w] };
             peak_f[w] = if f > peak_f[w] { f } else { peak_f[w] };
             sum_n[w] += weight * n;

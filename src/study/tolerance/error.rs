@@ -1,13 +1,13 @@
-//! Why there is no study of tolerances.
+//! Errors of a study of tolerances.
 
 use thiserror::Error;
 
 use crate::mechanics::machine::MachineError;
 
-/// Why there is no study of tolerances.
+/// Why a study of tolerances cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ToleranceError {
-    /// A key that names no number of the machine.
+    /// A key names no parameter of the machine.
     #[error(
         "no number {key:?} that could vary: want link.NAME.(com|com_normal|mass|inertia), length.NAME, payload.mass or \
          payload.inertia, with names of this machine or *"
@@ -16,7 +16,7 @@ pub enum ToleranceError {
         /// The key.
         key: String,
     },
-    /// Percent of zero.
+    /// A spread in percent of zero.
     #[error("{key} is 0, and percent of 0 is nothing: want a spread in its own unit")]
     PercentOfZero {
         /// The key.
@@ -25,7 +25,7 @@ pub enum ToleranceError {
     /// Every spread is zero.
     #[error("nothing varies: want a spread above 0")]
     NothingVaries,
-    /// Too many machines that cannot be.
+    /// Too large a fraction of the distribution is physically impossible.
     #[error(
         "{:.0} % of {key} = {nominal} {unit} with this spread lie below 0: want 10 % at most, with a smaller spread or a \
          larger nominal value", 100.0 * cut
@@ -33,24 +33,24 @@ pub enum ToleranceError {
     Impossible {
         /// The key.
         key: String,
-        /// Its nominal value.
+        /// Nominal value.
         nominal: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
-        /// Which part of the distribution is impossible.
+        /// Fraction of the distribution that is impossible.
         cut: f64,
     },
-    /// Numbers that no machine has.
+    /// The spread allows values beyond the range of a machine's numbers.
     #[error("{key} with a spread of {scale} {unit} could pass 1000000: want a smaller spread")]
     TooWide {
         /// The key.
         key: String,
         /// Standard deviation or half-width.
         scale: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
     },
-    /// A length that a closure holds.
+    /// A varied machine is not valid, such as by a length that a closure fixes.
     #[error("a varied machine would not be valid: {0}")]
     Machine(MachineError),
 }

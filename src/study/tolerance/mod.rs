@@ -1,26 +1,26 @@
-//! Tolerances: random machines around a nominal one, and what their bases feel.
+//! Tolerances: random machines around a nominal one, and the reactions on their bases.
 //!
-//! Balance is a matter of constants: g_k = 0, C_kl = 0, λ as designed. A machine that is built has others. This module
-//! draws such machines and says how large the base wrench becomes, how many machines keep within limits, and which
-//! tolerance is to blame.
+//! A machine is balanced if its constants have certain values: g_k = 0, C_kl = 0, λ as designed. A built machine has
+//! slightly different ones. This module draws such machines. It computes the size of the base wrench, the fraction of
+//! machines within limits, and the contribution of each tolerance.
 //!
-//! # Where linearity ends
-//! While the drives track their motion perfectly, the wrench is linear in the constants g, C and H: that is what
-//! [`Ensemble`] uses, exactly, for large deviations too. It is *not* linear in masses and lengths (m a_k a_l), nor is
-//! the norm |f_B| or a peak over time. And tracking is only as good as control: feedback with finite gains and a model
-//! that is not the machine, torque limits, unequal gains, friction that is felt, or a base that moves, all change the
-//! motion itself. For those, [`simulate()`] runs each machine in full.
+//! # Limits of linearity
+//! With perfect tracking of the motion, the wrench is linear in the constants g, C and H. [`Ensemble`] uses that
+//! exactly, for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l), nor is the norm
+//! |f_B| or a peak over time. Tracking is not perfect with finite feedback gains and a model that differs from the
+//! machine, with torque limits, unequal gains, uncompensated friction, or a moving base. All of these change the motion
+//! itself; then [`simulate()`] simulates each machine.
 //!
 //! | what | modules |
 //! |---|---|
-//! | what varies, by which spread | [`Parameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
-//! | random machines, a million a second | [`Ensemble`], [`Sampler`], [`Outcome`] |
-//! | means and deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
-//! | which tolerance matters | [`Share`] |
-//! | all of it for a run, as a window shows it | [`Study`] |
-//! | some machines after another, tracking perfectly or simulated | [`Batch`] |
+//! | parameters that vary, and their spreads | [`Parameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
+//! | random machines, a million per second | [`Ensemble`], [`Sampler`], [`Outcome`] |
+//! | means and standard deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
+//! | contribution of each tolerance | [`Share`] |
+//! | the whole study of a run, for display | [`Study`] |
+//! | consecutive machines, with perfect tracking or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
-//! | what all machines come to, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`AgainstTracking`] |
+//! | results over all machines, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`AgainstTracking`] |
 
 mod bands;
 mod batch;

@@ -1,12 +1,12 @@
 //! Exact mean and covariance of the constants θ, and their exact derivatives.
 //!
-//! θ is a polynomial in the parameters' deviations δ, of third degree at most: m a_k a_l. The parameters are
+//! θ is a polynomial in the parameters' deviations δ, of degree three at most: m a_k a_l. The parameters are
 //! independent, so the expectation of a monomial is a product of moments E[δᵏ].
 //!
 //! # Symbols
 //! | letter | meaning | shape |
 //! |---|---|---|
-//! | x | monomials in δ, each once | K |
+//! | x | vector of the distinct monomials in δ | K |
 //! | A | θ − θ(0) = A x | constants × K |
 //! | S | Cov(x) | K × K |
 //! | Cov θ | A S Aᵀ | constants × constants |
@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use super::constants::{LinkConstants, Term, count, coupling, diagonal, first};
 use super::parameter::Parameter;
 
-/// Parameters of a monomial, rising, each as often as its power; [`NONE`] fills the rest.
+/// Parameters of a monomial, ascending, each repeated to its power; [`NONE`] fills the rest.
 type Monomial = [u16; 3];
 
 const NONE: u16 = u16::MAX;
@@ -57,7 +57,7 @@ impl Polynomial {
     }
 }
 
-/// E of the product of some deviations, in rising order.
+/// Returns the expectation of a product of deviations; the factors are ascending.
 fn expectation(factors: &[u16], parameters: &[Parameter]) -> f64 {
     let present = factors.iter().position(|f| *f == NONE).map_or(factors, |end| &factors[..end]);
     present.chunk_by(|a, b| a == b).map(|same| parameters[usize::from(same[0])].moments[same.len()]).product()
@@ -72,7 +72,7 @@ pub(super) struct Moments {
     pub covariance: DMatrix<f64>,
     /// ∂θ/∂δ at the nominal machine, constants × parameters.
     pub slope: DMatrix<f64>,
-    /// Which constants vary.
+    /// Whether each constant varies.
     pub varies: Vec<bool>,
 }
 
@@ -89,7 +89,7 @@ impl Moments {
         });
         let s = DMatrix::from_fn(monomials.len(), monomials.len(), |i, j| {
             let (x, y) = (&monomials[i], &monomials[j]);
-            // Independent of each other, as most are.
+            // Monomials without a common parameter are independent.
             if !x.iter().any(|f| *f != NONE && y.contains(f)) {
                 return 0.0;
             }
@@ -105,15 +105,15 @@ impl Moments {
     }
 }
 
-/// θ of the bodies that vary.
+/// Returns θ of the bodies that vary, as polynomials.
 fn polynomials(n: usize, bodies: &[LinkConstants]) -> Vec<Polynomial> {
     let mut theta = vec![Polynomial::default(); count(n)];
     for body in bodies {
         let [m, spin, u, v] = [&body.mass, &body.inertia, &body.com, &body.com_normal].map(Polynomial::of);
         let mut a: Vec<Polynomial> = body.root.iter().map(|w| Polynomial::constant(*w)).collect();
         for &(p, k, rate) in &body.stretch {
-            let nothing = Term { nominal: 0.0, parameter: Some(p) };
-            a[k].add(rate, &Polynomial::of(&nothing));
+            let deviation = Term { nominal: 0.0, parameter: Some(p) };
+            a[k].add(rate, &Polynomial::of(&deviation));
         }
         let d = body.drive;
         a[d].add(body.sign, &u);

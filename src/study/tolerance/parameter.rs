@@ -1,15 +1,15 @@
-//! A [`Parameter`]: one number of the machine that varies, by the key of its setting.
+//! [`Parameter`]: one number of the machine that varies, named by the key of its setting.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | δ | deviation of the parameter from its nominal value | its own |
-//! | σ, h | standard deviation of a normal spread, half-width of a uniform one | its own |
-//! | α | lower bound in standard deviations; nothing is drawn below it | 1 |
-//! | μ_k | E[δᵏ], raw moments about the nominal value | its own, to the k |
+//! | δ | deviation of the parameter from its nominal value | unit of the parameter |
+//! | σ, h | standard deviation of a normal spread, half-width of a uniform one | unit of the parameter |
+//! | α | lower bound of the truncated distribution, in standard deviations | 1 |
+//! | μ_k | E[δᵏ], raw moments about the nominal value | (unit of the parameter)ᵏ |
 //!
 //! # Source
-//! Moments of the normal distribution cut at α: E[zᵏ] = (k − 1) E[zᵏ⁻²] + αᵏ⁻¹ φ(α)/(1 − Φ(α)), by parts.
+//! Moments of the normal distribution truncated at α: E[zᵏ] = (k − 1) E[zᵏ⁻²] + αᵏ⁻¹ φ(α)/(1 − Φ(α)), by parts.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2};
@@ -22,14 +22,14 @@ use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
 use crate::session::scenario::{Amount, Spread};
 use crate::settings::key::names;
 
-/// What of a machine a parameter is.
+/// The number of a machine that a parameter varies, with the index of its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VariedQuantity {
     Com(usize),
     ComNormal(usize),
     Mass(usize),
     Inertia(usize),
-    /// Named length, in the order of their names.
+    /// Named length, by its index in the order of names.
     Length(usize),
     PayloadMass,
     PayloadInertia,
@@ -44,12 +44,12 @@ impl VariedQuantity {
         }
     }
 
-    /// Whether nothing lies below zero.
+    /// Returns whether negative values are impossible.
     fn is_bounded(self) -> bool {
         !matches!(self, Self::Com(_) | Self::ComNormal(_))
     }
 
-    /// Whether zero itself is impossible.
+    /// Returns whether zero is impossible too.
     fn is_positive(self) -> bool {
         matches!(self, Self::Mass(_) | Self::Length(_))
     }
@@ -62,25 +62,26 @@ pub struct Parameter {
     pub key: String,
     /// SI unit.
     pub unit: &'static str,
-    /// Value of the nominal machine.
+    /// Nominal value.
     pub nominal: f64,
-    /// As it was stated.
+    /// Spread as stated in the scenario.
     pub spread: Spread,
-    /// Standard deviation of what is drawn.
+    /// Standard deviation of the drawn values.
     pub deviation: f64,
-    /// Share of the stated distribution that is impossible, such as a mass below zero. The rest is drawn from as if
-    /// every impossible draw were drawn again; mean and deviation are of that rest.
+    /// Fraction of the stated distribution that is impossible, such as a mass below zero. The truncated rest is drawn
+    /// from, as if every impossible draw were repeated; mean and deviation refer to it.
     pub cut: f64,
     pub(super) quantity: VariedQuantity,
-    /// Counted over all numbers of the machine that could vary, so that what one draws does not hang on the others.
+    /// Number of the random stream, counted over all numbers that could vary, so that draws of one parameter do not
+    /// depend on the others.
     pub(super) stream: u64,
-    /// σ or h, in the parameter's unit.
+    /// Parameter of the distribution, σ or h, in the parameter's unit.
     scale: f64,
     /// E[δᵏ], k = 0..=4.
     pub(super) moments: [f64; 5],
 }
 
-/// Every number of a machine that can vary, in a fixed order.
+/// Returns every number of a machine that can vary, in a fixed order.
 fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
     let mut all = Vec::new();
     for (j, link) in spec.links.iter().enumerate() {
@@ -99,10 +100,10 @@ fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
     all
 }
 
-/// The numbers of a machine that vary; where several keys name one, the one without `*` counts.
+/// Returns the parameters of a machine that vary; if several keys match one, the key with the fewest `*` applies.
 ///
 /// # Errors
-/// If a key names nothing, a spread is relative to zero, or too much of it is impossible.
+/// Fails if a key matches nothing, a spread is relative to zero, or too much of it is impossible.
 pub(super) fn parameters(
     machine: &Machine,
     spreads: &BTreeMap<String, Spread>,
@@ -113,8 +114,8 @@ pub(super) fn parameters(
         if named.is_empty() {
             return Err(ToleranceError::UnknownKey { key: key.clone() });
         }
-        let of_nothing = matches!(spread.amount(), Amount::Percent(p) if p > 0.0);
-        if of_nothing && named.iter().all(|(_, _, nominal)| *nominal == 0.0) {
+        let is_relative = matches!(spread.amount(), Amount::Percent(p) if p > 0.0);
+        if is_relative && named.iter().all(|(_, _, nominal)| *nominal == 0.0) {
             return Err(ToleranceError::PercentOfZero { key: key.clone() });
         }
     }
@@ -137,13 +138,13 @@ pub(super) fn parameters(
     }
 }
 
-/// The largest share of a distribution that may be impossible.
-const MOST_CUT: f64 = 0.1;
+/// Maximum fraction of a distribution that may be impossible.
+const MAX_TRUNCATED: f64 = 0.1;
 
-/// The largest number of a machine.
-const MOST: f64 = 1e6;
+/// Maximum absolute value of a machine's number, which nominal value and nine times the scale must not exceed.
+const MAX_VALUE: f64 = 1e6;
 
-/// Its key, unit and nominal value, how it varies, and what is drawn of that.
+/// Serialised as key, unit, nominal value, spread, and the statistics of the drawn values.
 impl Serialize for Parameter {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Parameter", 7)?;
@@ -167,7 +168,7 @@ impl Parameter {
         scale: f64,
         stream: u64,
     ) -> Result<Self, ToleranceError> {
-        if nominal.abs() + 9.0 * scale > MOST {
+        if nominal.abs() + 9.0 * scale > MAX_VALUE {
             return Err(ToleranceError::TooWide { key, scale, unit: quantity.unit() });
         }
         let bound = quantity.is_bounded().then_some(-nominal);
@@ -175,7 +176,7 @@ impl Parameter {
             Spread::Normal(_) => normal_moments(scale, bound),
             Spread::Uniform(_) => uniform_moments(scale, bound),
         };
-        if cut > MOST_CUT {
+        if cut > MAX_TRUNCATED {
             return Err(ToleranceError::Impossible { key, nominal, unit: quantity.unit(), cut });
         }
         let deviation = (moments[2] - moments[1] * moments[1]).max(0.0).sqrt();
@@ -183,16 +184,16 @@ impl Parameter {
         Ok(Self { key, unit, nominal, spread, deviation, cut, quantity, stream, scale, moments })
     }
 
-    /// Mean deviation from the nominal value: zero unless part of the distribution is cut off.
+    /// Returns the mean deviation from the nominal value: zero unless the distribution is truncated.
     pub fn mean_deviation(&self) -> f64 {
         self.moments[1]
     }
 
-    /// Turns uniform numbers in (0, 1) into deviations, in place.
+    /// Replaces uniform numbers in (0, 1) by deviations.
     pub(super) fn deviate(&self, u: &mut [f64]) {
         match self.spread {
             Spread::Normal(_) => {
-                // The upper share 1 − cut of the distribution, from its upper end: (0, 1 − cut) mirrored.
+                // Sample the upper fraction 1 − cut of the distribution: take (0, 1 − cut) and mirror it.
                 let (keep, scale) = (1.0 - self.cut, -self.scale);
                 u.iter_mut().for_each(|u| *u *= keep);
                 inverse_normal(u);
@@ -205,7 +206,7 @@ impl Parameter {
             }
         }
         if self.cut > 0.0 {
-            // Against rounding only.
+            // Only rounding can violate this bound.
             let least = if self.quantity.is_positive() { -self.nominal * (1.0 - 1e-9) } else { -self.nominal };
             u.iter_mut().for_each(|d| *d = d.max(least));
         }
@@ -228,10 +229,10 @@ impl Parameter {
         }
     }
 
-    /// A machine with this number changed.
+    /// Returns a machine with this number changed.
     ///
     /// # Errors
-    /// If it is not a machine then.
+    /// Fails if the machine is not valid then.
     pub(super) fn changed(&self, machine: &Machine, value: f64) -> Result<Machine, MachineError> {
         let mut spec = machine.spec().clone();
         self.set(&mut spec, value);
@@ -239,7 +240,7 @@ impl Parameter {
     }
 }
 
-/// The share below a bound and E[δᵏ] of what remains of a normal distribution.
+/// Returns the probability below a bound, and E[δᵏ] of the normal distribution truncated there.
 fn normal_moments(sigma: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
     let alpha = bound.map_or(f64::NEG_INFINITY, |b| b / sigma);
     let (cut, density) = match alpha.is_finite() {
@@ -247,7 +248,7 @@ fn normal_moments(sigma: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
         false => (0.0, 0.0),
     };
     let ratio = density / (1.0 - cut);
-    // α only counts where the density there is not nothing.
+    // Without density at α, the terms with α vanish.
     let alpha = if ratio > 0.0 { alpha } else { 0.0 };
     let mut z = [1.0, ratio, 0.0, 0.0, 0.0];
     for k in 2..5 {
@@ -256,7 +257,7 @@ fn normal_moments(sigma: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
     (cut, std::array::from_fn(|k| z[k] * sigma.powi(k as i32)))
 }
 
-/// The share below a bound and E[δᵏ] of what remains of a uniform distribution.
+/// Returns the probability below a bound, and E[δᵏ] of the uniform distribution truncated there.
 fn uniform_moments(half: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
     let low = bound.map_or(-half, |b| b.max(-half));
     let power = |x: f64, k: usize| x.powi(k as i32 + 1);

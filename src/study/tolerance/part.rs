@@ -1,4 +1,4 @@
-//! [`PartReport`]: what a part of the machines of a study comes to; all of them, if the part is the whole.
+//! [`PartReport`]: results of a part of the machines of a study, or of all of them.
 
 use std::ops::Range;
 
@@ -8,71 +8,72 @@ use super::{AgainstTracking, Agreement, Bands, Distributions, Ensemble, Outcome,
 use crate::session::scenario::Tolerance;
 use crate::session::{Refusal, Run};
 
-/// Machines of an ensemble that were judged, one after another.
+/// Consecutive machines of an ensemble with their outcomes.
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a> {
-    /// The run whose planned motion they do.
+    /// The run whose planned motion the machines perform.
     pub run: &'a Run,
-    /// What they were drawn from.
+    /// The ensemble that they were drawn from.
     pub ensemble: &'a Ensemble,
-    /// Machines of the whole study.
+    /// Number of machines in the whole study.
     pub samples: u64,
-    /// Number of the first of these.
+    /// Sample number of the first machine of this part.
     pub first: u64,
-    /// What each comes to.
+    /// Outcome of each machine.
     pub outcomes: &'a [Outcome],
-    /// The same with perfect tracking, where machines were simulated.
+    /// Outcomes with perfect tracking, if the machines were simulated.
     pub tracking: &'a [Outcome],
-    /// Whether machines were simulated.
+    /// Whether the machines were simulated.
     pub simulated: bool,
 }
 
-/// What a part of the machines comes to.
+/// Results of a part of the machines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartReport {
-    /// Its name.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Whether machines were simulated; else they track perfectly.
+    /// Whether the machines were simulated; otherwise they track perfectly.
     pub simulated: bool,
-    /// Machines of the whole study.
+    /// Number of machines in the whole study.
     pub samples: u64,
-    /// First sample of this part, and the one after its last.
+    /// First sample number of this part, and one after its last.
     pub shard: [u64; 2],
-    /// Which random machines.
+    /// Seed of the random machines.
     pub seed: u64,
-    /// s.
+    /// Duration of the motion, s.
     pub motion_time: f64,
-    /// What varies.
+    /// Parameters that vary.
     pub parameters: Vec<Parameter>,
-    /// The machine without deviations, by perfect tracking or simulated, as the machines are.
+    /// Outcome of the machine without deviations, with perfect tracking or simulated like the others.
     pub nominal: Outcome,
-    /// Peaks and root mean squares.
+    /// Distributions of peaks and root mean squares.
     #[serde(flatten)]
     pub distributions: Distributions,
-    /// How many keep within limits.
+    /// Fractions of machines within limits.
     #[serde(rename = "yield")]
     pub yields: Yields,
-    /// Which tolerance matters.
+    /// Contribution of each tolerance.
     pub shares: Shares,
     /// n_B and |f_B| over time.
     pub bands: Bands,
-    /// Of first order with all orders.
+    /// Agreement of first-order results with exact and sampled ones.
     pub agreement: Agreement,
-    /// Of perfect tracking with the simulation.
+    /// Comparison of the simulation with perfect tracking.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_tracking: Option<AgainstTracking>,
 }
 
 impl PartReport {
-    /// Of judged machines, by the limits of a tolerance; none if there is no machine.
+    /// Returns the report on assessed machines, with the limits of a tolerance; `None` if there are no machines.
     ///
     /// # Errors
-    /// If machines were simulated, and the one without deviations cannot be.
+    /// Fails if machines were simulated, and the one without deviations cannot be.
     pub fn of(part: &Part<'_>, tolerance: &Tolerance) -> Result<Option<Self>, Refusal> {
         let Part { run, ensemble, samples, first, outcomes, tracking, simulated } = *part;
         let Some(distributions) = Distributions::of(outcomes) else { return Ok(None) };
         let bands = Bands::of(ensemble, samples);
-        // By the same way as the machines beside it: the same base, control and friction, or perfect tracking for all.
+        // Computed like the other machines: simulated with the same base, control and friction, or with perfect
+        // tracking.
         let nominal = match simulated {
             true => simulate(run, ensemble.machine())?,
             false => ensemble.nominal_outcome(),
@@ -96,7 +97,7 @@ impl PartReport {
     }
 }
 
-/// The samples of the i-th of n equal parts of a study, i from 1.
+/// Returns the samples of the i-th of n equal parts of a study, i from 1.
 pub fn shard(samples: u64, (i, n): (u64, u64)) -> Range<u64> {
     let end = |i: u64| (u128::from(samples) * u128::from(i) / u128::from(n.max(1))) as u64;
     end(i.saturating_sub(1))..end(i)

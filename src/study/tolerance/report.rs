@@ -1,24 +1,24 @@
-//! What many machines come to: distributions, how many keep within limits, and simulation against perfect tracking.
+//! Results over many machines: distributions, fractions within limits, and simulation against perfect tracking.
 
 use serde::Serialize;
 
 use super::ensemble::Outcome;
 use super::statistics::{Histogram, Quantiles, Yield};
 
-/// A quantity over all machines.
+/// Distribution of a quantity over all machines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Distribution {
-    /// Its mean.
+    /// Mean.
     pub mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation.
     pub deviation: f64,
-    /// At [`Quantiles::LEVELS`].
+    /// Quantiles at [`Quantiles::LEVELS`].
     pub quantiles: Quantiles,
-    /// In equal intervals between its extremes.
+    /// Histogram with equal intervals between the extremes.
     pub histogram: Histogram,
 }
 
-/// Intervals of a histogram.
+/// Number of intervals of a histogram.
 const BINS: usize = 50;
 
 impl Distribution {
@@ -36,7 +36,7 @@ impl Distribution {
     }
 }
 
-/// The four numbers of every machine.
+/// Distributions of the four quantities of an outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Distributions {
     /// Largest |n_B|, N m.
@@ -50,7 +50,7 @@ pub struct Distributions {
 }
 
 impl Distributions {
-    /// Of machines; `None` if there are none.
+    /// Returns the distributions over machines; `None` if there are none.
     pub fn of(outcomes: &[Outcome]) -> Option<Self> {
         let of = |f: fn(&Outcome) -> f64| Distribution::of(outcomes.iter().map(f).collect());
         Some(Self {
@@ -62,33 +62,33 @@ impl Distributions {
     }
 }
 
-/// How many keep within a limit.
+/// Number of machines within a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Kept {
-    /// N m or N; none where two limits count together.
+    /// Limit, N m or N; `None` if two limits apply together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// How many do.
+    /// Number and fraction of machines.
     #[serde(flatten)]
     pub count: Yield,
 }
 
-/// How many keep within the limits that were given.
+/// Numbers of machines within the given limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Yields {
-    /// On peak |n_B|, N m.
+    /// Within the limit on peak |n_B|, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moment: Option<Kept>,
-    /// On peak |f_B|, N.
+    /// Within the limit on peak |f_B|, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<Kept>,
-    /// On both together.
+    /// Within both limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub both: Option<Kept>,
 }
 
 impl Yields {
-    /// Of machines, by limits on peak |n_B|, N m, and peak |f_B|, N.
+    /// Counts machines within limits on peak |n_B|, N m, and peak |f_B|, N.
     pub fn of(outcomes: &[Outcome], moment: Option<f64>, force: Option<f64>) -> Self {
         let count = |good: &dyn Fn(&Outcome) -> bool| {
             Yield::new(outcomes.iter().filter(|o| good(o)).count() as u64, outcomes.len() as u64)
@@ -103,21 +103,21 @@ impl Yields {
     }
 }
 
-/// Simulated machines against the same ones with perfect tracking.
+/// Comparison of simulated machines with the same ones under perfect tracking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstTracking {
     /// Largest difference of peak |n_B|, N m.
     pub peak_moment_difference: f64,
     /// Largest difference of peak |f_B|, N.
     pub peak_force_difference: f64,
-    /// Mean of peak |n_B| simulated, by that with perfect tracking.
+    /// Ratio of the mean peak |n_B|: simulated to perfect tracking.
     pub peak_moment_ratio: f64,
-    /// Mean of peak |f_B| simulated, by that with perfect tracking.
+    /// Ratio of the mean peak |f_B|: simulated to perfect tracking.
     pub peak_force_ratio: f64,
 }
 
 impl AgainstTracking {
-    /// Of the same machines in the same order; `None` if nothing was simulated.
+    /// Compares the same machines in the same order; `None` if nothing was simulated.
     pub fn of(simulated: &[Outcome], tracking: &[Outcome]) -> Option<Self> {
         if tracking.is_empty() {
             return None;

@@ -1,48 +1,48 @@
-//! Which tolerance matters most: exact derivatives of the wrench, and the variance that each parameter brings in.
+//! Sensitivity to each tolerance: exact derivatives of the wrench, and each parameter's share of the variance.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | σ_p | standard deviation of parameter p | its own |
-//! | ∂n_B/∂p | at the nominal machine, exact | N m per its own |
+//! | σ_p | standard deviation of parameter p | unit of p |
+//! | ∂n_B/∂p | at the nominal machine, exact | N m per unit of p |
 //! | s_p | ∫(∂n_B/∂p σ_p)² dt / Σ_r ∫(∂n_B/∂r σ_r)² dt; for f_B with \|∂f_B/∂p\| | 1 |
 
 use serde::Serialize;
 
 use super::ensemble::Ensemble;
 
-/// What one parameter contributes, to first order.
+/// First-order contribution of one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Share {
     /// Key of the setting.
     pub key: String,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: &'static str,
-    /// σ_p.
+    /// Standard deviation σ_p.
     pub deviation: f64,
-    /// max_t |∂n_B/∂p|, N m per unit.
+    /// max_t |∂n_B/∂p|, N m per unit of the parameter.
     pub moment_slope: f64,
-    /// max_t |∂f_B/∂p|, N per unit.
+    /// max_t |∂f_B/∂p|, N per unit of the parameter.
     pub force_slope: f64,
-    /// Share of the variance of n_B over the motion, 0 to 1.
+    /// Fraction of the variance of n_B over the motion, 0 to 1.
     pub moment_share: f64,
-    /// Share of the variance of f_B over the motion, 0 to 1.
+    /// Fraction of the variance of f_B over the motion, 0 to 1.
     pub force_share: f64,
 }
 
-/// What all parameters contribute.
+/// First-order contributions of all parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shares {
-    /// In the order of the parameters.
+    /// Contributions, in the order of the parameters.
     pub parameters: Vec<Share>,
-    /// Variance of n_B over the motion to first order, of the exact one: 1 where masses and lengths act linearly.
+    /// Ratio of first-order to exact variance of n_B over the motion: 1 if the wrench is linear in the parameters.
     pub moment_first_order: f64,
-    /// Variance of f_B over the motion to first order, of the exact one.
+    /// Ratio of first-order to exact variance of f_B over the motion.
     pub force_first_order: f64,
 }
 
 impl Shares {
-    /// Of an ensemble.
+    /// Computes the contributions in an ensemble.
     pub fn of(ensemble: &Ensemble) -> Self {
         let parameters = ensemble.parameters();
         let (mut slopes, mut sums) = (vec![[0.0_f64; 2]; parameters.len()], vec![[0.0; 2]; parameters.len()]);

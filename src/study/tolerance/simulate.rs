@@ -1,4 +1,4 @@
-//! A varied machine under control that knows only the nominal one.
+//! Simulation of a varied machine under control that knows only the nominal one.
 
 use super::ensemble::Outcome;
 use crate::mechanics::machine::Machine;
@@ -6,14 +6,14 @@ use crate::session::{Refusal, Run};
 use crate::simulation::plant::{Load, PlantDifferences};
 use crate::simulation::{Guide, Setup, Simulation};
 
-/// Simulates a planned motion, control and all, with another machine as plant.
+/// Simulates a planned motion, control included, with another machine as the plant.
 ///
 /// # Errors
-/// If the numbers blow up, or an audit fails: a study must not hold figures of a run that failed its audit.
+/// Fails if the state diverges, or an audit fails: a study must not contain values of a run that failed its audit.
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
-    // What it holds at the start is part of the varied machine; what comes later is not.
+    // A payload held from the start is part of the varied machine; one that comes later is not.
     let load = scenario.plant.payload;
     let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };
     let rest = PlantDifferences { payload, ..scenario.plant.clone() };
@@ -26,7 +26,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
         if !frame.is_finite() {
             return Err(Refusal::Diverged { time: frame.time });
         }
-        // The trapezoidal rule: the ends count half.
+        // Trapezoidal rule: the first and the last sample have half the weight.
         let weight = if frame.step == 0 || frame.step >= last { 0.5 } else { 1.0 };
         moment += weight * frame.felt_moment().powi(2);
         force += weight * frame.wrench.dynamic.force.norm_sqr();

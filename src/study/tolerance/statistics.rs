@@ -1,33 +1,33 @@
-//! Distributions of what was sampled: quantiles, histograms, yield.
+//! Statistics of samples: quantiles, histograms, yield.
 //!
 //! # Source
 //! Quantiles by linear interpolation between order statistics (R. J. Hyndman, Y. Fan, *Sample quantiles in statistical
-//! packages* (1996), type 7). Interval of a share: E. B. Wilson, *Probable inference, the law of succession, and
-//! statistical inference* (1927).
+//! packages* (1996), type 7). Confidence interval of a proportion: E. B. Wilson, *Probable inference, the law of
+//! succession, and statistical inference* (1927).
 
 use serde::Serialize;
 
 /// Quantiles of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantiles {
-    /// Which shares lie below, 0 to 1.
+    /// Levels, 0 to 1: the fraction of the sample below each value.
     pub levels: Vec<f64>,
-    /// What they lie below.
+    /// Value at each level.
     pub values: Vec<f64>,
 }
 
 impl Quantiles {
-    /// The levels of a summary: the extremes, 1, 5, 25, 50, 75, 95, 99 %.
+    /// Levels of a summary: the extremes, 1, 5, 25, 50, 75, 95, 99 %.
     pub const LEVELS: [f64; 9] = [0.0, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 1.0];
 
-    /// Of a sample in rising order, `None` if it is empty.
+    /// Returns the quantiles of a sample in ascending order; `None` if it is empty.
     pub fn of_sorted(sorted: &[f64], levels: &[f64]) -> Option<Self> {
         let values = levels.iter().map(|level| quantile(sorted, *level)).collect::<Option<Vec<f64>>>()?;
         Some(Self { levels: levels.to_vec(), values })
     }
 }
 
-/// The value below which a share of a sample in rising order lies; `None` if it is empty.
+/// Returns the quantile of a sample in ascending order at a level from 0 to 1; `None` if it is empty.
 pub(super) fn quantile(sorted: &[f64], level: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = level.clamp(0.0, 1.0) * last as f64;
@@ -36,17 +36,17 @@ pub(super) fn quantile(sorted: &[f64], level: f64) -> Option<f64> {
     Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))
 }
 
-/// How many of a sample lie in equal intervals between its extremes.
+/// Histogram of a sample, with equal intervals between its extremes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
-    /// Ends of the intervals: one more than counts.
+    /// Edges of the intervals: one more than counts.
     pub edges: Vec<f64>,
-    /// How many lie in each; its upper end belongs to the next, but for the last.
+    /// Number of values in each interval; the upper edge belongs to the next interval, except for the last.
     pub counts: Vec<u64>,
 }
 
 impl Histogram {
-    /// Of a sample in rising order, `None` if it is empty.
+    /// Returns the histogram of a sample in ascending order; `None` if it is empty.
     pub fn of_sorted(sorted: &[f64], bins: usize) -> Option<Self> {
         let (low, high) = (*sorted.first()?, *sorted.last()?);
         let bins = bins.max(1);
@@ -61,26 +61,26 @@ impl Histogram {
     }
 }
 
-/// How many keep within a limit.
+/// Number and fraction of machines within a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Yield {
-    /// How many do.
+    /// Number of machines within the limit.
     pub good: u64,
-    /// Of how many.
+    /// Number of machines.
     pub of: u64,
-    /// Their share, 0 to 1.
+    /// Fraction within the limit, 0 to 1.
     pub share: f64,
-    /// Between these the true share lies, with 95 % confidence.
+    /// 95 % confidence interval of the true fraction.
     pub interval: [f64; 2],
 }
 
 impl Yield {
-    /// `good` of `of`; of none nothing is known.
+    /// Returns the yield of `good` out of `of`; for `of` = 0 the interval is 0 to 1.
     pub fn new(good: u64, of: u64) -> Self {
         if of == 0 {
             return Self { good, of, share: 0.0, interval: [0.0, 1.0] };
         }
-        // The normal deviate of 97.5 %.
+        // 97.5 % quantile of the standard normal distribution.
         const Z: f64 = 1.959963984540054;
         let (n, p) = (of as f64, good as f64 / of as f64);
         let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);

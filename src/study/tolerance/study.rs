@@ -1,4 +1,4 @@
-//! [`Study`]: everything that there is to say of a run's tolerances, and of its frequencies, as plain data.
+//! [`Study`]: effects of tolerances on a run, and its spectra, as plain data.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,54 +12,55 @@ use crate::simulation::plant::PlantDifferences;
 use crate::study::base_spectrum::{Axes, BaseSpectrum};
 use crate::study::spectrum::{Spectrum, Window};
 
-/// Instants at which a motion is looked at.
+/// Number of instants at which a motion is evaluated.
 pub const INSTANTS: usize = 200;
 
-/// Machines, if the scenario does not say how many.
-const SAMPLES: u64 = 20_000;
+/// Number of machines, unless the scenario states it.
+const DEFAULT_SAMPLES: u64 = 20_000;
 
-/// The most machines: the peaks of all of them are kept.
-const MOST: u64 = 1_000_000;
+/// Maximum number of machines: the outcomes of all of them are stored.
+const MAX_SAMPLES: u64 = 1_000_000;
 
-/// What tolerances do to a run.
+/// Effects of tolerances on a run.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// What varies, and by how much.
+    /// Tolerances of the scenario.
     pub tolerance: Tolerance,
-    /// The same by key, with what is taken where none is given.
+    /// Spreads by key, with the defaults if none are stated.
     pub spreads: BTreeMap<String, Spread>,
-    /// Machines drawn.
+    /// Number of machines drawn.
     pub samples: u64,
-    /// Numbers that vary in each.
+    /// Number of parameters that vary.
     pub parameters: usize,
     /// n_B and |f_B| over time.
     pub bands: Bands,
-    /// Where first order agrees with sampling, and where not.
+    /// Agreement of first-order results with exact and sampled ones.
     pub agreement: Agreement,
-    /// Peaks |n_B|, N m: at 5, 50, 95, 99 %.
+    /// Quantiles of the peak |n_B|, N m: at 5, 50, 95, 99 %.
     pub moment: Quantiles,
-    /// Peaks |f_B|, N, at the same levels.
+    /// Quantiles of the peak |f_B|, N, at the same levels.
     pub force: Quantiles,
-    /// Peaks |n_B|, N m.
+    /// Histogram of the peak |n_B|, N m.
     pub moment_histogram: Histogram,
-    /// Machines within the limits that are given.
+    /// Yield within the given limits.
     pub yields: Option<Yield>,
-    /// Which tolerance matters, the one that matters most for |n_B| first.
+    /// Contribution of each tolerance, the largest for |n_B| first.
     pub shares: Vec<Share>,
-    /// Frequencies of f_Bx, f_By and of what moment the base feels, as run.
+    /// Spectra of f_Bx, f_By and the moment on the base, over the run.
     pub spectra: Option<[Spectrum; 3]>,
-    /// What this scenario has that perfect tracking on a fixed base does not: only full simulation is exact then.
+    /// Features of the scenario that perfect tracking on a fixed base omits; with any of them, only full simulation is
+    /// exact.
     pub left_out: Vec<&'static str>,
 }
 
-/// The study of a run: a portion draws some hundred machines.
+/// Query for the study of a run; a portion draws about two thousand machines.
 #[derive(Debug)]
 pub struct Studying {
     run: Run,
     drawing: Option<Drawing>,
 }
 
-/// Machines that are being drawn.
+/// Machines being drawn.
 #[derive(Debug)]
 struct Drawing {
     tolerance: Tolerance,
@@ -67,14 +68,14 @@ struct Drawing {
     ensemble: Ensemble,
     samples: u64,
     outcomes: Vec<Outcome>,
-    /// Chunks that are drawn.
+    /// Number of chunks drawn.
     drawn: u64,
 }
 
-/// Chunks of a portion: together a few milliseconds.
-const PORTION: u64 = 8;
+/// Number of chunks in a portion, which takes a few milliseconds.
+const CHUNKS_PER_PORTION: u64 = 8;
 
-/// A run that is studied: as long as its scenario is the same, so is its study.
+/// A run as the input of a study; two runs are equal if their scenarios are.
 #[derive(Clone, Debug)]
 pub struct Studied(pub Arc<Run>);
 
@@ -105,7 +106,7 @@ impl Query for Studying {
                 Err(why) => Portion::Done(Err(why.to_string())),
             };
         };
-        drawing.draw(PORTION);
+        drawing.draw(CHUNKS_PER_PORTION);
         match drawing.share() {
             share if share < 1.0 => Portion::More(share),
             _ => Portion::Done(Ok(Study::of(&self.run, drawing))),
@@ -114,15 +115,16 @@ impl Query for Studying {
 }
 
 impl Drawing {
-    /// Of a run's planned motion.
+    /// Prepares the machines for a run's planned motion.
     ///
     /// # Errors
-    /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
+    /// Fails if nothing varies, a key or spread is wrong, or a length cannot vary alone.
     fn of(run: &Run) -> Result<Self, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
-        let (seed, samples) = (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(SAMPLES).clamp(1, MOST));
+        let (seed, samples) =
+            (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(DEFAULT_SAMPLES).clamp(1, MAX_SAMPLES));
         let spreads = tolerance.spreads_or_default(&plant);
         let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &spreads, seed)?;
         let outcomes = Vec::with_capacity(samples as usize + CHUNK);
@@ -133,12 +135,12 @@ impl Drawing {
         self.samples.div_ceil(CHUNK as u64)
     }
 
-    /// How much is drawn, from 0 to 1.
+    /// Returns the fraction drawn, from 0 to 1.
     fn share(&self) -> f64 {
         self.drawn as f64 / self.chunks() as f64
     }
 
-    /// Draws so many chunks more, as far as there are any.
+    /// Draws a number of further chunks, or all that remain.
     fn draw(&mut self, chunks: u64) {
         let until = self.chunks().min(self.drawn + chunks);
         let mut sampler = self.ensemble.sampler();
@@ -151,7 +153,7 @@ impl Drawing {
 }
 
 impl Study {
-    /// Of a run and the machines that were drawn of its tolerances.
+    /// Returns the study of a run from the machines drawn.
     fn of(run: &Run, drawing: &Drawing) -> Self {
         let Drawing { tolerance, spreads, ensemble, outcomes, .. } = drawing;
         let (scenario, samples) = (run.scenario(), drawing.samples);
@@ -161,9 +163,9 @@ impl Study {
             values
         };
         let (moments, forces) = (sorted(|o| o.peak_moment), sorted(|o| o.peak_force));
-        let nothing = || Quantiles { levels: Vec::new(), values: Vec::new() };
+        let empty = || Quantiles { levels: Vec::new(), values: Vec::new() };
         let levels = [0.05, 0.5, 0.95, 0.99];
-        let quantiles = |sorted: &[f64]| Quantiles::of_sorted(sorted, &levels).unwrap_or_else(nothing);
+        let quantiles = |sorted: &[f64]| Quantiles::of_sorted(sorted, &levels).unwrap_or_else(empty);
         let within = |limit: Option<f64>, x: f64| limit.is_none_or(|limit| x <= limit);
         let limited = tolerance.moment_limit.is_some() || tolerance.force_limit.is_some();
         let yields = limited.then(|| {
@@ -194,7 +196,7 @@ impl Study {
     }
 }
 
-/// What a scenario has that perfect tracking on a fixed base leaves out.
+/// Returns the features of a scenario that perfect tracking on a fixed base omits.
 pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
     let PlantDifferences { torque_limits, force, payload, friction, length, link } = &scenario.plant;
     let known = Control { kp: scenario.control.kp, kd: scenario.control.kd, ..Control::default() };
@@ -215,10 +217,10 @@ pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
     all.into_iter().filter(|(has, _)| *has).map(|(_, what)| what).collect()
 }
 
-/// Of the whole run, at every step; none where it cannot be run, fails an audit or is too short.
+/// Returns the spectra of the whole run; `None` if it cannot be run, fails an audit or is too short.
 fn spectra(run: &Run) -> Option<[Spectrum; 3]> {
     let found = BaseSpectrum::of(run.scenario(), Window::Hann).ok()?;
-    // What no audit vouches for is not shown.
+    // Spectra of a run that failed an audit are not shown.
     let Axes { force_x, force_y, moment } = found.fault.is_none().then_some(found.spectra)?;
     Some([force_x, force_y, moment])
 }

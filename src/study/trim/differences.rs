@@ -1,20 +1,20 @@
-//! Rates from neighbouring samples, and how noisy samples are.
+//! Rates by finite differences of neighbouring samples, and the noise of samples.
 //!
 //! # Source
-//! Lagrange's polynomials through neighbours, at times that need not be evenly spaced.
+//! Lagrange's interpolation polynomials through neighbouring samples, at times that need not be evenly spaced.
 
-/// Samples whose polynomial gives a rate: its error falls with the fourth power of their distance.
-const AROUND: usize = 5;
+/// Number of samples in the stencil of a rate; its error falls with the fourth power of the spacing.
+const STENCIL_POINTS: usize = 5;
 
-/// The samples that a rate is made of, and with which weights, 1/s: the first place, and the weights.
+/// Returns the stencil of the rate at sample i: its first sample, and the weights, 1/s.
 pub(super) fn stencil(t: &[f64], i: usize) -> (usize, Vec<f64>) {
-    let count = AROUND.min(t.len());
+    let count = STENCIL_POINTS.min(t.len());
     let from = i.saturating_sub(count / 2).min(t.len() - count);
     let near = &t[from..from + count];
     (from, (0..count).map(|j| slope(near, j, t[i])).collect())
 }
 
-/// The derivative of Lagrange's polynomial of node j at a time.
+/// Returns the derivative of the Lagrange polynomial of node j at a time.
 fn slope(t: &[f64], j: usize, at: f64) -> f64 {
     let others = |skip: usize| (0..t.len()).filter(move |m| *m != j && *m != skip);
     let scale: f64 = others(j).map(|m| t[j] - t[m]).product();
@@ -22,13 +22,13 @@ fn slope(t: &[f64], j: usize, at: f64) -> f64 {
     sum / scale
 }
 
-/// Standard deviation of independent errors of samples: what the polynomial through three neighbours on either side
-/// misses of each. `None` of fewer than seven.
+/// Estimates the standard deviation of independent errors of samples, from the residual of each against the polynomial
+/// through three neighbours on either side. `None` for fewer than seven samples.
 pub(super) fn noise(t: &[f64], y: impl Fn(usize) -> f64) -> Option<f64> {
     let around = |i: usize| (i - 3..i).chain(i + 1..i + 4);
     let places = 3..t.len().checked_sub(3).filter(|end| *end > 3)?;
     let count = places.len() as f64;
-    let missed = |i: usize| {
+    let squared_error = |i: usize| {
         let (mut value, mut gain) = (y(i), 1.0);
         for j in around(i) {
             let weight: f64 = around(i).filter(|m| *m != j).map(|m| (t[i] - t[m]) / (t[j] - t[m])).product();
@@ -37,5 +37,5 @@ pub(super) fn noise(t: &[f64], y: impl Fn(usize) -> f64) -> Option<f64> {
         }
         value * value / gain
     };
-    Some((places.map(missed).sum::<f64>() / count).sqrt())
+    Some((places.map(squared_error).sum::<f64>() / count).sqrt())
 }

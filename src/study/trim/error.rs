@@ -1,59 +1,59 @@
-//! Why measurements say nothing.
+//! Errors in the evaluation of measurements.
 
 use thiserror::Error;
 
 use crate::settings::number::{counted, fixed};
 
-/// Why measurements say nothing of a machine.
+/// Why a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TrimError {
-    /// Angles are of another number of drives.
+    /// The angles have another number of drives.
     #[error("angles of {}: want those of all {want} of the machine", counted(got, "drive"))]
     Drives {
-        /// How many are measured.
+        /// Number of drives measured.
         got: usize,
-        /// How many the machine has.
+        /// Number of drives of the machine.
         want: usize,
     },
-    /// A motion has columns of different lengths, none at all, times that do not rise or what is no finite number.
+    /// A motion has columns of different lengths, no rows, times that do not increase, or values that are not finite.
     #[error("motion {}: {what}", motion + 1)]
     Motion {
-        /// Which, counted from 0.
+        /// Index of the motion, from 0.
         motion: usize,
-        /// What is wrong, and what would be right.
+        /// What is wrong, and what is accepted.
         what: &'static str,
     },
-    /// Fewer rows than numbers to be found.
+    /// Fewer rows than unknowns.
     #[error(
         "{} for {} that have to be found: want more, ten for each or better",
         counted(rows, "row"),
         counted(unknowns, "number")
     )]
     TooFew {
-        /// Rows, less one for each motion.
+        /// Number of rows.
         rows: usize,
-        /// Unknowns.
+        /// Number of unknowns.
         unknowns: usize,
     },
-    /// A motion too short to be averaged over windows.
+    /// A motion is too short for windows.
     #[error(
         "motion {} has {} in {} s: want at least {want} without measured rates and accelerations", motion + 1,
         counted(rows, "row"), fixed(*time, 6)
     )]
     Short {
-        /// Which, counted from 0.
+        /// Index of the motion, from 0.
         motion: usize,
-        /// Its rows.
+        /// Number of rows.
         rows: usize,
-        /// s.
+        /// Duration, s.
         time: f64,
-        /// How many would do.
+        /// Minimum number of rows.
         want: usize,
     },
     /// No drive moves.
     #[error("no drive moves in it: want motions in which each does")]
     Still,
-    /// What the model leaves is so correlated that nothing can be said of it.
+    /// The residuals are so strongly correlated that no interval can be stated.
     #[error(
         "what the machine does not explain is as slow as the motions themselves: it counts as {} independent rows for {} \
          that have to be found; want more or longer motions", fixed(*effective, 1), counted(unknowns, "number")
@@ -61,10 +61,10 @@ pub enum TrimError {
     Correlated {
         /// Effective number of independent rows.
         effective: f64,
-        /// Unknowns.
+        /// Number of parameters to fit.
         unknowns: usize,
     },
-    /// A result that is no number.
+    /// A result is not finite.
     #[error("numbers so large or so far apart that nothing can be computed with them: want SI units")]
     NotFinite,
 }

@@ -1,4 +1,4 @@
-//! [`fit`]: least squares of all that was measured, and how well each number is known.
+//! [`fit`]: least-squares estimate of all unknowns, with their uncertainty.
 
 use nalgebra::{DMatrix, DVector, SVD};
 
@@ -8,98 +8,100 @@ use super::rows::{Channel, LINE, Made, Rows};
 use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 
-/// What the measurement says.
+/// Result of the least-squares fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// Of what.
+    /// The unknowns.
     pub unknowns: Unknowns,
-    /// What the machine's file says of each.
+    /// Values in the machine's file.
     pub nominal: DVector<f64>,
-    /// What was measured; nominal where that says nothing.
+    /// Measured values; nominal where the data do not identify them.
     pub measured: DVector<f64>,
-    /// Of what was measured; nothing of what was not.
+    /// Covariance of the measured values; zero for those that are not identifiable.
     pub covariance: DMatrix<f64>,
-    /// How many standard deviations an interval of 95 % reaches to either side.
+    /// Ratio of the half width of a 95 % interval to the standard deviation.
     pub critical: f64,
-    /// Whether the data say anything of each.
+    /// Whether each unknown is identifiable from the data.
     pub told: Vec<bool>,
-    /// Groups of numbers that the data cannot tell apart; of a number alone they say nothing.
+    /// Groups of unknowns that are only identifiable in combination; a single unknown in a group is not identifiable at
+    /// all.
     pub confused: Vec<Vec<usize>>,
-    /// σ of what is left of force, N, and of moment, N m.
+    /// Standard deviation σ of the residuals of force, N, and of moment, N m.
     pub noise: [f64; 2],
-    /// Root mean square of what was measured of force, N, and of moment, N m, less offsets.
+    /// Root mean square of the measured force, N, and moment, N m, without offset and drift.
     pub size: [f64; 2],
-    /// The largest force, N, and moment, N m, that the machine could have in these motions.
+    /// Largest root mean square force, N, and moment, N m, of a machine of this size in these motions.
     pub(super) largest: [f64; 2],
-    /// As how many independent rows those of force and of moment count.
+    /// Effective number of independent rows of force and of moment.
     pub effective: [f64; 2],
-    /// (XᵀX)⁻¹ of what is told, rows weighted by σ.
+    /// Pseudo-inverse of XᵀX over the identifiable directions, rows weighted by 1/σ.
     pub(super) inverse: DMatrix<f64>,
-    /// XᵀX by σ² and what correlation leaves of each row.
+    /// Information matrix: XᵀX with rows weighted by 1/σ² and divided by the correlation length in rows.
     pub(super) information: DMatrix<f64>,
-    /// σ² times the time that errors stay alike, of force and of moment, N² s and N² m² s.
+    /// σ² times the correlation time of the residuals, of force and of moment, N² s and N² m² s.
     pub(super) density: [f64; 2],
 }
 
-/// Singular values below this part of the largest are none, whatever the noise.
-const NOTHING: f64 = 1e-9;
-/// So many times the noise of accelerations, too.
-const ABOVE_NOISE: f64 = 4.0;
-/// A number whose part of a direction that is not told is below this is told.
-const PART: f64 = 1e-3;
-/// Rows over which windows make errors alike, as many as Bartlett's window wants of it.
-const LEAST_LAGS: usize = 48;
-/// Steps of the solver of singular values.
-const MOST_STEPS: usize = 10_000;
-/// Rounding, as a part of the largest force and moment that a machine could have.
-const ROUNDING: f64 = 1e-14;
-/// Of the effective rows the numbers to be found have to leave this share.
-const LEAST_SHARE: f64 = 0.1;
-/// What is left below this part of what was measured is rounding.
-const EXACT: f64 = 1e-9;
+/// Singular values below this fraction of the largest are treated as zero.
+const RANK_TOLERANCE: f64 = 1e-9;
+/// The rank tolerance is at least this factor times the relative noise of the accelerations.
+const NOISE_FACTOR: f64 = 4.0;
+/// An unknown is identifiable if the norm of its components along all unobservable directions is smaller than this.
+const IDENTIFIABLE_BELOW: f64 = 1e-3;
+/// Minimum number of lags of Bartlett's window for averaged rows, which overlapping windows correlate.
+const MIN_LAGS: usize = 48;
+/// Maximum number of iterations of the singular value solver.
+const MAX_ITERATIONS: usize = 10_000;
+/// Rounding level, as a fraction of the largest force and moment of the machine.
+const ROUNDING_LEVEL: f64 = 1e-14;
+/// Minimum degrees of freedom, as a fraction of the effective number of rows.
+const MIN_FREEDOM: f64 = 0.1;
+/// Residuals below this fraction of the measured values are treated as rounding.
+const EXACT_BELOW: f64 = 1e-9;
 
-/// Least squares, weighted by what force and moment leave; about the machine as its file has it.
+/// Fits the unknowns by least squares about the machine's file, with weights from the residuals of force and moment.
 ///
 /// # Errors
-/// If there is too little, or what is left is too slow.
+/// Fails if there are too few rows, or the residuals are too strongly correlated.
 pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
     let Estimate { fit, rank, share } = estimate(machine, rows)?;
-    if share < LEAST_SHARE {
+    if share < MIN_FREEDOM {
         return Err(TrimError::Correlated { effective: fit.effective.iter().sum(), unknowns: rank });
     }
     Ok(fit)
 }
 
-/// A fit, however much of what is left of it is correlated.
+/// A fit, without a check of the degrees of freedom.
 pub(super) struct Estimate {
     pub fit: Fit,
-    /// Numbers that the data determine, and the lines of the sensors.
+    /// Number of identifiable parameters, including the lines of the sensors.
     pub rank: usize,
-    /// The share of the effective rows that these leave; below 0 where there are fewer.
+    /// Degrees of freedom as a fraction of the effective number of rows; negative if the rows are too few.
     pub share: f64,
 }
 
-/// Least squares, and how independent their residuals are.
+/// Fits the unknowns by weighted least squares and estimates the correlation of the residuals.
 ///
 /// # Errors
-/// If numbers are not finite.
+/// Fails if a result is not finite.
 pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimError> {
     let (inertia, p) = (Inertia::of(machine), rows.unknowns.count());
     let nominal = DVector::from_vec(rows.unknowns.nominal(&inertia));
     let scales = DVector::from_vec(rows.unknowns.scales(&inertia));
-    // About the nominal machine, so that what is not told stays nominal.
+    // The deviation from the nominal machine is fitted, so that what is not identifiable stays nominal.
     let deviation = |channel: &Channel| DVector::from_column_slice(&channel.y) - &channel.x * &nominal;
     let [fx, fy, n] = rows.channels.each_ref().map(deviation);
-    let left = [fx, fy, n];
+    let deviations = [fx, fy, n];
     let largest = largest(rows, &scales);
-    let floors = largest.map(|largest| (ROUNDING * largest).max(f64::MIN_POSITIVE.sqrt()));
-    let groups = [compressed(rows, &left, &[0, 1]), compressed(rows, &left, &[2])];
-    let mut sigma = [rms(&[&left[0], &left[1]]).max(floors[0]), rms(&[&left[2]]).max(floors[1])];
+    let floors = largest.map(|largest| (ROUNDING_LEVEL * largest).max(f64::MIN_POSITIVE.sqrt()));
+    let groups = [compressed(rows, &deviations, &[0, 1]), compressed(rows, &deviations, &[2])];
+    let mut sigma = [rms(&[&deviations[0], &deviations[1]]).max(floors[0]), rms(&[&deviations[2]]).max(floors[1])];
     let mut solved = None;
-    // Where weights do not change any more, sooner.
+    // Iterate the weights until they converge, at most four times.
     for _ in 0..4 {
         let own = Solved::of(rows, &groups, &sigma, &nominal);
-        let errors: Vec<DVector<f64>> = rows.channels.iter().zip(&left).map(|(c, y)| y - &c.x * &own.by).collect();
+        let errors: Vec<DVector<f64>> =
+            rows.channels.iter().zip(&deviations).map(|(c, y)| y - &c.x * &own.by).collect();
         let now = [rms(&[&errors[0], &errors[1]]).max(floors[0]), rms(&[&errors[2]]).max(floors[1])];
         let same = now.iter().zip(&sigma).all(|(now, was)| (now / was - 1.0).abs() < 1e-3);
         sigma = now;
@@ -111,13 +113,13 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
     let (confused, told) = solved.confused(p);
     let count = rows.count();
-    let least = if rows.made == Made::Samples { 1 } else { LEAST_LAGS };
+    let least = if rows.made == Made::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
     let lags = lags(&parts, &rows.motions, least);
-    // Windows take more lags than they need, which makes up for the second parameter.
+    // For windows the larger number of lags compensates for the second parameter of the line.
     let fitted = if rows.made == Made::Samples { LINE as i32 } else { 1 };
-    // How much longer errors stay alike than one row.
-    let alike = |of: &[usize]| {
+    // Ratio of the long-run variance to the variance of one row: correlation length in rows.
+    let correlation = |of: &[usize]| {
         let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
         let long =
             both(&|c| long_run(&DMatrix::from_column_slice(count, 1, parts[c]), &rows.motions, lags, fitted)[(0, 0)]);
@@ -126,13 +128,14 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     };
     let y = |of: usize| DVector::from_column_slice(&rows.channels[of].y);
     let size = [rms(&[&y(0), &y(1)]), rms(&[&y(2)])];
-    // Rounding is no noise.
-    let exact = [0, 1].map(|of| sigma[of] <= EXACT * size[of] || sigma[of] <= 10.0 * floors[of]);
-    let alike = [if exact[0] { 1.0 } else { alike(&[0, 1]) }, if exact[1] { 1.0 } else { alike(&[2]) }];
+    // Residuals at rounding level are not treated as correlated noise.
+    let exact = [0, 1].map(|of| sigma[of] <= EXACT_BELOW * size[of] || sigma[of] <= 10.0 * floors[of]);
+    let correlation =
+        [if exact[0] { 1.0 } else { correlation(&[0, 1]) }, if exact[1] { 1.0 } else { correlation(&[2]) }];
     let channels = [2.0, 1.0];
-    let effective = [0, 1].map(|of| channels[of] * (count as f64 / alike[of]));
+    let effective = [0, 1].map(|of| channels[of] * (count as f64 / correlation[of]));
     let all = effective[0] + effective[1];
-    // Offset and drift of each channel of each motion are fitted, too.
+    // Offset and drift of each channel of each motion are fitted too.
     let nuisance = 3 * LINE * rows.motions.len();
     let rank = p - solved.free.ncols() + nuisance;
     let share = (all - rank as f64) / all;
@@ -143,12 +146,12 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
             (0..count).for_each(|i| scores[(i, j)] += weight * column[i] * error[i]);
         }
     }
-    let middle = long_run(&scores, &rows.motions, lags, fitted) / share.max(LEAST_SHARE);
-    let covariance = &solved.inverse * middle * solved.inverse.transpose();
+    let meat = long_run(&scores, &rows.motions, lags, fitted) / share.max(MIN_FREEDOM);
+    let covariance = &solved.inverse * meat * solved.inverse.transpose();
     let gram = |of: usize| rows.channels[of].x.tr_mul(&rows.channels[of].x);
-    let force = (gram(0) + gram(1)) * (weights[0] / alike[0]);
-    let information = force + gram(2) * (weights[2] / alike[1]);
-    let density = [0, 1].map(|of| sigma[of] * sigma[of] * alike[of] * rows.spacing);
+    let force = (gram(0) + gram(1)) * (weights[0] / correlation[0]);
+    let information = force + gram(2) * (weights[2] / correlation[1]);
+    let density = [0, 1].map(|of| sigma[of] * sigma[of] * correlation[of] * rows.spacing);
     let fit = Fit {
         unknowns: rows.unknowns.clone(),
         measured: &nominal + &solved.by,
@@ -170,7 +173,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
 }
 
 impl Fit {
-    /// Half of the interval of 95 % of a number.
+    /// Returns the half width of the 95 % interval of an unknown.
     pub fn half_width(&self, place: usize) -> f64 {
         self.critical * self.covariance[(place, place)].max(0.0).sqrt()
     }
@@ -181,7 +184,7 @@ fn rms(all: &[&DVector<f64>]) -> f64 {
     (sum / count.max(1) as f64).sqrt()
 }
 
-/// Groups that have a number in common are one.
+/// Merges groups that share an unknown.
 fn joined(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = Vec::new();
     for mut group in groups {
@@ -195,7 +198,7 @@ fn joined(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     all
 }
 
-/// The largest force and moment, root mean square, that so large a machine could have.
+/// Returns the largest root mean square force and moment that a machine of this size could have.
 fn largest(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
     let of = |channels: &[usize]| {
         let size = |c: &usize| {
@@ -208,26 +211,27 @@ fn largest(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
     [of(&[0, 1]), of(&[2])]
 }
 
-/// Rows and right sides of some channels in as few rows as columns: R of their QR.
-fn compressed(rows: &Rows, left: &[DVector<f64>; 3], channels: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
+/// Compresses the rows and right sides of some channels to the R factor of their QR decomposition; also returns the sum
+/// of their noise matrices.
+fn compressed(rows: &Rows, deviations: &[DVector<f64>; 3], channels: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
     let (count, p) = (rows.count(), rows.unknowns.count());
     let mut all = DMatrix::zeros(channels.len() * count, p + 1);
     let mut noise = DMatrix::zeros(p, p);
     for (i, &c) in channels.iter().enumerate() {
         all.view_mut((i * count, 0), (count, p)).copy_from(&rows.channels[c].x);
-        all.view_mut((i * count, p), (count, 1)).copy_from(&left[c]);
+        all.view_mut((i * count, p), (count, 1)).copy_from(&deviations[c]);
         noise += &rows.channels[c].noise;
     }
     (all.qr().unpack_r(), noise)
 }
 
-/// The solution for some weights.
+/// Solution for given weights.
 struct Solved {
-    /// By how much each number differs from the nominal one.
+    /// Deviation of each unknown from its nominal value.
     by: DVector<f64>,
-    /// (XᵀX)⁻¹ of what is told, weighted.
+    /// Pseudo-inverse of XᵀX over the identifiable directions, weighted.
     inverse: DMatrix<f64>,
-    /// Directions that are not told, orthonormal, in numbers divided by the sizes of their columns.
+    /// Orthonormal basis of the unobservable directions, in unknowns scaled by their column norms.
     free: DMatrix<f64>,
 }
 
@@ -243,23 +247,23 @@ impl Solved {
             noise += own / (sigma * sigma);
             from += r.nrows();
         }
-        // Of a size each; a column of nothing stays one.
+        // Scale columns to unit norm; set negligible columns to zero.
         let sizes: Vec<f64> = all.columns(0, p).column_iter().map(|c| c.norm()).collect();
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         let size = |j: usize| if sizes[j] > 1e-14 * largest { sizes[j] } else { f64::INFINITY };
         (0..p).for_each(|j| all.column_mut(j).scale_mut(1.0 / size(j)));
-        // As high as wide, so that all directions are seen.
+        // Pad R to a square matrix, so that the SVD returns all directions, including the null space.
         let r = all.qr().unpack_r().resize(p + 1, p + 1, 0.0);
         let (x, right) = (r.view((0, 0), (p, p)).clone_owned(), r.view((0, p), (p, 1)).column(0).clone_owned());
-        let svd = SVD::try_new(x, true, true, 5.0 * f64::EPSILON, MOST_STEPS);
+        let svd = SVD::try_new(x, true, true, 5.0 * f64::EPSILON, MAX_ITERATIONS);
         let parts = svd.and_then(|svd| Some((svd.u?, svd.singular_values, svd.v_t?)));
         let Some((u, singular, v)) = parts else {
             return Self { by: DVector::zeros(p), inverse: DMatrix::zeros(p, p), free: DMatrix::identity(p, p) };
         };
         let share = if let Made::Windows { noise, .. } = rows.made { noise } else { 0.0 };
-        let cut = singular.max() * NOTHING.max(ABOVE_NOISE * share);
-        let kept: Vec<usize> = (0..p).filter(|i| singular[*i] > cut).collect();
-        let rest: Vec<usize> = (0..p).filter(|i| singular[*i] <= cut).collect();
+        let threshold = singular.max() * RANK_TOLERANCE.max(NOISE_FACTOR * share);
+        let kept: Vec<usize> = (0..p).filter(|i| singular[*i] > threshold).collect();
+        let rest: Vec<usize> = (0..p).filter(|i| singular[*i] <= threshold).collect();
         let v = v.transpose();
         let scaled = DVector::from_fn(p, |j, _| 1.0 / size(j));
         let of = |i: usize| v.column(i).component_mul(&scaled);
@@ -270,7 +274,7 @@ impl Solved {
             by += &column * (u.column(i).dot(&right) / s);
             inverse += &column * column.transpose() / (s * s);
         }
-        // Noise in the rows pulls towards 0 all that they say; by how much is known to first order.
+        // Noise in the regressors biases the estimate towards 0; correct this to first order.
         let (plain, mut all) = (by.clone(), by);
         for _ in 0..2 {
             all = &plain + &inverse * (&noise * (nominal + &all));
@@ -278,17 +282,18 @@ impl Solved {
         Self { by: all, inverse, free: v.select_columns(&rest) }
     }
 
-    /// Groups of numbers that are told together only, and which numbers are told.
+    /// Returns the groups of unknowns that are only identifiable in combination, and whether each unknown is
+    /// identifiable.
     fn confused(&self, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
         let mut rows: Vec<DVector<f64>> = self.free.column_iter().map(|c| c.clone_owned()).collect();
-        let told: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < PART).collect();
-        // Reduced, so that each row names as few as can be.
+        let told: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
+        // Gauss–Jordan elimination, so that each unobservable direction involves few unknowns.
         let mut at = 0;
         for j in 0..p {
             let Some(best) = (at..rows.len()).max_by(|a, b| rows[*a][j].abs().total_cmp(&rows[*b][j].abs())) else {
                 break;
             };
-            if rows[best][j].abs() < 10.0 * PART {
+            if rows[best][j].abs() < 10.0 * IDENTIFIABLE_BELOW {
                 continue;
             }
             rows.swap(at, best);
@@ -305,7 +310,7 @@ impl Solved {
         }
         let group = |row: &DVector<f64>| {
             let most = row.amax();
-            (0..p).filter(|j| row[*j].abs() > 10.0 * PART * most && !told[*j]).collect::<Vec<_>>()
+            (0..p).filter(|j| row[*j].abs() > 10.0 * IDENTIFIABLE_BELOW * most && !told[*j]).collect::<Vec<_>>()
         };
         let groups = rows.iter().map(group).filter(|group| !group.is_empty()).collect();
         (joined(groups), told)

@@ -1,14 +1,14 @@
-//! The variance of sums of what is correlated over time.
+//! Long-run variance: the variance of sums of terms that are correlated over time.
 //!
 //! # Source
-//! Newey and West (1987): Bartlett's window over the autocovariances, here by sums of L neighbours, which is the same.
-//! Andrews (1991), equation (6.2) with the first-order plug-in (6.4), for L. Kiefer and Vogelsang (2005), table 1, for the
-//! critical value of two-sided 95 %.
+//! Newey and West (1987): Bartlett's window over the autocovariances, here computed equivalently by sums of L
+//! neighbours. Andrews (1991), equation (6.2) with the first-order plug-in (6.4), for L. Kiefer and Vogelsang (2005),
+//! table 1, for the critical value of two-sided 95 %.
 
 use nalgebra::DMatrix;
 
-/// Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, rows of scores, motion by motion, each less
-/// what was fitted to it with so many parameters.
+/// Returns Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, where s_i are the rows of `scores`, summed motion
+/// by motion. From each motion `fitted` parameters were removed; the result is corrected for that.
 pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fitted: i32) -> DMatrix<f64> {
     let p = scores.ncols();
     let mut sum = DMatrix::zeros(p, p);
@@ -23,20 +23,21 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fi
                 blocks[(i, j)] = running;
             }
         }
-        // What each parameter of a sensor's line, taken out of the motion, hides: about as much.
+        // Fraction of the variance that remains after the fit, approximately the same factor for each parameter of the
+        // line.
         let share = (lags as f64 / count as f64).min(1.0);
-        let seen = (1.0 - share + share * share / 3.0).powi(fitted);
-        sum += blocks.tr_mul(&blocks) / (lags as f64 * seen);
+        let remaining = (1.0 - share + share * share / 3.0).powi(fitted);
+        sum += blocks.tr_mul(&blocks) / (lags as f64 * remaining);
         from += count;
     }
     sum
 }
 
-/// Wider than what makes the mean square error of the variance least: intervals that are too narrow are worse than
-/// intervals that are a little too wide.
-const GENEROUS: f64 = 2.0;
+/// Factor on the number of lags that minimises the mean square error of the variance: too narrow intervals are worse
+/// than slightly too wide ones.
+const LAG_FACTOR: f64 = 2.0;
 
-/// How many lags Bartlett's window takes for residuals, at least some.
+/// Returns the number of lags of Bartlett's window for residuals, at least `least`.
 pub(super) fn lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
     let count: usize = motions.iter().sum();
     let first = |y: &[f64]| {
@@ -51,13 +52,13 @@ pub(super) fn lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usi
     };
     let rho = residuals.iter().map(|y| first(y)).fold(0.0, f64::max);
     let alpha = 4.0 * rho * rho / ((1.0 - rho) * (1.0 + rho)).powi(2);
-    let wanted = (GENEROUS * 1.1447 * (alpha * count as f64).cbrt()).ceil() as usize;
+    let wanted = (LAG_FACTOR * 1.1447 * (alpha * count as f64).cbrt()).ceil() as usize;
     let longest = motions.iter().copied().max().unwrap_or(1);
     wanted.max(least).clamp(1, longest.div_ceil(2))
 }
 
-/// By how many standard deviations an interval of 95 % reaches to either side, where the window takes this share of the
-/// data.
+/// Returns the ratio of the half width of a 95 % interval to the standard deviation, if the window covers this fraction
+/// of the data.
 pub(super) fn critical(share: f64) -> f64 {
     let b = share.clamp(0.0, 1.0);
     1.96 + b * (2.9694 + b * (0.4160 - 0.5324 * b))

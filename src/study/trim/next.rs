@@ -1,4 +1,4 @@
-//! [`next`]: which motion would say most of what is least known.
+//! [`next`]: finds the motion that would add most information on the least known unknown.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::Serialize;
@@ -10,20 +10,20 @@ use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 
-/// A motion that could be driven next: each drive as a sine about the middle of what it did.
+/// A motion to measure next: each drive moves as a sine about the middle of its measured range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
-    /// Drives that move and in which sense, counted from 0.
+    /// Drives that move, from 0, and their senses, ±1.
     #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
-    /// Amplitude of each drive, rad, and its frequency, Hz; drives that move against each other share a frequency.
+    /// Amplitude of each drive, rad.
     pub amplitude: Vec<f64>,
-    /// Hz.
+    /// Frequency of each drive, Hz; drives that move in step or against each other share a frequency.
     pub frequency: Vec<f64>,
-    /// Half the interval of the worst number with it; infinite if it is not told yet.
+    /// Predicted half width of the interval of the least known unknown; infinite if it is still not identifiable.
     #[serde(skip_serializing_if = "is_infinite")]
     pub half_width: f64,
-    /// By what factor intervals of all numbers become narrower in the mean (geometric).
+    /// Factor by which the intervals of all unknowns of (7) and (8) become narrower, geometric mean.
     #[serde(rename = "narrower")]
     pub all: f64,
 }
@@ -33,7 +33,7 @@ fn is_infinite(x: &f64) -> bool {
 }
 
 impl Candidate {
-    /// In words, by the names of the drives.
+    /// Describes the motion in words, with the names of the drives.
     pub fn words(&self, machine: &Machine) -> String {
         let names: Vec<&str> = self.drives.iter().map(|(k, _)| machine.spec().drives[*k].name.as_str()).collect();
         let apart = self.frequency.windows(2).any(|w| w[0] != w[1]);
@@ -48,29 +48,31 @@ impl Candidate {
     }
 }
 
-/// What to measure next.
+/// Proposal for the next measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Next {
-    /// The number of (7) or (8) that is least known, by its place among the unknowns.
+    /// Index of the least known unknown of (7) or (8).
     pub worst: usize,
-    /// Half its interval now; infinite if nothing is known of it.
+    /// Present half width of its interval; infinite if it is not identifiable.
     pub half_width: f64,
-    /// How long each candidate takes, s.
+    /// Duration of each candidate, s.
     pub duration: f64,
-    /// The best first.
+    /// Candidates, the best first.
     pub candidates: Vec<Candidate>,
 }
 
-/// Instants at which a candidate is looked at.
+/// Number of instants at which a candidate is evaluated.
 const INSTANTS: usize = 160;
-/// Steps of the eigenvalue solver.
-const MOST_STEPS: usize = 10_000;
-/// What is taken where a range or an acceleration is not seen.
-const USUAL: [f64; 2] = [0.5, 5.0];
+/// Maximum number of iterations of the eigenvalue solver.
+const MAX_ITERATIONS: usize = 10_000;
+/// Amplitude for drives that did not move, rad, at most that of the widest drive.
+const DEFAULT_AMPLITUDE_RAD: f64 = 0.5;
+/// Acceleration if none was measured, rad/s².
+const DEFAULT_ACCELERATION: f64 = 5.0;
 
-/// Candidates are each drive alone, every pair in step and against each other, and all drives in step and each at a
-/// frequency of its own; as far as the drives went and at the greatest accelerations seen, unless these are given, rad/s².
-/// How well numbers are known after each is by the information that its rows add at the noise that was found.
+/// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
+/// different frequencies. Amplitudes are those measured; accelerations are the largest measured, unless they are given,
+/// rad/s². The uncertainty after each is predicted from the information that its rows add at the identified noise.
 pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, accelerations: Option<&[f64]>) -> Next {
     let limits = Limits::of(machine, recording, rows, accelerations);
     let scales = rows.unknowns.scales(&Inertia::of(machine));
@@ -80,7 +82,7 @@ pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, ac
     let half_width = if fit.told[worst] { fit.half_width(worst) } else { f64::INFINITY };
     let duration = recording.motions.iter().map(Motion::duration).sum::<f64>() / recording.motions.len() as f64;
     let now = Known::of(&fit.information, &scales);
-    let judged = |drives: Vec<(usize, f64)>, apart: bool| {
+    let assessed = |drives: Vec<(usize, f64)>, apart: bool| {
         let motion = limits.motion(machine, &drives, apart);
         let more = motion.information(machine, &rows.unknowns, duration, fit);
         let then = Known::of(&(&fit.information + more), &scales);
@@ -95,23 +97,23 @@ pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, ac
         Candidate { drives, amplitude, frequency, half_width, all: 1.0 / all.max(f64::MIN_POSITIVE) }
     };
     let n = machine.drives();
-    let mut candidates: Vec<Candidate> = (0..n).map(|k| judged(vec![(k, 1.0)], false)).collect();
+    let mut candidates: Vec<Candidate> = (0..n).map(|k| assessed(vec![(k, 1.0)], false)).collect();
     for (k, l) in Inertia::pairs(n) {
-        candidates.push(judged(vec![(k, 1.0), (l, 1.0)], false));
-        candidates.push(judged(vec![(k, 1.0), (l, -1.0)], false));
+        candidates.push(assessed(vec![(k, 1.0), (l, 1.0)], false));
+        candidates.push(assessed(vec![(k, 1.0), (l, -1.0)], false));
     }
     let every = || (0..n).map(|k| (k, 1.0)).collect::<Vec<_>>();
     if n > 2 {
-        candidates.push(judged(every(), false));
+        candidates.push(assessed(every(), false));
     }
     if n > 1 {
-        candidates.push(judged(every(), true));
+        candidates.push(assessed(every(), true));
     }
     candidates.sort_by(|a, b| a.half_width.total_cmp(&b.half_width));
     Next { worst, half_width, duration, candidates }
 }
 
-/// Where drives may go, and how fast.
+/// Ranges and accelerations of the drives.
 struct Limits {
     middle: Vec<f64>,
     reach: Vec<f64>,
@@ -129,10 +131,11 @@ impl Limits {
         let ends: Vec<[f64; 2]> = (0..n).map(ends).collect();
         let moving = |k: &usize| rows.moves[*k];
         let widest = (0..n).filter(moving).map(|k| 0.5 * (ends[k][1] - ends[k][0])).fold(0.0, f64::max);
-        let reach = |k: usize| if rows.moves[k] { 0.5 * (ends[k][1] - ends[k][0]) } else { widest.min(USUAL[0]) };
+        let reach =
+            |k: usize| if rows.moves[k] { 0.5 * (ends[k][1] - ends[k][0]) } else { widest.min(DEFAULT_AMPLITUDE_RAD) };
         let seen = |k: usize| rows.fastest[k];
         let most = (0..n).filter(moving).map(seen).fold(0.0, f64::max);
-        let usual = if most > 0.0 { most } else { USUAL[1] };
+        let usual = if most > 0.0 { most } else { DEFAULT_ACCELERATION };
         let own = |k: usize| if rows.moves[k] && seen(k) > 0.0 { seen(k) } else { usual };
         let acceleration = (0..n).map(|k| given.and_then(|all| all.get(k)).copied().unwrap_or_else(|| own(k)));
         Self {
@@ -142,25 +145,25 @@ impl Limits {
         }
     }
 
-    /// Sines of some drives, as large as joint limits let them be.
+    /// Returns sines of some drives, as large as the joint limits permit.
     fn motion(&self, machine: &Machine, drives: &[(usize, f64)], apart: bool) -> Sines {
         let n = machine.drives();
         let signs: Vec<f64> =
             (0..n).map(|k| drives.iter().find(|(own, _)| *own == k).map_or(0.0, |(_, sign)| *sign)).collect();
-        let mut smaller = 1.0;
-        let mut sines = self.sines(&signs, apart, smaller);
-        while smaller > 0.02 && !sines.keeps_limits(machine) {
-            smaller *= 0.8;
-            sines = self.sines(&signs, apart, smaller);
+        let mut scale = 1.0;
+        let mut sines = self.sines(&signs, apart, scale);
+        while scale > 0.02 && !sines.keeps_limits(machine) {
+            scale *= 0.8;
+            sines = self.sines(&signs, apart, scale);
         }
         sines
     }
 
-    fn sines(&self, signs: &[f64], apart: bool, smaller: f64) -> Sines {
+    fn sines(&self, signs: &[f64], apart: bool, scale: f64) -> Sines {
         let moving = || (0..signs.len()).filter(|k| signs[*k] != 0.0);
-        let amplitude: Vec<f64> = (0..signs.len()).map(|k| smaller * self.reach[k]).collect();
+        let amplitude: Vec<f64> = (0..signs.len()).map(|k| scale * self.reach[k]).collect();
         let own = |k: usize| (self.acceleration[k] / amplitude[k]).sqrt();
-        // In step at the frequency of the slowest.
+        // In step, the drives move at the frequency of the slowest.
         let slowest = moving().map(own).fold(f64::INFINITY, f64::min);
         let rate = |k: usize| if apart { own(k) * (1.0 - 0.13 * k as f64) } else { slowest };
         Sines {
@@ -196,13 +199,13 @@ impl Sines {
             let together = self.rate[angle.to] == self.rate[angle.from];
             let (to, from) = (self.signed[angle.to], self.signed[angle.from]);
             let most = if together { (to - from).abs() } else { to.abs() + from.abs() };
-            // Where the middle itself is outside, limits were not kept in the measurement either.
+            // If the middle itself violates the limits, so did the measurement.
             !angle.limits.contains(&middle)
                 || (angle.limits.contains(&(middle - most)) && angle.limits.contains(&(middle + most)))
         })
     }
 
-    /// Σ xᵀ x over time by the densities of the noise.
+    /// Returns the information Σ xᵀ x over time, divided by the densities of the noise.
     fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
         let p = unknowns.count();
         let mut rows = [0, 1, 2].map(|_| DMatrix::zeros(INSTANTS, p));
@@ -226,34 +229,34 @@ impl Sines {
     }
 }
 
-/// What an information matrix says, in numbers divided by their scales.
+/// Eigendecomposition of an information matrix, for unknowns divided by their scales.
 struct Known {
     values: DVector<f64>,
     vectors: DMatrix<f64>,
-    cut: f64,
+    threshold: f64,
 }
 
 impl Known {
     fn of(information: &DMatrix<f64>, scales: &[f64]) -> Self {
         let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| information[(i, j)] * scales[i] * scales[j]);
-        let nothing = || SymmetricEigen {
+        let uninformative = || SymmetricEigen {
             eigenvalues: DVector::zeros(scales.len()),
             eigenvectors: DMatrix::identity(scales.len(), scales.len()),
         };
-        let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, MOST_STEPS).unwrap_or_else(nothing);
-        let cut = 1e-12 * eigen.eigenvalues.amax();
-        Self { values: eigen.eigenvalues, vectors: eigen.eigenvectors, cut }
+        let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, MAX_ITERATIONS).unwrap_or_else(uninformative);
+        let threshold = 1e-12 * eigen.eigenvalues.amax();
+        Self { values: eigen.eigenvalues, vectors: eigen.eigenvectors, threshold }
     }
 
-    /// Of a number; `None` if nothing is known of it.
+    /// Returns the variance of an unknown; `None` if it is not identifiable.
     fn variance(&self, place: usize) -> Option<f64> {
         let part = |i: usize| self.vectors[(place, i)].powi(2);
-        let known = |i: &usize| self.values[*i] > self.cut;
-        let told = (0..self.values.len()).all(|i| known(&i) || part(i) < 1e-6);
-        told.then(|| (0..self.values.len()).filter(known).map(|i| part(i) / self.values[i]).sum())
+        let known = |i: &usize| self.values[*i] > self.threshold;
+        let identifiable = (0..self.values.len()).all(|i| known(&i) || part(i) < 1e-6);
+        identifiable.then(|| (0..self.values.len()).filter(known).map(|i| part(i) / self.values[i]).sum())
     }
 
-    /// Log of the product of variances of the first numbers as if each were alone; what is not known counts as 1.
+    /// Returns the logarithm of the product of the first unknowns' variances; one that is not identifiable counts as 1.
     fn log_volume(&self, count: usize) -> f64 {
         (0..count).map(|i| self.variance(i).unwrap_or(1.0).max(f64::MIN_POSITIVE).ln()).sum()
     }

@@ -1,18 +1,18 @@
-//! [`Recording`]: what was measured.
+//! [`Recording`]: the measured data.
 
 use super::error::TrimError;
 use crate::mechanics::planar::{PerDrive, Vector};
 
-/// One motion, sampled. All lists are as long as the times.
+/// Samples of one motion. All lists have one entry per time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// s, rising.
+    /// Times, s, ascending.
     pub t: Vec<f64>,
     /// Absolute drive angles, unwrapped, rad.
     pub q: Vec<PerDrive>,
-    /// Rates, rad/s; empty where not measured.
+    /// Rates, rad/s; empty if not measured.
     pub qd: Vec<PerDrive>,
-    /// Accelerations, rad/s²; empty where not measured.
+    /// Accelerations, rad/s²; empty if not measured.
     pub qdd: Vec<PerDrive>,
     /// Force on the base, N.
     pub force: Vec<Vector>,
@@ -21,7 +21,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// From the first sample to the last, s.
+    /// Returns the time from the first sample to the last, s.
     pub fn duration(&self) -> f64 {
         self.t.last().unwrap_or(&0.0) - self.t.first().unwrap_or(&0.0)
     }
@@ -46,23 +46,23 @@ impl Motion {
     }
 }
 
-/// Motions of one machine on a fixed base.
+/// Measured motions of one machine on a fixed base.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Each with sensor offsets of its own.
+    /// Motions, each with its own sensor offsets.
     pub motions: Vec<Motion>,
 }
 
 impl Recording {
-    /// Whether every motion has its accelerations, and its rates.
+    /// Returns whether every motion has rates and accelerations.
     pub fn has_accelerations(&self) -> bool {
         self.motions.iter().all(|motion| !motion.qdd.is_empty() && !motion.qd.is_empty())
     }
 
-    /// Whether it can be used for a machine of so many drives.
+    /// Checks that the recording can be used for a machine with a number of drives.
     ///
     /// # Errors
-    /// What is wrong.
+    /// Says what is wrong.
     pub fn check(&self, drives: usize) -> Result<(), TrimError> {
         for (motion, of) in self.motions.iter().enumerate() {
             if let Some(got) = of.q.first().map(|q| q.len()).filter(|got| *got != drives) {
@@ -78,7 +78,8 @@ impl Recording {
         }
     }
 
-    /// How many numbers a machine of n drives has: 2n first moments, n(n − 1) of couplings, n momenta.
+    /// Returns the number of unknowns of a machine with n drives: 2n of first moments, n(n − 1) of couplings, n
+    /// momenta.
     fn unknowns(drives: usize) -> usize {
         drives * (drives + 2)
     }

@@ -1,4 +1,4 @@
-//! [`TrimReport`]: what a person wants to know of a measurement.
+//! [`TrimReport`]: report on a measurement.
 
 use serde::Serialize;
 
@@ -12,98 +12,98 @@ use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 use crate::settings::number::{fixed, shown};
 
-/// What a measurement says of a machine, what mends it, and what to measure next.
+/// Identified values of a machine, their correction, and the next measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrimReport {
-    /// The machine's name.
+    /// Name of the machine.
     pub machine: String,
-    /// How many motions were measured.
+    /// Number of measured motions.
     pub motions: usize,
-    /// How many rows they give.
+    /// Number of rows.
     pub rows: usize,
-    /// `samples` with their accelerations, or `windows`.
+    /// Origin of the rows: `samples` with measured accelerations, or `windows`.
     pub made_of: &'static str,
-    /// Half the width of a window, s.
+    /// Half width of a window, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
-    /// Root mean square of force, N, and moment, N m, less offsets.
+    /// Root mean square of force, N, and moment, N m, without offset and drift.
     pub size: [f64; 2],
-    /// σ of what is not explained of them.
+    /// Standard deviation σ of the residuals of force, N, and moment, N m.
     pub noise: [f64; 2],
-    /// As how many independent rows those of force and of moment count.
+    /// Effective number of independent rows of force and of moment.
     pub effective_rows: [f64; 2],
-    /// Every line of (7) and (8), and the momenta.
+    /// Values of every line of (7) and (8), and of the momenta.
     pub numbers: Vec<Number>,
-    /// Groups of numbers that the data cannot tell apart.
+    /// Groups of unknowns that are only identifiable in combination.
     pub untold: Vec<Vec<String>>,
-    /// What changes.
+    /// Proposed changes.
     pub changes: Vec<Change>,
-    /// What the change does over these motions, or would do where it is not shown to help.
+    /// Effect of the change over these motions, also if it is not significant and therefore not proposed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worth: Option<Gain>,
-    /// What to measure next.
+    /// Proposal for the next measurement.
     pub next: Suggestion,
 }
 
-/// What a change is worth, and whether it is shown to help.
+/// Effect of a change, and whether it is significant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Gain {
-    /// What it is worth.
+    /// Effect of the change.
     #[serde(flatten)]
     pub worth: Worth,
-    /// Whether the interval of the gain lies above 0.
+    /// Whether the 95 % interval of the gain lies above 0.
     pub helps: bool,
 }
 
-/// One number of (7) and (8), or a momentum.
+/// An unknown of (7) and (8), or a momentum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Number {
-    /// Which.
+    /// Name of the unknown.
     pub name: String,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
-    /// In the machine's file.
+    /// Value in the machine's file.
     pub nominal: f64,
-    /// Whether the data say anything of it.
+    /// Whether the unknown is identifiable from the data.
     pub told: bool,
-    /// As measured.
+    /// Measured value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<f64>,
-    /// Half the interval of 95 %.
+    /// Half width of the 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Whether it is shown to differ from the machine's file, given what is taken of the others.
+    /// Whether it differs significantly from the machine's file, given the values used for the others.
     pub off: bool,
-    /// What it is taken to be for the change: as measured where it is off, else as in the file.
+    /// Value used for the change: measured if `off`, else that of the file.
     pub taken: f64,
-    /// Half the interval of 95 % of that; 0 of what is taken from the file.
+    /// Half width of the 95 % interval of that value; 0 if it is from the file.
     pub taken_half_width: f64,
-    /// What the change leaves of it.
+    /// Residual after the change.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left: Option<f64>,
-    /// Whether it is one of (7) and (8).
+    /// Whether the unknown belongs to (7) or (8).
     #[serde(skip)]
     pub balance: bool,
 }
 
-/// What to measure next.
+/// Proposal for the next measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Suggestion {
-    /// The number that is least known.
+    /// Name of the least known unknown.
     pub worst: String,
-    /// Half its interval of 95 % now; none if nothing is known of it.
+    /// Present half width of its 95 % interval; `None` if it is not identifiable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
-    /// How long each motion takes, s.
+    /// Duration of each motion, s.
     pub duration: f64,
-    /// The best first.
+    /// Motions, the best first.
     pub candidates: Vec<Tried>,
 }
 
 impl Suggestion {
-    /// What is least known, and what the best motion would make of that; none if there is no motion.
+    /// Returns in words the least known unknown and the effect of the best motion; `None` if there are no candidates.
     pub fn words(&self) -> Option<String> {
         let best = self.candidates.first()?;
         let now = match self.half_width {
@@ -118,23 +118,23 @@ impl Suggestion {
     }
 }
 
-/// A motion that could be driven.
+/// A motion to measure next.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// In words.
+    /// Description in words.
     pub motion: String,
-    /// How, and what it would tell.
+    /// Parameters of the motion and its predicted effect.
     #[serde(flatten)]
     pub candidate: Candidate,
 }
 
 impl TrimReport {
-    /// The numbers that change.
+    /// Iterates over the numbers that change.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         self.changes.iter().filter(|change| change.to != change.from)
     }
 
-    /// Why nothing changes, in words, where nothing does.
+    /// Returns in words why nothing changes; valid if nothing does.
     pub fn why_no_change(&self) -> String {
         let off = self.numbers.iter().any(|number| number.balance && number.off);
         match self.worth.filter(|_| off) {
@@ -146,7 +146,7 @@ impl TrimReport {
         }
     }
 
-    /// What the data cannot tell, a sentence for each group of numbers.
+    /// Returns a sentence for each group of unknowns that is not identifiable.
     pub fn untold_words(&self) -> impl Iterator<Item = String> {
         self.untold.iter().map(|group| match group.as_slice() {
             [one] => format!("The data say nothing of {one}: it is taken from the machine's file."),
@@ -156,7 +156,7 @@ impl TrimReport {
         })
     }
 
-    /// Of what was found, and of what mends it and is worth it, if anything does.
+    /// Builds the report from the fit, and from the correction and its effect, if there is one.
     pub(super) fn of(
         machine: &Machine,
         rows: &Rows,

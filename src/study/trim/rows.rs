@@ -1,4 +1,4 @@
-//! [`Rows`]: the linear equations that a recording makes.
+//! [`Rows`]: the linear equations of a recording.
 
 use nalgebra::DMatrix;
 
@@ -10,81 +10,84 @@ use super::window::Window;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-/// What rows are made of.
+/// Origin of the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Made {
-    /// Samples with their rates and accelerations.
+    /// Samples with measured rates and accelerations.
     Samples,
     /// Averages over windows.
     Windows {
-        /// Half their width, s.
+        /// Half width of a window, s.
         half: f64,
-        /// Root mean square of what noise makes of accelerations, as a share of these: the worst drive.
+        /// Root mean square noise of the accelerations relative to their root mean square; of the worst drive.
         noise: f64,
     },
 }
 
-/// Force along x and y and moment by the unknowns, instant by instant; each motion less its straight line over time.
+/// Equations for f_x, f_y and n in the unknowns, row by row; each motion less its straight line over time.
 #[derive(Clone, Debug)]
 pub struct Rows {
-    /// What is to be found.
+    /// The unknowns.
     pub unknowns: Unknowns,
-    /// What they are made of.
+    /// Origin of the rows.
     pub made: Made,
     /// Whether each drive moves.
     pub moves: Vec<bool>,
-    /// The greatest acceleration of each drive, rad/s².
+    /// Largest acceleration of each drive, rad/s².
     pub fastest: Vec<f64>,
     /// Mean time between rows, s.
     pub spacing: f64,
-    /// Rows of each motion.
+    /// Number of rows of each motion.
     pub motions: Vec<usize>,
-    /// The time of each, s.
+    /// Time of each row, s.
     times: Vec<f64>,
     pub(super) channels: [Channel; 3],
 }
 
-/// Of f_x, f_y or n.
+/// Equations for f_x, f_y or n.
 #[derive(Clone, Debug)]
 pub(super) struct Channel {
-    /// Rows by unknowns.
+    /// Matrix, rows × unknowns.
     pub x: DMatrix<f64>,
     pub y: Vec<f64>,
-    /// What noise in the angles is expected to add to xᵀ x.
+    /// Expected contribution of the noise in the angles to xᵀ x.
     pub noise: DMatrix<f64>,
 }
 
-/// A window is at least so many times as wide to either side as samples are apart, and at most this part of the shortest
-/// motion.
-const NARROWEST: f64 = 10.0;
-const WIDEST: f64 = 0.2;
-/// Rows in half a window.
-const STEPS: f64 = 4.0;
-/// Noise may make this part of the accelerations.
-const QUIET: f64 = 2e-3;
-/// A drive of whose acceleration noise is more than this holds still.
-const STILL: f64 = 0.2;
-/// So does one that turns by less, rad.
-const TURNS: f64 = 1e-9;
-/// With measured accelerations: a drive that turns by less, rad, and accelerates less than this part of the fastest.
-const STANDS: [f64; 2] = [1e-3, 1e-2];
-/// Parameters of the straight line that a sensor adds to each channel of a motion: its offset and its drift.
+/// Minimum half width of a window, in sampling intervals.
+const MIN_HALF_WIDTH_SAMPLES: f64 = 10.0;
+/// Maximum half width of a window, as a fraction of the duration of the shortest motion.
+const MAX_HALF_WIDTH_FRACTION: f64 = 0.2;
+/// Number of rows per half width of a window.
+const ROWS_PER_HALF_WIDTH: f64 = 4.0;
+/// Accepted relative noise of the accelerations: the narrowest window within it is chosen.
+const ACCEPTED_NOISE: f64 = 2e-3;
+/// A drive counts as still if the relative noise of its acceleration is at least this for all windows.
+const STILL_NOISE: f64 = 0.2;
+/// A drive counts as still if its range, rad, is at most this.
+const TURNING_ABOVE_RAD: f64 = 1e-9;
+/// With measured accelerations, a drive counts as still if its range, rad, is at most this, and its acceleration
+/// satisfies the next bound.
+const STILL_RANGE_RAD: f64 = 1e-3;
+/// Upper bound on the root mean square acceleration of a still drive, as a fraction of that of the fastest drive.
+const STILL_ACCELERATION: f64 = 1e-2;
+/// Number of parameters of the straight line that a sensor adds to each channel of a motion: offset and drift.
 pub(super) const LINE: usize = 2;
 
 impl Rows {
-    /// Of a recording, for a machine's drives and gravity. Measured rates and accelerations count unless only the angles
-    /// are to.
+    /// Builds the equations of a recording, for a machine's drives and gravity. Measured rates and accelerations are
+    /// ignored if `angles_only` is set.
     ///
     /// # Errors
-    /// If the recording cannot be used.
+    /// Fails if the recording cannot be used.
     pub fn of(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
         Self::at_least(0.0, machine, recording, angles_only)
     }
 
-    /// The same with windows of at least some half width, s.
+    /// Builds the equations with windows of at least a half width, s.
     ///
     /// # Errors
-    /// If the recording cannot be used.
+    /// Fails if the recording cannot be used.
     pub(super) fn at_least(
         half: f64,
         machine: &Machine,
@@ -108,7 +111,7 @@ impl Rows {
         if rows.channels.iter().all(finite) { Ok(rows) } else { Err(TrimError::NotFinite) }
     }
 
-    /// How many.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         self.motions.iter().sum()
     }
@@ -119,7 +122,8 @@ impl Rows {
         let fastest = (0..machine.drives()).map(squares).fold(0.0, f64::max);
         let stands = |k: usize| {
             let turns = |m: &Motion| spread(m.q.iter().map(|q| q[k]));
-            all().map(turns).fold(0.0, f64::max) <= STANDS[0] && squares(k) <= STANDS[1].powi(2) * fastest
+            all().map(turns).fold(0.0, f64::max) <= STILL_RANGE_RAD
+                && squares(k) <= STILL_ACCELERATION.powi(2) * fastest
         };
         let moves: Vec<bool> = (0..machine.drives()).map(|k| !stands(k)).collect();
         let mut made = Making::of(machine);
@@ -137,7 +141,7 @@ impl Rows {
         made.rows(Made::Samples, moves, time)
     }
 
-    /// Half the width of the windows, s; 0 of samples.
+    /// Returns the half width of the windows, s; 0 for samples.
     pub(super) fn half(&self) -> f64 {
         if let Made::Windows { half, .. } = self.made { half } else { 0.0 }
     }
@@ -147,15 +151,15 @@ impl Rows {
         let mut widths = widths(&smooth)?;
         widths.retain(|half| *half >= least);
         let drives = machine.drives();
-        let shares: Vec<Vec<f64>> = widths.iter().map(|half| shares(&smooth, *half, drives)).collect();
+        let shares: Vec<Vec<f64>> = widths.iter().map(|half| noise_ratios(&smooth, *half, drives)).collect();
         let best = |k: usize| shares.iter().map(|of| of[k]).fold(f64::INFINITY, f64::min);
-        let turns = |m: &Motion, k: usize| spread(m.q.iter().map(|q| q[k])) > TURNS;
+        let turns = |m: &Motion, k: usize| spread(m.q.iter().map(|q| q[k])) > TURNING_ABOVE_RAD;
         let turns = |k: usize| recording.motions.iter().any(|motion| turns(motion, k));
-        let moves: Vec<bool> = (0..drives).map(|k| turns(k) && best(k) < STILL).collect();
+        let moves: Vec<bool> = (0..drives).map(|k| turns(k) && best(k) < STILL_NOISE).collect();
         let worst = |of: &Vec<f64>| of.iter().zip(&moves).filter(|(_, m)| **m).map(|(x, _)| *x).fold(0.0, f64::max);
         let worst: Vec<f64> = shares.iter().map(worst).collect();
         let least = (0..widths.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or_default();
-        let chosen = worst.iter().position(|share| *share <= QUIET).unwrap_or(least);
+        let chosen = worst.iter().position(|share| *share <= ACCEPTED_NOISE).unwrap_or(least);
         let half = *widths.get(chosen).ok_or(TrimError::Still)?;
         let mut made = Making::of(machine);
         for own in &smooth {
@@ -165,8 +169,8 @@ impl Rows {
         Ok(made.rows(Made::Windows { half, noise: worst[chosen] }, moves, time))
     }
 
-    /// Takes out of each motion the straight line over time that fits it best: offset and drift of a sensor. What is left
-    /// of both sides of an equation is what a fit with an offset and a drift of its own for each would see.
+    /// Removes from each motion the straight line over time that fits it best: offset and drift of a sensor. With the
+    /// line removed from both sides, a fit is the same as one with an offset and a drift for each channel and motion.
     fn level(&mut self) {
         let mut from = 0;
         for &count in &self.motions {
@@ -180,14 +184,14 @@ impl Rows {
     }
 }
 
-/// Straight lines over some times.
+/// Removes straight lines over given times.
 pub(super) struct Line {
-    /// Times less their mean, of length 1; nothing where there is one time only.
+    /// Times less their mean, scaled to norm 1; zero for a single time.
     slope: Vec<f64>,
 }
 
 impl Line {
-    /// Over these times.
+    /// Prepares the removal for given times.
     pub fn through(times: &[f64]) -> Self {
         let mean = times.iter().sum::<f64>() / times.len() as f64;
         let mut slope: Vec<f64> = times.iter().map(|t| t - mean).collect();
@@ -196,7 +200,7 @@ impl Line {
         Self { slope }
     }
 
-    /// Takes the best straight line out of a series.
+    /// Subtracts the best straight line from a series.
     pub fn take_out(&self, series: &mut [f64]) {
         let mean = series.iter().sum::<f64>() / series.len() as f64;
         let by: f64 = series.iter().zip(&self.slope).map(|(y, t)| y * t).sum();
@@ -209,7 +213,7 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
     ends[1] - ends[0]
 }
 
-/// The motion with drives that hold still held still.
+/// Returns the motion with constant angles for drives that count as still.
 fn held(motion: &Motion, moves: &[bool]) -> Motion {
     let mut motion = motion.clone();
     for k in (0..moves.len()).filter(|k| !moves[*k]) {
@@ -220,22 +224,22 @@ fn held(motion: &Motion, moves: &[bool]) -> Motion {
     motion
 }
 
-/// Half widths of windows that motions have room for, s, the narrowest first.
+/// Returns the half widths of windows that the motions permit, s, in ascending order.
 fn widths(smooth: &[Smooth]) -> Result<Vec<f64>, TrimError> {
-    let narrowest = smooth.iter().map(|own| NARROWEST * own.spacing).fold(0.0, f64::max);
-    let enough = |own: &Smooth| WIDEST * own.motion.duration() >= narrowest && own.motion.t.len() > 1;
+    let narrowest = smooth.iter().map(|own| MIN_HALF_WIDTH_SAMPLES * own.spacing).fold(0.0, f64::max);
+    let enough = |own: &Smooth| MAX_HALF_WIDTH_FRACTION * own.motion.duration() >= narrowest && own.motion.t.len() > 1;
     if let Some(motion) = smooth.iter().position(|own| !enough(own)) {
         let own = &smooth[motion];
-        let want = (NARROWEST / WIDEST) as usize + 1;
+        let want = (MIN_HALF_WIDTH_SAMPLES / MAX_HALF_WIDTH_FRACTION) as usize + 1;
         return Err(TrimError::Short { motion, rows: own.motion.t.len(), time: own.motion.duration(), want });
     }
-    let widest = smooth.iter().map(|own| WIDEST * own.motion.duration()).fold(f64::INFINITY, f64::min);
+    let widest = smooth.iter().map(|own| MAX_HALF_WIDTH_FRACTION * own.motion.duration()).fold(f64::INFINITY, f64::min);
     let steps = (2.0 * (widest / narrowest).log2()).floor().max(0.0) as i32;
     Ok((0..=steps).map(|i| narrowest * 2_f64.powf(0.5 * f64::from(i))).collect())
 }
 
-/// For each drive what noise makes of its acceleration, as a share of that.
-fn shares(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
+/// Returns the relative noise of the acceleration of each drive.
+fn noise_ratios(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
     let (mut noises, mut sizes) = (vec![0.0; drives], vec![f64::MIN_POSITIVE; drives]);
     for own in smooth {
         let mut centres = own.centres(half, 0.5 * half).peekable();
@@ -254,15 +258,15 @@ fn shares(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
     noises.iter().zip(&sizes).map(|(noise, size)| (noise / size).sqrt()).collect()
 }
 
-/// A motion with its rates.
+/// A motion with rates, measured or by finite differences.
 struct Smooth<'a> {
     motion: &'a Motion,
     qd: Vec<PerDrive>,
-    /// Whether the rates are measured.
+    /// Whether the rates were measured.
     measured: bool,
-    /// σ of the rates if they are measured, else of the angles, for each drive.
+    /// Noise σ for each drive: of the rates if they were measured, else of the angles.
     noise: Vec<f64>,
-    /// The usual time between samples, s.
+    /// Median time between samples, s.
     spacing: f64,
 }
 
@@ -283,7 +287,7 @@ impl<'a> Smooth<'a> {
         Self { motion, qd, measured, noise, spacing }
     }
 
-    /// Centres of windows that lie within the motion.
+    /// Iterates over the centres of windows that lie within the motion.
     fn centres(&self, half: f64, step: f64) -> impl Iterator<Item = f64> + use<> {
         let (start, room) = (self.motion.t[0] + half, self.motion.duration() - 2.0 * half);
         let count = (room / step).max(0.0).floor() as usize;
@@ -291,7 +295,7 @@ impl<'a> Smooth<'a> {
         (0..=count).map(move |i| start + step * i as f64)
     }
 
-    /// σ of an averaged acceleration where the samples that it is made of have σ = 1.
+    /// Returns σ of an averaged acceleration if the underlying samples have σ = 1.
     fn gain(&self, window: &Window) -> f64 {
         if self.measured {
             return window.rate.iter().map(|d| d * d).sum::<f64>().sqrt();
@@ -305,7 +309,7 @@ impl<'a> Smooth<'a> {
         weights.iter().map(|w| w * w).sum::<f64>().sqrt()
     }
 
-    /// One row for each window.
+    /// Adds one row for each window.
     fn rows(&self, half: f64, moves: &[bool], made: &mut Making) {
         let mean = |k: usize| self.motion.q.iter().map(|q| q[k]).sum::<f64>() / self.motion.q.len() as f64;
         let still: Vec<f64> = (0..moves.len()).map(mean).collect();
@@ -314,7 +318,7 @@ impl<'a> Smooth<'a> {
         let rate = |j: usize| PerDrive::from_fn(n, |k| if moves[k] { self.qd[j][k] } else { 0.0 });
         let mut one = made.rows.clone();
         let mut noise = None;
-        for centre in self.centres(half, half / STEPS) {
+        for centre in self.centres(half, half / ROWS_PER_HALF_WIDTH) {
             let Some(window) = Window::about(&self.motion.t, centre, half) else { continue };
             let (mut force, mut moment, mut time) = (Vector::default(), 0.0, 0.0);
             made.rows.iter_mut().for_each(|row| row.fill(0.0));
@@ -349,11 +353,11 @@ fn add(sum: &mut [f64], by: f64, one: &[f64]) {
     sum.iter_mut().zip(one).for_each(|(sum, one)| *sum += by * one);
 }
 
-/// Rows while they are made.
+/// Equations under construction.
 struct Making {
     unknowns: Unknowns,
     gravity: Vector,
-    /// The row that is next, of each channel.
+    /// The current row of each channel.
     rows: [Vec<f64>; 3],
     x: [Vec<f64>; 3],
     y: [Vec<f64>; 3],
@@ -381,7 +385,7 @@ impl Making {
         }
     }
 
-    /// What is measured at the next row.
+    /// Appends the measured values of the current row.
     fn next(&mut self, time: f64, force: Vector, moment: f64) {
         self.times.push(time);
         self.y.iter_mut().zip([force.re, force.im, moment]).for_each(|(y, value)| y.push(value));
@@ -417,7 +421,7 @@ impl Making {
             noise: noise.next().unwrap_or_else(|| DMatrix::zeros(p, p)),
         });
         let spacing = time / spaces as f64;
-        // Rows of D_k hold −q̈_k.
+        // The column of D_k contains −q̈_k.
         let moment = &channels[2];
         let place = self.unknowns.of_balance();
         let fastest = (0..moves.len()).map(|k| moment.x.column(place + k).amax()).collect();

@@ -1,47 +1,48 @@
-//! [`taken`]: which numbers of balance are taken as measured, and which as the machine's file has them.
+//! [`taken`]: decides which unknowns of balance are taken from the measurement, and which from the machine's file.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fit::Fit;
 use crate::mechanics::planar::Vector;
 
-/// What the machine is taken to be.
+/// The machine as identified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taken {
-    /// Every unknown.
+    /// Values of all unknowns.
     pub values: DVector<f64>,
-    /// Of them, given that the others are as the file has them.
+    /// Covariance of the values, given that the others are as in the file.
     pub covariance: DMatrix<f64>,
-    /// Half the interval of 95 % of each, given that; nothing of those that are as the file has them.
+    /// Half width of the 95 % interval of each value, by that covariance; zero for values from the file.
     pub half_widths: Vec<f64>,
-    /// Whether each number of (7) and (8) is as measured.
+    /// Whether each unknown of (7) and (8) is taken from the measurement.
     pub measured: Vec<bool>,
-    /// Whether each number is shown to differ from the file. Of (7) and (8) those are taken as measured, and no others.
+    /// Whether each unknown differs significantly from the file. Of (7) and (8), exactly these are taken from the
+    /// measurement.
     pub off: Vec<bool>,
-    /// D_k of each drive where it is told, kg m².
+    /// D_k of each drive if it is identifiable, kg m².
     pub momenta: Vec<Option<f64>>,
 }
 
 impl Taken {
-    /// What is left of each line of (7) and (8).
+    /// Returns the residual of each line of (7) and (8).
     pub fn left(&self) -> Vec<Vector> {
         let parts = &self.values.as_slice()[..self.measured.len()];
         parts.chunks_exact(2).map(|part| Vector::new(part[0], part[1])).collect()
     }
 }
 
-/// A number that differs from the file by less than this part of the largest differs by rounding.
-const ROUNDING: f64 = 1e-10;
+/// Differences from the file below this fraction of the largest value are rounding.
+const ROUNDING_TOLERANCE: f64 = 1e-10;
 
-/// Numbers of (7) and (8) that the data do not show to be other than in the machine's file are taken from there, the
-/// least certain first, and the rest is found again given that; until every other one differs by more than its interval.
-/// So noise is not balanced out, and what is known of a sum is not lost because its parts are not.
+/// Selects the unknowns of (7) and (8) to take from the measurement by backward elimination. The least significant
+/// difference from the file is set to zero and the others are estimated again, until every remaining one exceeds its
+/// interval. So noise is not balanced out, and a well-known sum is kept even if its parts are not known.
 pub fn taken(fit: &Fit) -> Taken {
     let count = fit.unknowns.of_balance();
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
     let mut known = Known { values, covariance, inverse };
     let mut measured: Vec<bool> = fit.told[..count].to_vec();
-    let rounding = (ROUNDING * fit.measured.amax()).max(f64::MIN_POSITIVE);
+    let rounding = (ROUNDING_TOLERANCE * fit.measured.amax()).max(f64::MIN_POSITIVE);
     let half_width = |covariance: &DMatrix<f64>, i: usize| fit.critical * covariance[(i, i)].max(0.0).sqrt();
     loop {
         let Known { values, covariance, .. } = &known;
@@ -55,7 +56,7 @@ pub fn taken(fit: &Fit) -> Taken {
         measured[least] = false;
     }
     let Known { mut values, mut covariance, .. } = known;
-    // What is not told says nothing of the others, and these nothing of it.
+    // Unknowns that are not identifiable are independent of the others.
     for i in (0..count).filter(|i| !fit.told[*i]) {
         values[i] = fit.nominal[i];
         covariance.row_mut(i).fill(0.0);
@@ -69,7 +70,7 @@ pub fn taken(fit: &Fit) -> Taken {
     Taken { values, covariance, half_widths, measured, off, momenta }
 }
 
-/// What least squares say while more and more is held.
+/// Least-squares estimate with some unknowns fixed.
 struct Known {
     values: DVector<f64>,
     covariance: DMatrix<f64>,
@@ -78,7 +79,7 @@ struct Known {
 }
 
 impl Known {
-    /// The same least squares with one number given.
+    /// Fixes one unknown at a value and updates the estimate.
     fn hold(&mut self, i: usize, value: f64) {
         let own = self.inverse[(i, i)];
         if own > f64::MIN_POSITIVE {

@@ -1,4 +1,4 @@
-//! The edit with which a session takes what a measurement says.
+//! The edit by which a session adopts the result of a measurement.
 
 use super::mend::{identified, trimmed};
 use super::trimming::Trim;
@@ -7,11 +7,11 @@ use crate::session::Edit;
 use crate::session::design::becoming;
 use crate::session::scenario::Scenario;
 
-/// The edit with which the machine of a session becomes the one that was measured, as it stands or with what mends it; none
-/// where it is that. `measured` is the machine as its file has it, of which the measurement was read.
+/// Returns the edit that replaces the session's machine by the identified one, as built or with its correction; `None`
+/// if it is that already. `measured` is the machine of the file with which the measurement was evaluated.
 ///
 /// # Errors
-/// If the session has a machine with other links, or no such machine can be.
+/// Fails if the session's machine has other links, or there is no such machine.
 pub fn taken_by(scenario: &Scenario, measured: &Machine, found: &Trim, mends: bool) -> Result<Option<Edit>, String> {
     let names = |machine: &Machine| machine.links().iter().map(|link| link.name.clone()).collect::<Vec<_>>();
     if names(measured) != names(&scenario.machine) {

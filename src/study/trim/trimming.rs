@@ -1,4 +1,4 @@
-//! [`Trimming`]: the query for what a measurement says of a machine, and for what mends it.
+//! [`Trimming`]: the query that evaluates a measurement of a machine and finds its correction.
 
 use thiserror::Error;
 
@@ -16,87 +16,88 @@ use super::worth::worth;
 use crate::mechanics::machine::Machine;
 use crate::query::{Portion, Query, Shared, Watch};
 
-/// A measurement, and what is asked of it.
+/// A measurement, with the options for its evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrimRequest {
-    /// As its file has it.
+    /// The machine of the file.
     pub machine: Shared<Machine>,
-    /// What was measured.
+    /// The measured data.
     pub recording: Shared<Recording>,
-    /// Leaves measured rates and accelerations alone.
+    /// Whether to ignore measured rates and accelerations.
     pub angles_only: bool,
-    /// Takes the columns as they are, even where another sign, order or unit explains them far better.
+    /// Whether to accept the columns as given, even if another sign, order or unit explains them far better.
     pub as_given: bool,
-    /// What may change.
+    /// Numbers that may change.
     pub way: Way,
-    /// How fast a next motion may accelerate each drive, rad/s²; by default as fast as was seen.
+    /// Maximum acceleration of each drive in a next motion, rad/s²; by default the largest measured.
     pub accelerations: Option<Vec<f64>>,
 }
 
-/// What a measurement comes to.
+/// Result of the evaluation.
 #[derive(Clone, Debug)]
 pub struct Trimmed {
-    /// Noise of the angles as a fraction of their accelerations, where it is so large that results may be off.
+    /// Relative noise of the accelerations from noisy angles, if it is so large that results may be inaccurate.
     pub angle_noise: Option<f64>,
-    /// Why it might not be believed, where it is taken as given all the same.
+    /// Suspected fault, if the measurement was accepted as given all the same.
     pub doubt: Option<Doubt>,
-    /// What it says, or why it says nothing.
+    /// The identified machine, or why there is none.
     pub outcome: Result<Trim, NoTrim>,
 }
 
-/// What a measurement says of a machine.
+/// Identified values of a machine, and their correction.
 #[derive(Clone, Debug)]
 pub struct Trim {
-    /// What a person wants to know.
+    /// Report for the user.
     pub report: TrimReport,
-    /// What the machine is taken to be.
+    /// The machine as identified.
     pub taken: Taken,
-    /// What mends it: nothing where no change is shown to help; or why nothing can.
+    /// Correction, without changes if none is significant; or why there is none.
     pub mended: Result<Mended, NoMend>,
 }
 
-/// Why a measurement says nothing.
+/// Why a measurement has no result.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoTrim {
-    /// It cannot be used.
+    /// The recording cannot be used.
     #[error(transparent)]
     Unusable(TrimError),
-    /// It is not what it says it is.
+    /// A fault in the measurement is suspected.
     #[error("{0}")]
     Doubted(Box<Doubt>),
-    /// Nothing can be found from it.
+    /// The unknowns cannot be estimated.
     #[error(transparent)]
     NoFit(TrimError),
 }
 
-/// Noise of the angles beyond this fraction of their accelerations is worth a word.
+/// Relative noise of the accelerations above which it is reported.
 const MAX_ANGLE_NOISE: f64 = 0.02;
 
-/// Up to these shares of the work rows are made, faults are tried, numbers are fitted, and a next motion is searched for.
-const MADE: f64 = 0.05;
-const TRIED: f64 = 0.8;
-const FITTED: f64 = 0.9;
-const SEARCHED: f64 = 0.95;
+/// Fractions of the work done once rows are built, faults are tested, unknowns are fitted, and a next motion is found.
+const MADE_AT: f64 = 0.05;
+const TRIED_AT: f64 = 0.8;
+const FITTED_AT: f64 = 0.9;
+const SEARCHED_AT: f64 = 0.95;
 
-/// Reads a measurement: first its rows, then what speaks against it, a fault in a portion, then what it says.
+/// Evaluates a measurement: builds its rows, tests for faults, one in each portion, fits the unknowns and finds the
+/// correction.
 pub struct Trimming {
     request: TrimRequest,
     stage: Stage,
-    /// As in [`Trimmed`].
+    /// As [`Trimmed::angle_noise`].
     angle_noise: Option<f64>,
     doubt: Option<Doubt>,
 }
 
-/// How far it is.
+/// Stage of the work.
 enum Stage {
     Begun,
-    /// Rows are made.
+    /// Rows are built.
     Made(Rows),
     Doubting(Rows, Box<Doubting>),
-    /// It is believed.
+    /// No fault is suspected, or the measurement is accepted as given.
     Believed(Rows),
     Fitted(Rows, Box<Fit>),
-    /// A next motion is found.
+    /// The next motion is found.
     Searched(Rows, Box<Fit>, Next),
 }
 
@@ -129,16 +130,16 @@ impl Trimming {
                     Made::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
                     _ => None,
                 };
-                (Stage::Made(rows), MADE)
+                (Stage::Made(rows), MADE_AT)
             }
             Stage::Made(rows) => match Doubting::begin(machine, recording, *angles_only) {
-                Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE),
-                // What is wrong with the recording itself is said by the fit.
-                Err(_) => (Stage::Believed(rows), TRIED),
+                Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE_AT),
+                // The fit reports errors of the recording itself.
+                Err(_) => (Stage::Believed(rows), TRIED_AT),
             },
             Stage::Doubting(rows, mut doubting) => match doubting.next(machine) {
                 true => {
-                    let share = MADE + (TRIED - MADE) * doubting.share();
+                    let share = MADE_AT + (TRIED_AT - MADE_AT) * doubting.share();
                     (Stage::Doubting(rows, doubting), share)
                 }
                 false => {
@@ -146,16 +147,16 @@ impl Trimming {
                     if let Some(doubt) = self.doubt.take_if(|_| !self.request.as_given) {
                         return Err(NoTrim::Doubted(doubt.into()));
                     }
-                    (Stage::Believed(rows), TRIED)
+                    (Stage::Believed(rows), TRIED_AT)
                 }
             },
             Stage::Believed(rows) => {
                 let fit = fit(machine, &rows).map_err(NoTrim::NoFit)?;
-                (Stage::Fitted(rows, fit.into()), FITTED)
+                (Stage::Fitted(rows, fit.into()), FITTED_AT)
             }
             Stage::Fitted(rows, fit) => {
                 let next = next(machine, recording, &rows, &fit, self.request.accelerations.as_deref());
-                (Stage::Searched(rows, fit, next), SEARCHED)
+                (Stage::Searched(rows, fit, next), SEARCHED_AT)
             }
             Stage::Searched(rows, fit, next) => {
                 return Ok(Portion::Done(Trim::of(&self.request, &rows, &fit, &next)));
@@ -167,14 +168,14 @@ impl Trimming {
 }
 
 impl Trim {
-    /// What a fit says, with what would tell more.
+    /// Returns the result of a fit, with the correction and the proposal for the next motion.
     fn of(request: &TrimRequest, rows: &Rows, fit: &Fit, next: &Next) -> Self {
         let machine = &*request.machine.0;
         let taken = taken(fit);
         let mended = mend(machine, &taken, &request.way);
         let worth = mended.as_ref().ok().map(|mended| worth(machine, rows, fit, &taken, mended));
         let helps = worth.is_some_and(|worth| worth.helps());
-        // What is not shown to help is not proposed.
+        // A change whose effect is not significant is not proposed.
         let mended = mended.map(|mended| if helps { mended } else { Mended::not_at_all(machine, &taken) });
         let report = TrimReport::of(machine, rows, (fit, &taken), (mended.as_ref().ok(), worth), next);
         Self { report, taken, mended }

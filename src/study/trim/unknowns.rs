@@ -1,29 +1,29 @@
-//! [`Unknowns`]: what the measurement is to find, and how force, moment and momentum depend on it.
+//! [`Unknowns`]: the unknowns of a measurement, and their linear relation to force, moment and momentum.
 
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{PerDrive, Units, Vector, cross};
 
-/// Of a complex number of (7) or (8).
+/// Part of a complex coefficient of (7) or (8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
-    /// Its real part: masses on the axes of the links.
+    /// Real part: masses on the axes of the links.
     Along,
-    /// Its imaginary part: masses beside them.
+    /// Imaginary part: masses off the axes of the links.
     Across,
 }
 
-/// One of the numbers that are to be found.
+/// One of the unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unknown {
-    /// A part of a line of (7), kg m, or of (8), kg m².
+    /// A part of a coefficient of (7), kg m, or of (8), kg m².
     Of(Condition, Part),
-    /// D_k, kg m².
+    /// The momentum coefficient D_k, kg m².
     Momentum(usize),
 }
 
 impl Unknown {
-    /// In words, with its drives by name.
+    /// Returns the name, with the names of its drives.
     pub fn name(self, machine: &Machine) -> String {
         let drive = |k: usize| &machine.spec().drives[k].name;
         let part = |part: Part| if part == Part::Along { "along" } else { "across" };
@@ -34,7 +34,7 @@ impl Unknown {
         }
     }
 
-    /// Of its number.
+    /// Returns the unit.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Of(condition, _) => condition.unit(),
@@ -43,7 +43,7 @@ impl Unknown {
     }
 }
 
-/// Those of n drives: along and across of each line of (7), then of (8), then every D_k.
+/// The unknowns for n drives: along and across of each line of (7), then of (8), then every D_k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknowns {
     drives: usize,
@@ -51,32 +51,32 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
-    /// Of a machine with so many drives.
+    /// Returns the unknowns of a machine with a number of drives.
     pub fn of(drives: usize) -> Self {
         Self { drives, conditions: Condition::all(drives).collect() }
     }
 
-    /// Number of drives.
+    /// Returns the number of drives.
     pub fn drives(&self) -> usize {
         self.drives
     }
 
-    /// The lines of (7) and (8), in order.
+    /// Returns the lines of (7) and (8), in order.
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
     }
 
-    /// How many unknowns.
+    /// Returns the number of unknowns.
     pub fn count(&self) -> usize {
         2 * self.conditions.len() + self.drives
     }
 
-    /// How many of them are of (7) and (8): the first ones.
+    /// Returns the number of unknowns of (7) and (8), which come first.
     pub fn of_balance(&self) -> usize {
         2 * self.conditions.len()
     }
 
-    /// Which one stands at a place.
+    /// Returns the unknown at an index.
     pub fn at(&self, place: usize) -> Unknown {
         let part = if place.is_multiple_of(2) { Part::Along } else { Part::Across };
         match self.conditions.get(place / 2) {
@@ -85,13 +85,13 @@ impl Unknowns {
         }
     }
 
-    /// What a machine has of each.
+    /// Returns the values of a machine.
     pub fn nominal(&self, inertia: &Inertia) -> Vec<f64> {
         let parts = self.conditions.iter().map(|condition| condition.left(inertia)).flat_map(|left| [left.re, left.im]);
         parts.chain((0..self.drives).map(|k| inertia.momentum(k))).collect()
     }
 
-    /// A size to measure each by: mass times size of the machine, and that times its size.
+    /// Returns a scale for each unknown: √(M Σ H_kk) for lines of (7), kg m, and Σ H_kk for the others, kg m².
     pub fn scales(&self, inertia: &Inertia) -> Vec<f64> {
         let turning = (0..self.drives).map(|k| inertia.diagonal(k)).sum::<f64>().max(f64::MIN_POSITIVE);
         let moment = (turning * inertia.mass()).sqrt();
@@ -102,7 +102,8 @@ impl Unknowns {
         (0..self.count()).map(of).collect()
     }
 
-    /// Force (x, y) and moment for each unknown at a state, dynamic, with the moment of weight.
+    /// Computes force (x, y) and moment per unit of each unknown at a state; the dynamic force, the moment with the
+    /// weight.
     pub fn reaction(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
         let [fx, fy, n] = out;
         self.still(e, gravity, n);
@@ -124,7 +125,7 @@ impl Unknowns {
         (0..self.drives).for_each(|k| n[from + k] = -qdd[k]);
     }
 
-    /// Linear (x, y) and angular momentum for each unknown.
+    /// Computes linear (x, y) and angular momentum per unit of each unknown.
     pub fn momentum(&self, e: &Units, qd: &PerDrive, out: [&mut [f64]; 3]) {
         let [px, py, h] = out;
         h.fill(0.0);
@@ -142,7 +143,7 @@ impl Unknowns {
         (0..self.drives).for_each(|k| h[from + k] = qd[k]);
     }
 
-    /// The moment of weight for each unknown.
+    /// Computes the moment of the weight per unit of each unknown.
     pub fn still(&self, e: &Units, gravity: Vector, n: &mut [f64]) {
         n.fill(0.0);
         for k in 0..self.drives {
@@ -152,7 +153,7 @@ impl Unknowns {
     }
 }
 
-/// A vector times the real and the imaginary unit.
+/// Writes a vector times the real and times the imaginary unit.
 fn complex(v: Vector, i: usize, x: &mut [f64], y: &mut [f64]) {
     (x[2 * i], x[2 * i + 1]) = (v.re, -v.im);
     (y[2 * i], y[2 * i + 1]) = (v.im, v.re);

@@ -1,22 +1,22 @@
-//! [`Way`]: what may change where a measurement is mended.
+//! [`Way`]: the numbers that may change in a correction.
 
 use crate::mechanics::balance::{Body, Hold, Keep, Parameter, Quantity};
 use crate::mechanics::counterweights::Weighing;
 use crate::mechanics::machine::{Counterweight, Machine};
 use crate::session::scenario::Brief;
 
-/// What may change.
+/// Numbers that may change in a correction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Way {
-    /// Numbers that the machine has.
+    /// Numbers of the machine.
     Change(Keep),
     /// New counterweights.
     Add(Weighing),
 }
 
 impl Way {
-    /// What a brief lets change: counterweights that the machine has, and numbers that it frees; where there are none,
-    /// new counterweights.
+    /// Returns the numbers that a brief permits to change: the machine's counterweights and the numbers that the brief
+    /// frees; new counterweights if there are none.
     pub fn of(brief: &Brief, machine: &Machine) -> Self {
         let is_movable = |weight: &Counterweight| !weight.fixed && !brief.fixed.contains(&weight.link);
         let mut keep = Keep::default();
@@ -33,7 +33,7 @@ impl Way {
     }
 }
 
-/// Lets mass and place of those counterweights change.
+/// Frees the mass and position of those counterweights that `is_movable` accepts.
 pub fn free_weights(keep: &mut Keep, machine: &Machine, is_movable: impl Fn(&Counterweight) -> bool) {
     let movable = machine.spec().counterweights.iter().enumerate().filter(|(_, weight)| is_movable(weight));
     for (i, quantity) in movable.flat_map(|(i, _)| [(i, Quantity::Mass), (i, Quantity::Along)]) {

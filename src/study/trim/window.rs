@@ -1,4 +1,4 @@
-//! [`Window`]: an average over time and its derivative, without differentiating what is averaged.
+//! [`Window`]: weights for the average of a signal over a window and for the average of its derivative.
 //!
 //! # Symbols
 //! | letter | meaning |
@@ -12,21 +12,21 @@ use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector4};
 
-/// The fewest samples in a window.
+/// Minimum number of samples in a window.
 pub(super) const FEWEST: usize = 7;
 
 /// Weights of the samples in a window.
 pub(super) struct Window {
-    /// Which samples.
+    /// Indices of the samples.
     pub samples: Range<usize>,
-    /// a.
+    /// Weights a_j.
     pub mean: Vec<f64>,
-    /// d, 1/s.
+    /// Weights d_j, 1/s.
     pub rate: Vec<f64>,
 }
 
 impl Window {
-    /// Of a half width, s, about a time; `None` where too few samples are in it.
+    /// Returns the window with a half width, s, centred at a time; `None` if it contains too few samples.
     pub fn about(t: &[f64], centre: f64, half: f64) -> Option<Self> {
         let from = t.partition_point(|t| *t <= centre - half);
         let samples = from..t.partition_point(|t| *t < centre + half);
@@ -34,7 +34,7 @@ impl Window {
             return None;
         }
         let u: Vec<f64> = samples.clone().map(|j| (t[j] - centre) / half).collect();
-        // Half of the way to both neighbours, which are in the record at least at its ends.
+        // Half the distance between the two neighbours, at the ends of the record to the one neighbour.
         let place = |j: usize| t[j.min(t.len() - 1)];
         let space = |j: usize| 0.5 * (place(j + 1) - place(j.saturating_sub(1))) / half;
         let phi: Vec<f64> = samples.clone().zip(&u).map(|(j, u)| space(j) * (1.0 - u * u).powi(4)).collect();
@@ -42,12 +42,12 @@ impl Window {
         let mean: Vec<f64> = phi.iter().map(|phi| phi / whole).collect();
         let slope = |(j, u): (usize, &f64)| -8.0 * u * (1.0 - u * u).powi(3) * space(j) / whole;
         let mut rate: Vec<f64> = samples.clone().zip(&u).map(slope).collect();
-        // What the sum misses of the integral, on times that are not evenly spaced, is taken out for cubics.
+        // Correct the quadrature error on unevenly spaced times, exactly for cubics.
         let moment = |weights: &[f64], power: i32| weights.iter().zip(&u).map(|(w, u)| w * u.powi(power)).sum::<f64>();
         let gram = Matrix4::from_fn(|i, j| moment(&mean, (i + j) as i32));
         let wanted = Vector4::from_fn(|i, _| if i == 0 { 0.0 } else { -(i as f64) * moment(&mean, i as i32 - 1) });
-        let missed = Vector4::from_fn(|i, _| wanted[i] - moment(&rate, i as i32));
-        let by = gram.lu().solve(&missed)?;
+        let error = Vector4::from_fn(|i, _| wanted[i] - moment(&rate, i as i32));
+        let by = gram.lu().solve(&error)?;
         for ((rate, mean), u) in rate.iter_mut().zip(&mean).zip(&u) {
             *rate += mean * (by[0] + u * (by[1] + u * (by[2] + u * by[3])));
             *rate /= half;

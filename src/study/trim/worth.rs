@@ -1,16 +1,16 @@
-//! [`worth`]: what a change does to the imbalance that was measured, and whether it is shown to lower it.
+//! [`worth`]: effect of a change on the identified imbalance, and whether it is a significant reduction.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | x, V | first moments and couplings as measured, and their covariance | |
-//! | Δ | what the change adds to them | |
+//! | x, V | measured first moments and couplings, and their covariance | |
+//! | Δ | effect of the change on x | |
 //! | W | mean of ℓ² (x_fᵀ x_f) + x_nᵀ x_n over the rows: J = xᵀ W x is the mean square of ℓ f and n | |
-//! | ℓ | radius of gyration of the machine, which weighs force against moment | m |
+//! | ℓ | radius of gyration of the machine, the weight of force against moment | m |
 //!
-//! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ, however small x is.
-//! Δ was chosen by what x showed, in as many coordinates as are off: by Scheffé (1953) the interval that holds for any such
-//! choice takes the square root of the 95 % quantile of χ² for the normal one's 1.96.
+//! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ, however small x is. Δ
+//! was chosen depending on x, in as many coordinates as differ from the file. By Scheffé (1953), the interval that
+//! holds for any such choice has the square root of the 95 % quantile of χ² in place of 1.96.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -22,21 +22,21 @@ use super::taken::Taken;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::settings::number::shown;
 
-/// What a change is worth over the motions that were measured.
+/// Effect of a change over the measured motions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Worth {
-    /// Root mean square of the force of imbalance as measured and after the change, N.
+    /// Root mean square force of imbalance before and after the change, N.
     pub force: [f64; 2],
-    /// The same of its moment, N m.
+    /// Root mean square moment of imbalance before and after the change, N m.
     pub moment: [f64; 2],
-    /// By which share J becomes less; below 0 where it grows.
+    /// Relative decrease of J; negative if J grows.
     pub gain: f64,
-    /// Half the interval of 95 % of that.
+    /// Half width of the 95 % interval of the gain.
     pub half_width: f64,
 }
 
 impl Worth {
-    /// In words.
+    /// Describes the effect in words.
     pub fn words(&self) -> String {
         let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
         let share = |x: f64| shown(100.0 * x, 1);
@@ -49,13 +49,13 @@ impl Worth {
         )
     }
 
-    /// Whether the interval of the gain lies above 0.
+    /// Returns whether the interval of the gain lies above 0.
     pub fn helps(&self) -> bool {
         self.gain > self.half_width
     }
 }
 
-/// What a change is worth.
+/// Computes the effect of a change.
 pub fn worth(machine: &Machine, rows: &Rows, fit: &Fit, taken: &Taken, mended: &Mended) -> Worth {
     let count = fit.unknowns.of_balance();
     let inertia = Inertia::of(machine);
@@ -76,7 +76,7 @@ pub fn worth(machine: &Machine, rows: &Rows, fit: &Fit, taken: &Taken, mended: &
     let covariance = fit.covariance.view((0, 0), (count, count));
     let deviation = 2.0 * pull.dot(&(covariance * &pull)).max(0.0).sqrt();
     let chosen = taken.measured.iter().filter(|measured| **measured).count().max(1) as f64;
-    // Wilson and Hilferty (1931): χ² as the cube of a normal number.
+    // Wilson and Hilferty (1931): the cube root of χ² is approximately normal.
     let part = 2.0 / (9.0 * chosen);
     let scheffe = (chosen * (1.0 - part + 1.645 * part.sqrt()).powi(3)).sqrt();
     Worth {

@@ -1,4 +1,4 @@
-//! [`Doubting`]: the faults, tried one after the other.
+//! [`Doubting`]: the test of all faults, one after the other.
 
 use super::fault::Fault;
 use super::odds::{Tried, odds, shares, tried};
@@ -12,67 +12,67 @@ use crate::study::trim::recording::{Motion, Recording};
 use crate::study::trim::rows::Rows;
 use crate::study::trim::unknowns::{Unknown, Unknowns};
 
-/// ln Λ above which a fault is believed: odds of 10⁴.
-const BELIEVED: f64 = 9.21;
-/// Numbers that differ from each other by a smaller share are not told as different.
-const SAME: f64 = 1e-3;
-/// Each further mistake that a fault consists of is less likely by these odds, in logarithm.
-const MISTAKE: f64 = 2.3;
-/// Faults less likely than the first by more than this ln Λ are not named.
-const NAMED: f64 = 6.9;
-/// As many are named at most.
+/// Threshold of ln Λ above which a fault is accepted: odds of 10⁴.
+const MIN_LOG_ODDS: f64 = 9.21;
+/// Values with a smaller relative difference are treated as equal.
+const EQUAL_BELOW: f64 = 1e-3;
+/// Penalty on ln Λ for each further independent mistake that a fault consists of.
+const LOG_ODDS_PER_MISTAKE: f64 = 2.3;
+/// Maximum distance in ln Λ from the best fault at which a fault is still named.
+const MAX_LOG_ODDS_BEHIND: f64 = 6.9;
+/// Maximum number of faults that are named.
 const MAX_NAMED: usize = 5;
-/// Samples that are looked at: so many by the square of the number of unknowns.
+/// Maximum number of samples times the square of the number of unknowns.
 const MAX_WORK: usize = 4_000_000;
 
-/// Whether a measurement is not what it says; `None` where it can be believed. Of long recordings parts are looked at.
+/// Tests a measurement for faults; `None` if it is plausible as given. Of a long recording, parts are tested.
 ///
 /// # Errors
-/// If the recording cannot be used.
+/// Fails if the recording cannot be used.
 pub fn doubt(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Option<Doubt>, TrimError> {
     let mut doubting = Doubting::begin(machine, recording, angles_only)?;
     while doubting.next(machine) {}
     Ok(doubting.doubt(machine))
 }
 
-/// The same under way.
+/// A test for faults in progress.
 pub struct Doubting {
     recording: Recording,
     angles_only: bool,
     rows: Rows,
     given: Tried,
     tolerances: Tolerances,
-    /// Numbers that no machine has.
-    broken: Vec<Unknown>,
+    /// Unknowns whose values no machine can have, by the measurement as given.
+    infeasible: Vec<Unknown>,
     faults: Vec<Fault>,
-    /// How many faults were tried.
+    /// Number of faults tested.
     done: usize,
     likely: Vec<Likely>,
 }
 
 /// A fault that explains the measurement.
 struct Likely {
-    /// ln Λ.
+    /// ln Λ of the fault.
     odds: f64,
-    /// The same of what orders faults.
+    /// ln Λ by which faults are ordered.
     ranks: f64,
     fault: Fault,
     tried: Tried,
 }
 
 impl Doubting {
-    /// With the measurement as given, before any fault is tried.
+    /// Fits the measurement as given, before any fault is tested.
     ///
     /// # Errors
-    /// If the recording cannot be used.
+    /// Fails if the recording cannot be used.
     pub fn begin(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
         recording.check(machine.drives())?;
         let recording = shortened(machine, recording);
         let rows = Rows::of(machine, &recording, angles_only)?;
-        let given = tried(machine, &rows, leaves(machine, &recording))?;
+        let given = tried(machine, &rows, limit_violation(machine, &recording))?;
         Ok(Self {
             tolerances: Tolerances::of(machine),
-            broken: impossible(machine, &given.fit),
+            infeasible: impossible(machine, &given.fit),
             faults: Fault::all(machine),
             done: 0,
             likely: Vec::new(),
@@ -83,12 +83,12 @@ impl Doubting {
         })
     }
 
-    /// How much is done, from 0 to 1.
+    /// Returns the fraction done, from 0 to 1.
     pub fn share(&self) -> f64 {
         self.done as f64 / self.faults.len().max(1) as f64
     }
 
-    /// Tries the next fault; whether there was one.
+    /// Tests the next fault; returns whether there was one.
     pub fn next(&mut self, machine: &Machine) -> bool {
         let Some(fault) = self.faults.get(self.done) else { return false };
         self.likely.extend(self.explained(machine, fault));
@@ -96,46 +96,46 @@ impl Doubting {
         true
     }
 
-    /// A fault with what speaks for it; none if the measurement is not explained by it.
+    /// Returns a fault with its odds; `None` if it does not explain the measurement.
     fn explained(&self, machine: &Machine, fault: &Fault) -> Option<Likely> {
         let Self { rows, given, .. } = self;
         let own = fault.angles.as_ref().map(|angles| angles.undo(&self.recording));
-        let (mut heard, mut as_given, mut left) = (rows.clone(), None, given.leaves);
+        let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.leaves);
         if let Some(own) = &own {
-            left = leaves(machine, own);
+            violation = limit_violation(machine, own);
             let fresh = Rows::at_least(rows.half(), machine, own, self.angles_only).ok()?;
-            // Residuals are compared over the same windows.
+            // Residuals must be compared for the same windows.
             if fresh.half() > rows.half() {
                 let wide = Rows::at_least(fresh.half(), machine, &self.recording, self.angles_only);
                 as_given = wide.and_then(|rows| tried(machine, &rows, given.leaves)).ok();
             }
-            heard = fresh;
+            transformed = fresh;
         }
-        heard.hear(|force, moment| fault.undo(force, moment));
-        let other = tried(machine, &heard, left).ok()?;
+        transformed.transform(|force, moment| fault.undo(force, moment));
+        let other = tried(machine, &transformed, violation).ok()?;
         let [decides, ranks] = odds(&self.tolerances, as_given.as_ref().unwrap_or(given), &other)?;
-        // What is impossible as given is explained by what is not, however little else speaks for it.
-        let explains = match self.broken.as_slice() {
-            [] => decides > BELIEVED,
+        // If the values as given are impossible, any fault with possible values and a positive rank explains them.
+        let explains = match self.infeasible.as_slice() {
+            [] => decides > MIN_LOG_ODDS,
             _ => ranks > 0.0,
         };
         (explains && impossible(machine, &other.fit).is_empty()).then(|| Likely {
             odds: decides.max(ranks),
-            ranks: ranks - MISTAKE * (fault.mistakes - 1) as f64,
+            ranks: ranks - LOG_ODDS_PER_MISTAKE * (fault.mistakes - 1) as f64,
             fault: fault.clone(),
             tried: other,
         })
     }
 
-    /// What the faults that were tried come to; `None` where the measurement can be believed.
+    /// Returns the result of the faults tested; `None` if the measurement is plausible as given.
     pub fn doubt(mut self, machine: &Machine) -> Option<Doubt> {
-        if self.likely.is_empty() && self.broken.is_empty() {
+        if self.likely.is_empty() && self.infeasible.is_empty() {
             return None;
         }
         self.likely.sort_by(|a, b| b.ranks.total_cmp(&a.ranks));
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
-        self.likely.retain(|one| one.ranks > best - NAMED);
-        let Self { given: Tried { fit, .. }, broken, likely, .. } = &self;
+        self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
+        let Self { given: Tried { fit, .. }, infeasible, likely, .. } = &self;
         let said = |place: usize| Said {
             name: fit.unknowns.at(place).name(machine),
             unit: fit.unknowns.at(place).unit(),
@@ -159,7 +159,7 @@ impl Doubting {
         causes.truncate(MAX_NAMED);
         Some(Doubt {
             causes,
-            impossible: broken.iter().filter_map(place).map(said).collect(),
+            impossible: infeasible.iter().filter_map(place).map(said).collect(),
             furthest: furthest.map(said),
             noise: fit.noise,
             shares: shares(fit),
@@ -168,22 +168,22 @@ impl Doubting {
     }
 }
 
-/// The momentum that is furthest from the file as given, by what another fit makes of it, else by the file; or a first
-/// moment or coupling of a machine that is not balanced, where that is further.
+/// Returns the identifiable unknown with the largest relative deviation from the other fit, or from the file if there
+/// is no other fit. Only momenta are compared, and those first moments and couplings that are not zero in the file.
 fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<usize> {
     let (fit, known) = (&given.fit, known(machine));
     let off = |i: &usize| {
         let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
-    let told = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && known[*i]);
-    // What is as in the file is no evidence.
-    let told = told.filter(|i| off(i) > SAME);
-    told.max_by(|a, b| off(a).total_cmp(&off(b)))
+    let candidates = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && known[*i]);
+    // Values as in the file are no evidence.
+    let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW);
+    candidates.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// By how much relative angles leave their limits, whole turns aside, rad.
-fn leaves(machine: &Machine, recording: &Recording) -> f64 {
+/// Returns the largest violation of the limits of relative angles, modulo whole turns, rad; 0 if there is none.
+fn limit_violation(machine: &Machine, recording: &Recording) -> f64 {
     let mut most: f64 = 0.0;
     for angle in machine.angles() {
         let (low, high) = (*angle.limits.start(), *angle.limits.end());
@@ -200,7 +200,7 @@ fn leaves(machine: &Machine, recording: &Recording) -> f64 {
     most
 }
 
-/// A recording short enough to be fitted many times: of too long ones some motions, of these the first samples.
+/// Returns a recording short enough for many fits: of a long one, some motions, each with its first samples.
 fn shortened(machine: &Machine, recording: &Recording) -> Recording {
     let unknowns = Unknowns::of(machine.drives()).count();
     let most = (MAX_WORK / unknowns.pow(2)).clamp(1_000, 20_000);
@@ -210,7 +210,7 @@ fn shortened(machine: &Machine, recording: &Recording) -> Recording {
     }
     let count = recording.motions.len().min(most / 250);
     let each = most / count;
-    let cut = |motion: &Motion| {
+    let truncated = |motion: &Motion| {
         let rows = motion.t.len().min(each);
         let part = |all: &[_]| all.iter().copied().take(rows).collect();
         Motion {
@@ -222,16 +222,16 @@ fn shortened(machine: &Machine, recording: &Recording) -> Recording {
             moment: motion.moment[..rows].to_vec(),
         }
     };
-    let motions = (0..count).map(|i| cut(&recording.motions[i * recording.motions.len() / count])).collect();
+    let motions = (0..count).map(|i| truncated(&recording.motions[i * recording.motions.len() / count])).collect();
     Recording { motions }
 }
 
 impl Rows {
-    /// What was measured, as something else; lines over time stay taken out.
-    fn hear(&mut self, as_what: impl Fn(Vector, f64) -> (Vector, f64)) {
+    /// Transforms the measured force and moment; the straight line over time stays removed.
+    fn transform(&mut self, transformation: impl Fn(Vector, f64) -> (Vector, f64)) {
         let [fx, fy, n] = &mut self.channels;
         for ((fx, fy), n) in fx.y.iter_mut().zip(&mut fy.y).zip(&mut n.y) {
-            let (force, moment) = as_what(Vector::new(*fx, *fy), *n);
+            let (force, moment) = transformation(Vector::new(*fx, *fy), *n);
             (*fx, *fy, *n) = (force.re, force.im, moment);
         }
     }

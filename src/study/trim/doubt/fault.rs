@@ -1,34 +1,34 @@
-//! [`Fault`]: what a user or a sensor may have got wrong, and the measurement without it.
+//! [`Fault`]: a possible mistake of a user or fault of a sensor, and the measurement corrected for it.
 //!
 //! # Symbols
 //! | letter | meaning |
 //! |---|---|
-//! | A, b | the true angles are A q + b of those given, rates A q̇, accelerations A q̈ |
-//! | u | the true force is u f, or u conj(f), of the one given as a complex number |
-//! | s | the true moment is s n |
+//! | A, b | the true angles are A q + b of the given q; rates are A q̇, accelerations A q̈ |
+//! | u | the true force is u f or u conj(f), where f is the given force as a complex number |
+//! | s | the true moment is s n, where n is the given moment |
 
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::study::trim::{Motion, Recording};
 
-/// One fault: what is wrong, what would be right, and how to undo it.
+/// A fault: its description, the remedy, and the correction of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Fault {
-    /// What is wrong, as a sentence without its full stop.
+    /// Description, as a sentence without its full stop.
     pub what: String,
-    /// What would be right.
+    /// Remedy.
     pub want: String,
-    /// Of how many independent mistakes it consists.
+    /// Number of independent mistakes that the fault consists of.
     pub mistakes: usize,
-    /// Whether only the force and the moment differ.
+    /// Correction of the angles; `None` if only force and moment are affected.
     pub angles: Option<Angles>,
-    /// u, and whether f is conjugated.
+    /// Factor u, and whether f is conjugated.
     force: (Vector, bool),
-    /// s.
+    /// Factor s.
     moment: f64,
 }
 
-/// A, row by row, and b.
+/// The correction of angles: matrix A by rows, and offset b.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Angles {
     rows: Vec<PerDrive>,
@@ -45,7 +45,7 @@ impl Angles {
         PerDrive::from_fn(self.rows.len(), |k| self.rows[k].dot(x))
     }
 
-    /// The recording with true angles.
+    /// Returns the recording with corrected angles.
     pub fn undo(&self, recording: &Recording) -> Recording {
         let motion = |motion: &Motion| {
             let each = |all: &[PerDrive]| all.iter().map(|x| self.of(x)).collect::<Vec<_>>();
@@ -58,15 +58,15 @@ impl Angles {
 }
 
 impl Fault {
-    /// The true force and moment.
+    /// Returns the corrected force and moment.
     pub fn undo(&self, force: Vector, moment: f64) -> (Vector, f64) {
         let (u, mirrored) = self.force;
         (u * if mirrored { force.conj() } else { force }, self.moment * moment)
     }
 
-    /// Every one that is looked at: signs, order and units of the force and the moment (20), and of the angles signs,
-    /// the exchange of any two, cycles of three up to four drives, degrees for radians and the reverse, and relative
-    /// angles. Of eight drives there are 64.
+    /// Returns all faults that are tested. For force and moment: signs, order and units. For the angles: signs, the
+    /// exchange of any two, cycles of three with up to four drives, degrees for radians and the reverse, and relative
+    /// angles. With eight drives there are 64.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let n = machine.drives();
         let mut all = frames();
@@ -85,17 +85,17 @@ impl Fault {
     }
 }
 
-/// A fault of the force and the moment alone.
+/// Returns a fault of force and moment only.
 fn channels(what: &str, want: &str, mistakes: usize, force: (Vector, bool), moment: f64) -> Fault {
     Fault { what: what.into(), want: want.into(), mistakes, angles: None, force, moment }
 }
 
-/// A fault of the angles alone.
+/// Returns a fault of the angles only.
 fn of_angles(what: String, want: String, angles: Angles) -> Fault {
     Fault { what, want, mistakes: 1, angles: Some(angles), force: (Vector::new(1.0, 0.0), false), moment: 1.0 }
 }
 
-/// All frames of the sensor whose axes lie along those of the base, in any order and sense.
+/// Returns the faults of all sensor frames with axes parallel to those of the base, in any order and sense.
 fn frames() -> Vec<Fault> {
     let one = Vector::new(1.0, 0.0);
     let i = Vector::i();
@@ -169,7 +169,7 @@ fn frames() -> Vec<Fault> {
 }
 
 fn units() -> Vec<Fault> {
-    // A force of imbalance may have any size, so that of its unit little is known.
+    // The force of imbalance may have any size, so it is weak evidence on its unit.
     let scaled = |what: &str, want: &str, force: f64, moment: f64| {
         let mistakes = if force == 1.0 { 1 } else { 3 };
         channels(what, want, mistakes, (Vector::new(force, 0.0), false), moment)
@@ -205,7 +205,7 @@ fn reversed(n: usize, which: impl Fn(usize) -> bool, what: &str) -> Fault {
     of_angles(what.into(), format!("{} times −1, with rates and accelerations", list(&names)), angles)
 }
 
-/// In which order columns may stand: the true angle of drive k is in column `order[k]`.
+/// Returns the possible orders of columns: the true angle of drive k is in column `order[k]`.
 fn orders(n: usize) -> Vec<Vec<usize>> {
     let exchanged = |moves: &[(usize, usize)]| {
         let mut order: Vec<usize> = (0..n).collect();
@@ -245,7 +245,7 @@ fn degrees(n: usize, scale: f64, are: bool) -> Fault {
     )
 }
 
-/// Each drive seen from the one before.
+/// Returns the fault that each angle is relative to the drive before.
 fn relative(n: usize) -> Fault {
     let names: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
     let what = format!("{} are relative angles, each seen from the drive before", list(&names));
@@ -257,7 +257,8 @@ fn relative(n: usize) -> Fault {
     )
 }
 
-/// The relative angles that the machine's file defines, in its order, after the first drive; if they lead to all drives.
+/// Returns the fault that the columns after the first hold the relative angles of the machine's file, in its order;
+/// `None` if these do not determine all drives.
 fn relative_of_file(machine: &Machine) -> Option<Fault> {
     let (n, angles) = (machine.drives(), machine.angles());
     if angles.len() + 1 != n {
@@ -265,7 +266,7 @@ fn relative_of_file(machine: &Machine) -> Option<Fault> {
     }
     let mut known: Vec<Option<(PerDrive, f64)>> = vec![None; n];
     known[0] = Some((PerDrive::from_fn(n, |l| if l == 0 { 1.0 } else { 0.0 }), 0.0));
-    // Each round finds one more drive at least, or there is none to be found.
+    // Each pass finds at least one more drive, or there is none left to find.
     for _ in 1..n {
         for (i, angle) in angles.iter().enumerate() {
             let own = |by: f64| PerDrive::from_fn(n, |l| if l == i + 1 { by } else { 0.0 });
@@ -289,7 +290,7 @@ fn relative_of_file(machine: &Machine) -> Option<Fault> {
     Some(of_angles(what, "absolute drive angles".into(), map))
 }
 
-/// In words.
+/// Joins names to a list in words.
 fn list(names: &[String]) -> String {
     match names {
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),

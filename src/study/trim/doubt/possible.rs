@@ -1,13 +1,13 @@
-//! [`impossible`]: numbers that no machine has, whatever its masses.
+//! [`impossible`]: finds identified values that no machine can have, whatever its masses.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | a_j | (1, a_j1 … a_jn): mass m_j sits at Σ_k a_jk e(q_k) | m |
-//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J): M, g_k, C_kl and, on its diagonal, D_k less the rotors' part | |
+//! | a_j | (1, a_j1 … a_jn): mass m_j is at Σ_k a_jk e(q_k) | m |
+//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J): M, g_k, C_kl and, on its diagonal, D_k without the rotors | |
 //!
-//! With masses and inertias not below zero Z has no eigenvalue below zero. D_k < 0 is the simplest way to break that,
-//! |C_kl|² > D_k D_l and |g_k|² > M D_k are others.
+//! If no mass or inertia is negative, Z has no negative eigenvalue. D_k < 0 is the simplest violation; |C_kl|² > D_k
+//! D_l and |g_k|² > M D_k are others.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -16,16 +16,17 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::study::trim::{Fit, Unknown};
 
-/// M may be so many times that of the file.
-const HEAVIER: f64 = 2.0;
-/// An eigenvalue is below zero if it is by more than so many half widths of its interval.
-const INTERVALS: f64 = 3.0;
-/// And by more than this, of an eigenvalue that is 1 where the file is right.
-const ROUNDING: f64 = 1e-6;
-/// Steps of the eigenvalue solver.
-const MAX_STEPS: usize = 10_000;
+/// Upper bound on M, as a multiple of that of the file.
+const MAX_MASS_FACTOR: f64 = 2.0;
+/// Number of half widths of its 95 % interval by which an eigenvalue must lie below zero to count as negative.
+const MIN_HALF_WIDTHS: f64 = 3.0;
+/// Additional margin for rounding, on eigenvalues that are of order 1 if the file is right.
+const EIGENVALUE_ROUNDING: f64 = 1e-6;
+/// Maximum number of iterations of the eigenvalue solver.
+const MAX_ITERATIONS: usize = 10_000;
 
-/// The numbers that are impossible together, most involved first; none if masses above zero explain them.
+/// Returns the unknowns whose values are impossible together, the most involved first; empty if positive masses explain
+/// them.
 pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let unknowns = &fit.unknowns;
@@ -41,14 +42,14 @@ pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         let conditions = unknowns.conditions().iter().enumerate();
         conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.told[2 * i] && fit.told[2 * i + 1])
     };
-    // Each drive alone, then all at once where all of that is told.
+    // Each drive alone, then all drives with all moments, if these are identifiable.
     let alone = drives.iter().map(|k| (vec![*k], false));
     let groups = alone.chain(Some((drives.clone(), true)).filter(|(of, _)| whole(of)));
     for (of, moments) in groups {
         let heavy = usize::from(moments);
         let scale = |i: usize| match i.checked_sub(heavy) {
             Some(i) => 1.0 / size(of[i]),
-            None => 1.0 / (HEAVIER * inertia.mass()).sqrt(),
+            None => 1.0 / (MAX_MASS_FACTOR * inertia.mass()).sqrt(),
         };
         let place = |k: &usize| of.iter().position(|own| own == k).map(|i| i + heavy);
         let mut z = DMatrix::<Vector>::zeros(of.len() + heavy, of.len() + heavy);
@@ -59,7 +60,7 @@ pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             let own = fit.measured[from + k] - rotors(*k);
             z[(i + heavy, i + heavy)] = Vector::new(own * scale(i + heavy).powi(2), 0.0);
         }
-        // Where each line of (7) and (8) stands in Z.
+        // Place of each line of (7) and (8) in Z.
         let places: Vec<Option<(usize, usize)>> = unknowns
             .conditions()
             .iter()
@@ -74,10 +75,10 @@ pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
                 (z[(a, b)], z[(b, a)]) = (value, value.conj());
             }
         }
-        let Some(eigen) = SymmetricEigen::try_new(z, f64::EPSILON, MAX_STEPS) else { continue };
+        let Some(eigen) = SymmetricEigen::try_new(z, f64::EPSILON, MAX_ITERATIONS) else { continue };
         let least = eigen.eigenvalues.imin();
         let (value, v) = (eigen.eigenvalues[least], eigen.eigenvectors.column(least));
-        // The eigenvalue is linear in the numbers for its own vector.
+        // Derivative of the eigenvalue by the unknowns, for fixed eigenvector.
         let mut slope = DVector::zeros(unknowns.count());
         for (i, k) in of.iter().enumerate() {
             slope[from + k] = v[i + heavy].norm_sqr() * scale(i + heavy).powi(2);
@@ -89,8 +90,8 @@ pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             }
         }
         let half = fit.critical * slope.dot(&(&fit.covariance * &slope)).max(0.0).sqrt();
-        if value + INTERVALS * half < -ROUNDING {
-            // By how much each pulls the eigenvalue down.
+        if value + MIN_HALF_WIDTHS * half < -EIGENVALUE_ROUNDING {
+            // Contribution of each unknown to the eigenvalue.
             let pull = |i: usize| slope[i] * (fit.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
             let mut all: Vec<usize> = (0..unknowns.count()).filter(|i| pull(*i) < 0.0).collect();
             all.sort_by(|a, b| pull(*a).total_cmp(&pull(*b)));

@@ -1,58 +1,58 @@
-//! [`Doubt`]: why a measurement is not believed, in numbers and in words.
+//! [`Doubt`]: why a measurement is rejected, in numbers and in words.
 
 use std::fmt;
 
 use super::odds::{KEPT, LEFT};
 use crate::settings::number::shown;
 
-/// Why a measurement is not believed.
+/// Why a measurement is rejected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// What is wrong with it, the likeliest first; none where no fault that is known explains it.
+    /// Possible faults, the most likely first; empty if no known fault explains the measurement.
     pub causes: Vec<Cause>,
-    /// Numbers that no machine has.
+    /// Values that no machine can have.
     pub impossible: Vec<Said>,
-    /// The number that is furthest from the file.
+    /// The unknown with the largest deviation from the file.
     pub furthest: Option<Said>,
-    /// What is not explained of force, N, and of moment, N m, as given.
+    /// Root mean square residuals of force, N, and of moment, N m, as given.
     pub noise: [f64; 2],
-    /// The same as shares of what was measured.
+    /// These residuals as fractions of the measured values.
     pub shares: [f64; 2],
-    /// By how much angles leave their limits as given, rad.
+    /// Violation of the limits of relative angles as given, rad; 0 if there is none.
     pub leaves: f64,
 }
 
-/// What may be wrong.
+/// A possible fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// What is.
+    /// Description of the fault.
     pub what: String,
-    /// What would be right.
+    /// Remedy.
     pub want: String,
-    /// log₁₀ of how much better it explains the measurement.
+    /// log₁₀ of the likelihood ratio to the measurement as given.
     pub odds: f64,
-    /// What is not explained of force, N, and of moment, N m, without it.
+    /// Root mean square residuals of force, N, and of moment, N m, after correction.
     pub noise: [f64; 2],
-    /// The same as shares of what would then be measured.
+    /// These residuals as fractions of the corrected measured values.
     pub shares: [f64; 2],
-    /// The furthest number without it.
+    /// Value after correction of the unknown with the largest deviation.
     pub furthest: Option<f64>,
-    /// By how much angles leave their limits without it, rad.
+    /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
     pub leaves: f64,
 }
 
-/// A number as the measurement as given has it.
+/// Value of an unknown by the measurement as given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// Which.
+    /// Name of the unknown.
     pub name: String,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
-    /// As measured.
+    /// Measured value.
     pub value: f64,
-    /// Half its interval of 95 %.
+    /// Half width of the 95 % interval.
     pub half_width: f64,
-    /// In the machine's file.
+    /// Value in the machine's file.
     pub file: f64,
 }
 
@@ -90,7 +90,7 @@ impl fmt::Display for Doubt {
         }
         if let Some(then) = then {
             for (i, unit) in ["N", "N m"].into_iter().enumerate() {
-                // In another unit the same is no evidence.
+                // A residual that only changed its unit is no evidence.
                 if self.shares[i] > 1.1 * then.shares[i] {
                     write!(f, "\n  As given, {} {unit} are not explained;", number(self.noise[i]))?;
                     write!(f, " without the fault {}.", number(then.noise[i]))?;

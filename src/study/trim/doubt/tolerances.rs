@@ -1,17 +1,17 @@
-//! [`Tolerances`]: how far a built machine may be from its file, and how far one is that was measured.
+//! [`Tolerances`]: expected deviations of a built machine from its file, and the distance of a measured one from it.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | x | first moments, couplings, momenta, as among the [`Unknowns`] | |
-//! | P | covariance of x of built machines whose bodies are off by the tolerances, independently | |
+//! | x | first moments, couplings, momenta, in the order of [`Unknowns`] | |
+//! | P | covariance of x over built machines whose bodies deviate by the tolerances, independently | |
 //! | L | P = L Lᵀ | |
-//! | Λ | information on x, the inverse of its covariance as measured; 0 along what the data do not determine | |
-//! | μ, v | eigenvalues and vectors of Lᵀ Λ L | |
+//! | Λ | information on x, the inverse of its measured covariance; 0 along directions that are not identifiable | |
+//! | μ, v | eigenvalues and eigenvectors of Lᵀ Λ L | |
 //! | d² | Σ μ/(1 + μ) (v · L⁻¹(x − x₀))² = (x − x₀)ᵀ (P + Λ⁻¹)⁻¹ (x − x₀): squared distance from the file, in σ | |
-//! | p | Σ μ/(1 + μ): how many numbers the data determine better than the tolerances do | |
+//! | p | Σ μ/(1 + μ): number of unknowns that the data determine better than the tolerances | |
 //!
-//! Only ratios of distances are compared, so the tolerances matter by their proportions.
+//! Only ratios of distances are compared, so only the proportions of the tolerances matter.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -20,50 +20,51 @@ use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::study::trim::{Fit, Unknown, Unknowns};
 
-/// Of the mass of a link with its counterweights, as a share.
-const MASS: f64 = 0.03;
-/// Of a centre of mass along its link, as a share of the link's length or a fifth of the reach if that is more; half of
-/// that across.
-const PLACE: f64 = 0.01;
-/// Of inertias, as a share.
-const INERTIA: f64 = 0.05;
-/// A load at the end effector of which the file knows nothing, as a share of the whole mass.
-const LOAD: f64 = 0.02;
-/// Part of each variance that is independent of all others: what no error of one body explains.
-const OTHER: f64 = 0.01;
+/// Relative tolerance of a link's mass, counterweights included.
+const MASS_TOLERANCE: f64 = 0.03;
+/// Tolerance of a centre of mass along its link, as a fraction of the link's length or a fifth of the reach, whichever
+/// is larger; half of it across.
+const COM_TOLERANCE: f64 = 0.01;
+/// Relative tolerance of inertias.
+const INERTIA_TOLERANCE: f64 = 0.05;
+/// Unknown load at the end effector, as a fraction of the total mass.
+const LOAD_TOLERANCE: f64 = 0.02;
+/// Fraction of each variance that is added independently: errors that no single body explains.
+const INDEPENDENT_FRACTION: f64 = 0.01;
 
-/// Where only momenta are compared, first moments and couplings may be off by so many times their tolerances.
-const ANY: f64 = 30.0;
-/// First moments and couplings below this share of mass times reach, or reach squared, are those of a balanced machine.
-const BALANCED: f64 = 1e-3;
-/// Steps of the eigenvalue solver.
-const MAX_STEPS: usize = 10_000;
+/// Factor on the tolerances of those unknowns that are not compared, which makes them nearly free.
+const FREE_FACTOR: f64 = 30.0;
+/// First moments and couplings below this fraction of mass times reach, or mass times reach squared, are treated as
+/// zero.
+const BALANCED_BELOW: f64 = 1e-3;
+/// Maximum number of iterations of the eigenvalue solver.
+const MAX_ITERATIONS: usize = 10_000;
 
-/// P.
+/// Covariance P of the tolerances.
 pub(super) struct Tolerances {
     covariance: DMatrix<f64>,
     balance: usize,
-    /// Whether the file has so much of each number that it is told from that of a balanced machine.
+    /// Whether the file's value of each unknown differs from that of a balanced machine.
     known: Vec<bool>,
 }
 
-/// d², of some numbers whatever the others are, and p.
+/// Squared distances d² of some unknowns, with the others nearly free, and p.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Distance {
-    /// Of D alone.
+    /// d² of the momenta D.
     pub momenta: f64,
-    /// Of g and C alone.
+    /// d² of first moments g and couplings C.
     pub balance: f64,
-    /// Of all.
+    /// d² of all unknowns.
     pub all: f64,
-    /// p of all.
+    /// p of all unknowns.
     pub numbers: f64,
-    /// Of D, and of the g and C that the file has, with p; none of a machine that has none, because it is balanced.
+    /// d² and p of D with those g and C that are not zero in the file; `None` if there are no such g and C.
     pub known: Option<[f64; 2]>,
 }
 
-/// Which numbers a file tells from those of a balanced machine: each D, and both parts of first moments and couplings
-/// above a thousandth of mass times reach, or reach squared.
+/// Returns whether the file's value of each unknown differs from that of a balanced machine. That holds for each D, and
+/// for both parts of first moments and couplings above a thousandth of mass times reach, or mass times reach squared.
 pub(super) fn known(machine: &Machine) -> Vec<bool> {
     let (unknowns, inertia) = (Unknowns::of(machine.drives()), Inertia::of(machine));
     let nominal = unknowns.nominal(&inertia);
@@ -73,13 +74,13 @@ pub(super) fn known(machine: &Machine) -> Vec<bool> {
             Unknown::Of(Condition::Force(_), _) => inertia.mass() * machine.reach(),
             Unknown::Of(Condition::Coupling(..), _) => inertia.mass() * machine.reach().powi(2),
         };
-        nominal[i & !1].hypot(nominal[i | 1]) > BALANCED * size
+        nominal[i & !1].hypot(nominal[i | 1]) > BALANCED_BELOW * size
     };
     (0..unknowns.count()).map(is_known).collect()
 }
 
 impl Tolerances {
-    /// Of a machine.
+    /// Returns the tolerances of a machine.
     pub fn of(machine: &Machine) -> Self {
         let (n, inertia) = (machine.drives(), Inertia::of(machine));
         let unknowns = Unknowns::of(n);
@@ -93,8 +94,8 @@ impl Tolerances {
         for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             let chain = machine.com_chain(j);
             let now = body(link.mass, link.inertia, part.drive, &chain);
-            columns.push(MASS * &now);
-            let off = PLACE * part.length.abs().max(0.2 * machine.reach());
+            columns.push(MASS_TOLERANCE * &now);
+            let off = COM_TOLERANCE * part.length.abs().max(0.2 * machine.reach());
             for by in [Vector::new(off, 0.0), Vector::new(0.0, 0.5 * off)] {
                 let moved = |sign: f64| {
                     let mut chain = chain;
@@ -103,40 +104,40 @@ impl Tolerances {
                 };
                 let [more, less] = [moved(1.0), moved(-1.0)];
                 columns.push(0.5 * (&more - &less));
-                // Where D does not change to first order, it does to second.
+                // D may not change to first order, so its second-order change is included.
                 columns.push(0.5 * (more + less) - &now);
             }
             let turning = link.inertia + link.mass * part.length * part.length / 12.0;
-            columns.push(body(0.0, INERTIA * turning, part.drive, &chain));
+            columns.push(body(0.0, INERTIA_TOLERANCE * turning, part.drive, &chain));
         }
         let held_by = machine.resolved_links()[machine.end_link()].drive;
         let end = machine.end_effector().map(|length| Vector::new(length, 0.0));
-        columns.push(body(LOAD * inertia.mass(), 0.0, held_by, &end));
+        columns.push(body(LOAD_TOLERANCE * inertia.mass(), 0.0, held_by, &end));
         for drive in 0..n {
             let mut column = DVector::zeros(unknowns.count());
             let rotor = &inertia.rotors[drive];
-            (0..n).for_each(|k| column[unknowns.of_balance() + k] = INERTIA * rotor.inertia * rotor.rates[k]);
+            (0..n).for_each(|k| column[unknowns.of_balance() + k] = INERTIA_TOLERANCE * rotor.inertia * rotor.rates[k]);
             columns.push(column);
         }
         let mut covariance = DMatrix::zeros(unknowns.count(), unknowns.count());
         columns.iter().for_each(|column| covariance.ger(1.0, column, column, 1.0));
         let least = 1e-12 * covariance.diagonal().amax();
-        (0..unknowns.count()).for_each(|i| covariance[(i, i)] += OTHER * covariance[(i, i)] + least);
+        (0..unknowns.count()).for_each(|i| covariance[(i, i)] += INDEPENDENT_FRACTION * covariance[(i, i)] + least);
         Self { covariance, balance: unknowns.of_balance(), known: known(machine) }
     }
 
-    /// How far a measured machine is from its file; `None` where that cannot be computed.
+    /// Returns the distance of a measured machine from its file; `None` if it cannot be computed.
     pub fn distance(&self, fit: &Fit) -> Option<Distance> {
         let off = &fit.measured - &fit.nominal;
         let part = |of: &dyn Fn(usize) -> bool| -> Option<[f64; 2]> {
-            let scale = |i: usize| if of(i) { 1.0 } else { ANY };
+            let scale = |i: usize| if of(i) { 1.0 } else { FREE_FACTOR };
             let entry = |i: usize, j: usize| match of(i) == of(j) {
                 true => scale(i) * scale(j) * self.covariance[(i, j)],
                 false => 0.0,
             };
             let factor = DMatrix::from_fn(off.len(), off.len(), entry).cholesky()?.l();
             let seen = factor.tr_mul(&(&fit.information * &factor));
-            let eigen = SymmetricEigen::try_new(seen, f64::EPSILON, MAX_STEPS)?;
+            let eigen = SymmetricEigen::try_new(seen, f64::EPSILON, MAX_ITERATIONS)?;
             let apart = eigen.eigenvectors.tr_mul(&factor.solve_lower_triangular(&off)?);
             let share = eigen.eigenvalues.map(|value| value.max(0.0) / (1.0 + value.max(0.0)));
             let sum = share.iter().zip(apart.iter()).map(|(share, apart)| share * apart * apart).sum();
