@@ -125,7 +125,11 @@ pub enum NoWeights {
         want: String,
     },
     /// These bounds contradict each other: a minimal set.
-    #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), sufficient_relief(.would))]
+    #[error(
+        "no counterweights balance this machine within these bounds: {}{}",
+        listed(.bounds),
+        sufficient_relief(.would)
+    )]
     Conflict {
         /// The bounds; without any one of them the others do not contradict each other.
         bounds: Vec<Bound>,
@@ -137,7 +141,10 @@ pub enum NoWeights {
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
     /// Every solution would violate the clearance of a pin.
-    #[error("no counterweights balance this machine and stay {asked} m clear of every pin{}", sufficient_relief(.would))]
+    #[error(
+        "no counterweights balance this machine and stay {asked} m clear of every pin{}",
+        sufficient_relief(.would)
+    )]
     Reaches {
         /// The clearance requested, m.
         asked: f64,
