@@ -38,7 +38,7 @@ pub const FORMS: [Form; 6] = [
     Form { ending: "urdf", shows: Shows::Joints, write: |machine, _, _| Ok(urdf(machine)) },
     // To look at.
     Form { ending: "svg", shows: Shows::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
-    // To cut by.
+    // For cutting.
     Form { ending: "dxf", shows: Shows::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
     // For a spreadsheet.
     Form { ending: "csv", shows: Shows::Parts, write: |machine, _, cut| Ok(Parts::of(machine, cut)?.csv()) },

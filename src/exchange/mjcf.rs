@@ -1,8 +1,8 @@
-//! A machine as MJCF, the format of MuJoCo: links as bodies in the plane z = 0, pins as hinges, pins that close loops
-//! as equalities, motors with their gears and rotors, and sensors of force and moment at the base. The sensors measure
-//! force and moment of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along
-//! e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same names as
-//! in URDF.
+//! A machine as MJCF, the format of MuJoCo. Links are bodies in the plane z = 0, pins are hinges, and pins that close
+//! loops are equalities. The model has motors with gears and rotors, and sensors of force and moment at the base, which
+//! measure force and moment of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x
+//! along e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same
+//! names as in URDF.
 //!
 //! Every rotor is a body of its own: behind a gear its contributions to the momentum (D) and to the inertia (H) differ,
 //! and an armature would only add to the latter. Inertias about axes in the plane do not affect a plane motion and are

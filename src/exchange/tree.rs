@@ -104,8 +104,8 @@ impl<'a> Tree<'a> {
         joint.map_or_else(|| format!("joint_{}", self.name(part)), |joint| self.joint_name(joint))
     }
 
-    /// Returns whether each joint comes after the joint that it mimics, from the root to the tips, both in the order of
-    /// the file and in that of the joints' names, by which some programs sort them.
+    /// Returns whether each joint comes after the joint that it mimics, from the root to the tips. This must hold in
+    /// the order of the file and in that of the joints' names, by which some programs sort them.
     fn is_readable(&self) -> bool {
         let mut by_name: Vec<(String, &Joint)> =
             self.joints.iter().map(|joint| (self.joint_name(joint), joint)).collect();

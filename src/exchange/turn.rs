@@ -2,8 +2,8 @@
 
 use crate::mechanics::machine::Machine;
 
-/// A sum of pin angles with signs. The angle of the pin at the root of a link is measured from the direction of its
-/// parent's drive, or from the x axis of the base, to that of its own drive.
+/// A sum of pin angles with signs. The angle of the pin at a link's root is that of its drive relative to its parent's
+/// drive, or to the x axis of the base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
     /// Indices of the links whose root pins these are, each with sign 1 or −1.

@@ -12,8 +12,8 @@
 //! are those of the machine.
 //!
 //! # What URDF cannot express
-//! URDF has no elements for gravity, for pins that close loops (the mimic joints keep loops closed), for limits of
-//! angles that are not the angle of a motor, and for limits of acceleration and jerk. These stand in an element
+//! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none
+//! for limits of an angle that is not a motor's. (Mimic joints keep the loops closed.) All these stand in an element
 //! `<stillbase>`, which other programs ignore and [`import`](super::import) reads. Friction, springs and the base's own
 //! motion belong to a scenario. Inertias about axes in the plane do not affect a plane motion and are invented.
 

@@ -1,4 +1,4 @@
-//! Cosine and sine of one angle together, in arithmetic alone.
+//! Cosine and sine of an angle together, by basic arithmetic.
 //!
 //! Trigonometry takes most of the time of the dynamics. A table and two short polynomials take half the time of the
 //! system's library. Plain IEEE operations give the same bits on every computer, which no such library guarantees.

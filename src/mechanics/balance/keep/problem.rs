@@ -118,10 +118,11 @@ impl<'a> Problem<'a> {
         for across in [false, true] {
             for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
                 let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
-                let left = condition.left(&start) + beyond;
+                let residual = condition.left(&start) + beyond;
                 // A tenth of the tolerance of the finished machine.
                 let tolerance = 0.1 * condition.nothing(&scale).max(condition.nothing(&start));
-                let equation = Equation { a: a.collect(), right: if across { -left.im } else { -left.re }, tolerance };
+                let equation =
+                    Equation { a: a.collect(), right: if across { -residual.im } else { -residual.re }, tolerance };
                 problem.balance.push(equation);
             }
         }
@@ -281,12 +282,12 @@ impl<'a> Problem<'a> {
         }
         let machine = Machine::new(spec).map_err(of_machine)?;
         let inertia = Inertia::of(&machine);
-        let left = self.conditions.iter().zip(&self.beyond);
+        let conditions = self.conditions.iter().zip(&self.beyond);
         let tolerance = |condition: &Condition| condition.nothing(&inertia);
         let balanced = |(condition, beyond): (&Condition, &Vector)| {
             (condition.left(&inertia) + beyond).norm() <= tolerance(condition)
         };
-        match left.into_iter().all(balanced) {
+        match conditions.into_iter().all(balanced) {
             true => Ok(Kept { machine, values, cost, certified: self.is_convex() }),
             false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
         }
@@ -313,13 +314,13 @@ impl<'a> Problem<'a> {
 
     fn inconsistent(&self, plane: &Plane) -> NotKept {
         let n = self.conditions.len();
-        let left = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
-        let off: Vec<usize> = (0..n).filter(|i| left(*i) > self.balance[*i].tolerance).collect();
+        let residual = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
+        let off: Vec<usize> = (0..n).filter(|i| residual(*i) > self.balance[*i].tolerance).collect();
         let force = off.iter().any(|i| matches!(self.conditions[*i], Condition::Force(_)));
         let of_kind = off.iter().copied().filter(|i| matches!(self.conditions[*i], Condition::Force(_)) == force);
-        let worst = of_kind.max_by(|a, b| left(*a).total_cmp(&left(*b))).unwrap_or_default();
+        let worst = of_kind.max_by(|a, b| residual(*a).total_cmp(&residual(*b))).unwrap_or_default();
         let condition = self.conditions[worst];
-        let left = format!("{:.3e} {}", left(worst), condition.unit());
+        let left = format!("{:.3e} {}", residual(worst), condition.unit());
         NotKept::Inconsistent { condition: condition.name(self.machine), left }
     }
 
