@@ -1,10 +1,10 @@
 //! [`Search`]: minimises Σ (p Δ)² if a mass and a position of one body may change.
 //!
-//! In y the conditions and all limits are linear, but a position changes by y m₀/(p m). So the objective F(y) = Σ y_m²
-//! + Σ (y_l m₀/m)² is not convex. Newton's method minimises F from several starts. Each step goes towards the minimum
-//! of a quadratic model within the limits, and stays feasible because the feasible set is convex. The result is no
-//! worse than any start, one of which keeps every mass as it is. It is not certified: another local minimum may be
-//! lower.
+//! In y the conditions and all limits are linear, but a position changes by y m₀/(p m). So the objective
+//! F(y) = Σ y_m² + Σ (y_l m₀/m)² is not convex. Newton's method minimises F from several starts. Each step goes
+//! towards the minimum of a quadratic model within the limits, and stays feasible because the feasible set is convex.
+//! The result is no worse than any start, one of which keeps every mass as it is. It is not certified: another local
+//! minimum may be lower.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
