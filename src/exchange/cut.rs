@@ -1,47 +1,47 @@
-//! [`Cut`]: of what and how links are cut.
+//! [`Cut`]: dimensions of bars and holes, and the material of discs.
 
 use crate::mechanics::machine::Machine;
 use crate::settings::number::{Short, fixed};
 
-/// Bars, holes and discs as they are cut, and what discs are made of.
+/// Dimensions of bars, holes and discs, and the density of discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
-    /// Of a bar, across, m; its ends are round.
+    /// Width of a bar, m; its ends are round.
     pub bar_width: f64,
-    /// Of a hole for a pin, m.
+    /// Diameter of a hole for a pin, m.
     pub pin_diameter: f64,
-    /// Of the discs, kg/m³.
+    /// Density of the discs, kg/m³.
     pub density: f64,
-    /// Of the discs, m; none: as thick as each has to be for its mass.
+    /// Thickness of the discs, m; `None`: the thickness that gives each disc its mass.
     pub thickness: Option<f64>,
 }
 
-/// Why parts cannot be cut so.
+/// Error of dimensions with which parts cannot be cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CutError {
-    /// A measure that is none.
+    /// A dimension or density that is out of range.
     #[error("{what} {} {unit}: want a number from {} to {}", Short(*value), Short(*MEASURES.start()), Short(*MEASURES.end()))]
     Measure {
-        /// Which.
+        /// Name of the quantity.
         what: &'static str,
-        /// As given.
+        /// Its value.
         value: f64,
-        /// Of it.
+        /// Its unit.
         unit: &'static str,
     },
-    /// The hole is as wide as the bar.
+    /// Holes are not narrower than bars.
     #[error(
         "holes of {} mm in bars {} mm wide: want bars wider than their holes",
         fixed(1e3 * diameter, 3),
         fixed(1e3 * width, 3)
     )]
     Narrow {
-        /// Of the bar, m.
+        /// Width of the bar, m.
         width: f64,
-        /// Of the hole, m.
+        /// Diameter of the hole, m.
         diameter: f64,
     },
-    /// Two holes run into one.
+    /// Two holes overlap.
     #[error(
         "two holes of link {link:?} are {} mm apart, {} mm across: want pins thinner than that",
         fixed(1e3 * apart, 3),
@@ -50,9 +50,9 @@ pub enum CutError {
     Holes {
         /// The link.
         link: String,
-        /// From centre to centre, m.
+        /// Distance between their centres, m.
         apart: f64,
-        /// Of the holes, m.
+        /// Diameter of the holes, m.
         diameter: f64,
     },
 }
@@ -65,19 +65,19 @@ impl Default for Cut {
 }
 
 impl Cut {
-    /// Refuses discs that cannot be cut.
+    /// Checks the material and thickness of discs.
     ///
     /// # Errors
-    /// Which measure is wrong.
+    /// If one is out of range.
     pub fn check_discs(&self) -> Result<(), CutError> {
         measure("material", Some(self.density), "kg/m³")?;
         measure("thickness", self.thickness, "m")
     }
 
-    /// Refuses what cannot be cut.
+    /// Checks that the links of a machine can be cut.
     ///
     /// # Errors
-    /// Which measure is wrong, or which holes run into one.
+    /// If a dimension is out of range, or if holes overlap or are too wide.
     pub fn check(&self, machine: &Machine) -> Result<(), CutError> {
         self.check_discs()?;
         measure("bar width", Some(self.bar_width), "m")?;
@@ -88,7 +88,7 @@ impl Cut {
         }
         for (link, part) in machine.links().iter().zip(machine.resolved_links()) {
             let apart = part.pins.windows(2).map(|pins| pins[1] - pins[0]);
-            // Descriptions of one pin differ by rounding.
+            // Several positions of one pin differ by rounding.
             if let Some(apart) = apart.filter(|apart| *apart > SAME).find(|apart| *apart <= diameter) {
                 return Err(CutError::Holes { link: link.name.clone(), apart, diameter });
             }
@@ -96,20 +96,20 @@ impl Cut {
         Ok(())
     }
 
-    /// How thick a disc is, m; none for a point.
+    /// Returns the thickness of a disc, m, for its mass, kg, and radius, m; `None` for a point.
     pub fn thickness_of(&self, mass: f64, radius: f64) -> Option<f64> {
         (radius > 0.0).then(|| self.thickness.unwrap_or(mass / (self.density * disc_area(radius))))
     }
 
-    /// What a disc weighs: its area by its thickness by its density, kg.
+    /// Returns the mass of a disc, kg: area times thickness times density.
     pub fn weighs(&self, radius: f64, thickness: f64) -> f64 {
         disc_area(radius) * thickness * self.density
     }
 }
 
-/// Where measures may lie, in SI units.
+/// Range of dimensions and densities, in SI units.
 const MEASURES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
-/// Pins nearer than this are one, m.
+/// Pins closer than this are treated as one, m.
 pub const SAME: f64 = 1e-9;
 
 fn measure(what: &'static str, value: Option<f64>, unit: &'static str) -> Result<(), CutError> {
@@ -123,14 +123,14 @@ fn disc_area(radius: f64) -> f64 {
     std::f64::consts::PI * radius * radius
 }
 
-/// Where the holes of a link are, m from its root, in rising order.
+/// Returns the positions of the holes of a link, m from its root, in ascending order.
 pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
     let mut holes = machine.resolved_links()[j].pins.clone();
     holes.dedup_by(|b, a| *b - *a <= SAME);
     holes
 }
 
-/// From where to where a bar goes, m from its root: over its length, all its pins, and to the discs that it carries.
+/// Returns the interval that a bar covers, m from its root: its length, all its pins, and the discs that it carries.
 pub fn ends(machine: &Machine, j: usize) -> [f64; 2] {
     let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
     let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name).map(|weight| weight.at);

@@ -1,4 +1,4 @@
-//! [`Form`]: in which a machine goes elsewhere, by the ending of a file's name. Each stands once, in [`FORMS`].
+//! [`Form`]: an export format, chosen by the ending of a file's name. [`FORMS`] lists all of them.
 
 use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
@@ -7,30 +7,30 @@ use super::parts::Parts;
 use super::urdf::urdf;
 use crate::mechanics::machine::Machine;
 
-/// In which a machine goes elsewhere.
+/// An export format.
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
-    /// How names of its files end.
+    /// Ending of its files' names, without dot.
     pub ending: &'static str,
-    /// What it shows of a machine.
+    /// The part of a machine that it shows.
     pub shows: Shows,
     write: fn(&Machine, &[f64], &Cut) -> Result<String, ExchangeError>,
 }
 
-/// What a file shows of a machine.
+/// The part of a machine that a file shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// A model of it with a pose to begin in.
+    /// A model with an initial pose.
     Pose,
-    /// A model of it with the joints of its motors.
+    /// A model with the joints of its motors.
     Joints,
-    /// Its links, drawn as they are cut.
+    /// A drawing of its links for cutting.
     Links,
-    /// A list of its parts.
+    /// Its parts list.
     Parts,
 }
 
-/// All of them.
+/// All export formats.
 pub const FORMS: [Form; 6] = [
     // For MuJoCo.
     Form { ending: "xml", shows: Shows::Pose, write: |machine, pose, _| Ok(mjcf(machine, pose)?) },
@@ -38,7 +38,7 @@ pub const FORMS: [Form; 6] = [
     Form { ending: "urdf", shows: Shows::Joints, write: |machine, _, _| Ok(urdf(machine)) },
     // To look at.
     Form { ending: "svg", shows: Shows::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
-    // To cut by.
+    // For cutting.
     Form { ending: "dxf", shows: Shows::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
     // For a spreadsheet.
     Form { ending: "csv", shows: Shows::Parts, write: |machine, _, cut| Ok(Parts::of(machine, cut)?.csv()) },
@@ -46,32 +46,32 @@ pub const FORMS: [Form; 6] = [
     Form { ending: "md", shows: Shows::Parts, write: |machine, _, cut| Ok(Parts::of(machine, cut)?.markdown()) },
 ];
 
-/// The ending where nobody says another.
+/// The default ending.
 pub const USUAL_ENDING: &str = "urdf";
 
-/// Why a machine stays.
+/// Error of an export.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExchangeError {
-    /// MuJoCo could not move it.
+    /// MuJoCo cannot simulate the machine.
     #[error(transparent)]
     Mjcf(#[from] MjcfError),
-    /// It cannot be cut so.
+    /// The links cannot be cut with these dimensions.
     #[error(transparent)]
     Cut(#[from] CutError),
-    /// Nothing is written under such a name.
+    /// No format has this ending.
     #[error("a name that ends in {ending:?}: want one that ends in {}", listed(|_| true))]
     Ending {
-        /// As given.
+        /// The ending.
         ending: String,
     },
 }
 
-/// The endings of all forms.
+/// Returns the endings of all formats.
 pub fn endings() -> [&'static str; FORMS.len()] {
     FORMS.map(|form| form.ending)
 }
 
-/// The endings of some forms as a sentence has them: `.svg, .dxf or .csv`.
+/// Returns the endings of the formats that `of` accepts, as a list in words: `.svg, .dxf or .csv`.
 pub fn listed(of: impl Fn(Shows) -> bool) -> String {
     let endings: Vec<String> =
         FORMS.iter().filter(|form| of(form.shows)).map(|form| format!(".{}", form.ending)).collect();
@@ -82,19 +82,19 @@ pub fn listed(of: impl Fn(Shows) -> bool) -> String {
 }
 
 impl Form {
-    /// By how a name ends.
+    /// Returns the format with an ending, in upper or lower case.
     ///
     /// # Errors
-    /// If it ends in nothing that is written.
+    /// If no format has this ending.
     pub fn of(ending: &str) -> Result<Self, ExchangeError> {
         let own = FORMS.into_iter().find(|form| form.ending.eq_ignore_ascii_case(ending));
         own.ok_or_else(|| ExchangeError::Ending { ending: ending.chars().take(40).collect() })
     }
 
-    /// The file's text; the pose, rad, is that of a keyframe.
+    /// Returns the text of the file; `pose`, rad, is the initial pose of formats that show one.
     ///
     /// # Errors
-    /// What stands in the way.
+    /// If the machine cannot be exported in this format.
     pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<String, ExchangeError> {
         (self.write)(machine, pose, cut)
     }

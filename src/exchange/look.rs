@@ -1,6 +1,6 @@
-//! How models for other programs look.
+//! Appearance of models for other programs.
 
-/// Half the width of a bar as it is drawn, m.
+/// Half the drawn width of a bar, m.
 pub const RADIUS: f64 = 0.012;
 /// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
 pub const COLOURS: [&str; 8] = [

@@ -1,10 +1,12 @@
-//! A machine as MJCF, the format of MuJoCo: links as bodies in the plane z = 0, pins as hinges, pins that close loops
-//! as equalities, motors with their gears and rotors, and sensors of force and moment at the base. The sensors read what
-//! holds the machine: f_B and n_B are the opposite. The frame of a link has x along e(q_k) of its drive, so a link that
-//! runs against its drive lies along −x; bodies and hinges have the names that they have in URDF.
+//! A machine as MJCF, the format of MuJoCo. Links are bodies in the plane z = 0, pins are hinges, and pins that close
+//! loops are equalities. The model has motors with gears and rotors, and sensors of force and moment at the base, which
+//! measure force and moment of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x
+//! along e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same
+//! names as in URDF.
 //!
-//! Every rotor is a body of its own: what a gear adds to the momentum (D) is not what it adds to the inertia (H), and
-//! an armature would only add to the latter. Inertias about axes that a plane motion does not ask are made up.
+//! Every rotor is a body of its own: behind a gear its contributions to the momentum (D) and to the inertia (H) differ,
+//! and an armature would only add to the latter. Inertias about axes in the plane do not affect a plane motion and are
+//! invented.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -15,23 +17,23 @@ use super::turn::Turn;
 use super::xml::quoted;
 use crate::mechanics::machine::Machine;
 
-/// Why there is no model.
+/// Error of an export to MJCF.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MjcfError {
-    /// MuJoCo moves no body without mass.
+    /// A link without mass or inertia, which MuJoCo cannot simulate.
     #[error("link {link:?} has {what} 0: MuJoCo moves only what has mass and inertia; want both above 1e-12")]
     Massless {
         /// The link.
         link: String,
-        /// What it lacks.
+        /// The quantity that is zero: mass or inertia.
         what: &'static str,
     },
-    /// A pose has one angle a drive.
+    /// A pose whose number of angles is not that of the drives.
     #[error("a pose of {given} angles: want {wanted}, one for each drive")]
     Pose {
-        /// How many were given.
+        /// Number of angles that were given.
         given: usize,
-        /// How many there are.
+        /// Number of drives.
         wanted: usize,
     },
     /// No link follows a drive.
@@ -42,29 +44,29 @@ pub enum MjcfError {
     },
 }
 
-/// Masses and inertias below are none to MuJoCo.
-const LEAST: f64 = 1e-12;
-/// What stands for the mass of a rotor, which belongs to the link that carries it, kg.
-const ROTOR: f64 = 1e-11;
-/// The model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
+/// MuJoCo treats masses, kg, and inertias, kg m², below this as zero.
+const MIN_MASS_OR_INERTIA: f64 = 1e-12;
+/// Mass of a rotor's body, kg: the rotor's real mass belongs to the link that carries it.
+const ROTOR_MASS_KG: f64 = 1e-11;
+/// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
 ///
 /// # Errors
-/// If MuJoCo could not move it, or the pose is of another machine.
+/// If MuJoCo cannot simulate the machine, or if the pose does not have one angle for each drive.
 pub fn mjcf(machine: &Machine, q: &[f64]) -> Result<String, MjcfError> {
     let model = Model::of(machine, q)?;
     let massless = |link: &str, what| MjcfError::Massless { link: link.into(), what };
     for link in machine.links() {
-        if link.mass < LEAST {
+        if link.mass < MIN_MASS_OR_INERTIA {
             return Err(massless(&link.name, "mass"));
         }
-        if link.inertia < LEAST {
+        if link.inertia < MIN_MASS_OR_INERTIA {
             return Err(massless(&link.name, "inertia"));
         }
     }
     Ok(model.text(q))
 }
 
-/// Angles of all hinges of the model in a pose, rad, in the order of its `qpos`: those of links and rotors, depth first.
+/// Returns the angles of all hinges of the model in a pose, rad, in the order of `qpos`: links and rotors, depth first.
 ///
 /// # Errors
 /// As [`mjcf`].
@@ -74,18 +76,18 @@ pub fn hinges(machine: &Machine, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
 
 struct Model<'a> {
     machine: &'a Machine,
-    /// Whose names bodies and hinges have.
+    /// Names of bodies and hinges.
     tree: Tree<'a>,
     /// The angle of each motor.
     motors: Vec<Turn>,
-    /// Names of relative angles with limits, as sums of angles in pins, and their bounds, rad.
+    /// Relative angles with limits: name, sum of pin angles, and limits, rad.
     limited: Vec<(String, Turn, [f64; 2])>,
-    /// Links that nothing else keeps parallel to the first link of their drive.
+    /// Links that need an equality to stay parallel to the first link of their drive, with the angle between the two.
     parallel: Vec<(usize, Turn)>,
     out: String,
 }
 
-/// Writes a line; a `String` takes everything.
+/// Writes a line; writing to a `String` never fails.
 macro_rules! line {
     ($model:expr, $depth:expr, $($text:tt)*) => {{
         let _ = write!($model.out, "{:1$}", "", 2 * $depth);
@@ -155,7 +157,7 @@ impl<'a> Model<'a> {
         (0..parts.len()).filter(|j| parts[*j].parent == parent).collect()
     }
 
-    /// A link with what hangs on it.
+    /// Writes a link with all links that hang on it.
     fn body(&mut self, depth: usize, j: usize) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
         let (name, colour) = (self.tree.name(Part::Link(j)), COLOURS[part.drive % COLOURS.len()]);
@@ -198,12 +200,12 @@ impl<'a> Model<'a> {
     }
 
     fn inertial(&mut self, depth: usize, [x, y, z]: [f64; 3], mass: f64, inertia: f64) {
-        // Of a thin bar; a plane motion asks for the last one only.
+        // As for a thin bar; a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         line!(self, depth, "<inertial pos=\"{x} {y} {z}\" mass=\"{mass}\" diaginertia=\"{other} {other} {inertia}\"/>");
     }
 
-    /// The tip, and what it holds.
+    /// Writes the end effector, and the payload that it holds.
     fn end_effector(&mut self, depth: usize, j: usize) {
         let part = &self.machine.resolved_links()[j];
         let at = self.machine.end_effector()[part.drive] - part.root[part.drive];
@@ -217,12 +219,12 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// The hinge of a link.
+    /// Returns the name of a link's hinge.
     fn hinge(&self, j: usize) -> String {
         self.tree.holder(Part::Link(j))
     }
 
-    /// The link that carries the motor of a drive; none: the base.
+    /// Returns the link that carries the motor of a drive; `None` for the base.
     fn carrier(&self, k: usize) -> Option<usize> {
         let parts = self.machine.resolved_links();
         let on = self.machine.motors().on(k)?;
@@ -230,7 +232,7 @@ impl<'a> Model<'a> {
         pin.or_else(|| parts.iter().position(|part| part.drive == on))
     }
 
-    /// The rotors of the motors that a link carries.
+    /// Writes the rotors of the motors that a link carries; `None` for the base.
     fn rotors(&mut self, depth: usize, on: Option<usize>) {
         for k in 0..self.machine.drives() {
             let drive = &self.machine.spec().drives[k];
@@ -241,7 +243,7 @@ impl<'a> Model<'a> {
             let (name, hinge) = (self.tree.name(Part::Rotor(k)), self.rotor_hinge(k));
             line!(self, depth, "<body name=\"{name}\" pos=\"{at} 0 0\">");
             line!(self, depth + 1, "<joint name=\"{hinge}\"/>");
-            self.inertial(depth + 1, [0.0; 3], ROTOR, rotor.inertia);
+            self.inertial(depth + 1, [0.0; 3], ROTOR_MASS_KG, rotor.inertia);
             line!(self, depth, "</body>");
         }
     }
@@ -250,19 +252,19 @@ impl<'a> Model<'a> {
         self.tree.holder(Part::Rotor(k))
     }
 
-    /// Whether a rotor of a drive is a body.
+    /// Returns whether the rotor of a drive is a body of the model.
     fn has_rotor(&self, k: usize) -> bool {
-        self.machine.spec().drives[k].rotor.is_some_and(|rotor| rotor.inertia >= LEAST)
+        self.machine.spec().drives[k].rotor.is_some_and(|rotor| rotor.inertia >= MIN_MASS_OR_INERTIA)
     }
 
-    /// Sums of angles that have a name.
+    /// Writes sums of hinge angles as fixed tendons.
     fn tendons(&mut self) {
         let drives = &self.machine.spec().drives;
         let mut all: Vec<(String, Turn)> = Vec::new();
         for (k, turn) in self.motors.iter().enumerate().filter(|(_, turn)| turn.pin().is_none()) {
             all.push((format!("drive_{}", quoted(&drives[k].name)), turn.clone()));
         }
-        // A hinge has one range.
+        // A hinge can have only one range.
         let on_hinge = |i: usize| {
             let pin = self.limited[i].1.pin();
             pin.is_some() && self.limited[..i].iter().all(|(_, turn, _)| turn.pin() != pin)
@@ -313,7 +315,7 @@ impl<'a> Model<'a> {
             return;
         }
         line!(self, 1, "<equality>");
-        // Where each link is kept parallel, the pins close by themselves.
+        // If each link is kept parallel, the loops stay closed without equalities of their own.
         if parallel.is_empty() {
             for number in 1..=loops {
                 line!(self, 2, "<connect name=\"loop {number}\" site1=\"loop {number} a\" site2=\"loop {number} b\"/>");
@@ -351,7 +353,7 @@ impl<'a> Model<'a> {
         line!(self, 1, "</actuator>");
     }
 
-    /// Angles of all hinges in the order of the bodies.
+    /// Returns the angles of all hinges, rad, in the order of the bodies.
     fn pose(&self, q: &[f64]) -> Vec<f64> {
         let mut all = Vec::new();
         self.pose_of(None, q, &mut all);
@@ -376,7 +378,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// Relative angles with limits, as sums of angles in pins and their bounds.
+/// Returns the relative angles with limits: name, sum of pin angles, and limits, rad.
 fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
     let angles = machine.angles().iter().filter(|a| a.limits.start().is_finite() && a.limits.end().is_finite());
     angles
@@ -387,7 +389,8 @@ fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
         .collect()
 }
 
-/// Links that nothing keeps parallel to the first link of their drive, where pins that close loops are too few.
+/// Returns the links that need an equality to stay parallel to the first link of their drive, with the angle between
+/// the two. Empty if the loops keep all links parallel.
 fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
     let parts = machine.resolved_links();
     if parts.len() == machine.drives() + 2 * machine.loops().len() {
@@ -401,7 +404,7 @@ fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
     (0..parts.len()).filter_map(of).collect()
 }
 
-/// A pose amid the limits of the machine's relative angles, with its first drive upright, rad.
+/// Returns a pose, rad, with its first drive upright and each relative angle in the middle of its limits.
 pub fn middle(machine: &Machine) -> Vec<f64> {
     let mut q = vec![TAU / 4.0; machine.drives()];
     for angle in machine.angles() {
@@ -412,7 +415,7 @@ pub fn middle(machine: &Machine) -> Vec<f64> {
     q
 }
 
-/// How far a bar goes along its axis: over its length and all its pins.
+/// Returns the interval that a bar covers along its axis, m: its length and all its pins.
 fn reach(length: f64, pins: &[f64]) -> (f64, f64) {
     pins.iter().fold((0.0_f64.min(length), 0.0_f64.max(length)), |(least, most), at| (least.min(*at), most.max(*at)))
 }

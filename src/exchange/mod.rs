@@ -1,4 +1,4 @@
-//! Machines for other programs, and for the people who build them.
+//! Export of machines to other programs and for construction, and import from other programs.
 
 pub mod cut;
 pub mod drawing;

@@ -1,11 +1,11 @@
-//! [`Parts`]: what a machine is built of, as a list: CSV for a spreadsheet, Markdown to read.
+//! [`Parts`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
 use super::cut::{Cut, CutError, SAME};
 use crate::mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
 use crate::settings::number::fixed;
 use crate::settings::text::sheet_cell;
 
-/// What a machine is built of, kind by kind.
+/// Parts list of a machine, by kinds of parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
     /// The machine's name.
@@ -17,32 +17,32 @@ pub struct Parts {
 /// The parts of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartTable {
-    /// What one of them is: `link`.
+    /// Name of one such part: `link`.
     pub kind: &'static str,
-    /// What all of them are: `Links`.
+    /// Title of the table: `Links`.
     pub title: &'static str,
-    /// What each column holds, with its unit.
+    /// Title of each column, with its unit.
     pub head: Vec<&'static str>,
     /// A row for each part.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// What is said of a part.
+/// A cell of the table of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// In words.
+    /// A text.
     Words(String),
-    /// As a number, with so many decimals where it is read.
+    /// A number, with its decimals in Markdown.
     Number(f64, usize),
-    /// Nothing.
+    /// An empty cell.
     None,
 }
 
 impl Parts {
-    /// The list of a machine; discs are as thick as `cut` says.
+    /// Makes the parts list of a machine; `cut` gives density and thickness of discs.
     ///
     /// # Errors
-    /// If what discs are made of is no measure.
+    /// If density or thickness of discs is out of range.
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
         cut.check_discs()?;
         let tables = [
@@ -57,7 +57,7 @@ impl Parts {
         Ok(Self { machine: machine.name().into(), tables })
     }
 
-    /// As CSV (RFC 4180): one table with a column for each that any kind of part has, numbers in full.
+    /// Returns the list as CSV (RFC 4180): one table with all columns of all kinds of parts, numbers with all digits.
     pub fn csv(&self) -> String {
         let mut head: Vec<&str> = Vec::new();
         for name in self.tables.iter().flat_map(|table| &table.head) {
@@ -80,7 +80,7 @@ impl Parts {
         text
     }
 
-    /// As Markdown: a table for each kind, its columns aligned.
+    /// Returns the list as Markdown: a table for each kind, with aligned columns.
     pub fn markdown(&self) -> String {
         let mut text = format!("# Parts of {}\n", plain(&self.machine));
         for table in &self.tables {
@@ -124,7 +124,7 @@ impl Cell {
         value.map_or(Self::None, |value| Self::Number(value, decimals))
     }
 
-    /// With every digit; words that a spreadsheet would compute are kept from it.
+    /// Returns the cell for CSV: numbers with all digits, and text that a spreadsheet does not take for a formula.
     fn whole(&self) -> String {
         match self {
             Self::Words(text) => sheet_cell(text).into_owned(),
@@ -133,7 +133,7 @@ impl Cell {
         }
     }
 
-    /// As it is read.
+    /// Returns the cell for Markdown.
     fn read(&self) -> String {
         match self {
             Self::Words(text) => plain(text),
@@ -143,7 +143,7 @@ impl Cell {
     }
 }
 
-/// A field of CSV: quoted where a comma, quote or line end is in it.
+/// Returns a field of CSV, quoted if it contains a comma, a quote or a line end.
 fn field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -151,7 +151,7 @@ fn field(text: &str) -> String {
     }
 }
 
-/// A name as a line of a Markdown table can hold it.
+/// Escapes a name for a line of a Markdown table.
 fn plain(text: &str) -> String {
     let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     text.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;")
@@ -257,12 +257,12 @@ fn motors(machine: &Machine) -> PartTable {
     }
 }
 
-/// A place on a link, in words.
+/// Returns a position on a link in words.
 fn on(machine: &Machine, j: usize, at: f64) -> String {
     format!("link {} at {} m", machine.links()[j].name, fixed(at, 4))
 }
 
-/// What meets in one point in every pose is held by one pin.
+/// Lists the pins. Points of links that coincide in every pose share one pin.
 fn pins(machine: &Machine) -> PartTable {
     let mut pins: Vec<(Chain, Vec<String>)> = Vec::new();
     let mut join = |point: Chain, words: String| {

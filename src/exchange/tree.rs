@@ -1,14 +1,14 @@
-//! [`Tree`]: a machine as a tree of parts and joints, as URDF wants it, and the names that both formats give them.
+//! [`Tree`]: a machine as a tree of parts and joints, as URDF requires it, and the names of these in URDF and MJCF.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ_k | angle of motor k: q_k − q_on, or q_k for a motor on the base | rad |
 //!
-//! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF follows one other: a sum is
-//! several joints in series, with parts of no account between them. Readers that build a tree from its root want the
-//! joint that is followed before those that follow it. A serial arm has it so where its motors turn its links; elsewhere
-//! each motor turns a shaft, and all links follow.
+//! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF can mimic only one other
+//! joint. So a sum becomes several joints in series, with auxiliary parts of negligible mass between them. Programs
+//! that read a tree from its root need a joint before the joints that mimic it. In a serial arm this holds if the
+//! motors turn the links directly. In other machines each motor turns a shaft, and all links follow shafts.
 
 use std::collections::BTreeMap;
 
@@ -19,30 +19,30 @@ use crate::mechanics::machine::Machine;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     Base,
-    /// A link of the machine, by number.
+    /// A link of the machine, by its index.
     Link(usize),
-    /// What a motor turns beside the links.
+    /// An auxiliary part that motor k turns, if it turns no link directly.
     Shaft(usize),
-    /// What turns in a motor before its gear.
+    /// The rotor of motor k.
     Rotor(usize),
-    /// Before a link, the number of a joint of those in series.
+    /// An auxiliary part between joints in series: the link after them, and the number of the joint, from 1.
     Between(usize, usize),
-    /// The point that works.
+    /// The end effector.
     End,
     Payload,
 }
 
-/// How a joint turns.
+/// Motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turns {
-    /// By θ_k, as motor k does.
+    /// Turns by θ_k: the joint of motor k.
     Motor(usize),
-    /// By so many times θ_k.
+    /// Mimics motor k: turns by θ_k times this factor.
     Follows(usize, f64),
     Not,
 }
 
-/// What joins a part to another, so far along its x axis, m.
+/// A joint between two parts, at position `at` along the parent's x axis, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
     pub parent: Part,
@@ -58,7 +58,7 @@ pub struct Tree<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// Of a machine.
+    /// Makes the tree of a machine.
     pub fn of(machine: &'a Machine) -> Self {
         let parts = machine.resolved_links();
         let turned = |k: usize| {
@@ -74,7 +74,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// What a part is called.
+    /// Returns the name of a part.
     pub fn name(&self, part: Part) -> String {
         let spec = self.machine.spec();
         let link = |j: usize| quoted(&self.machine.links()[j].name);
@@ -90,7 +90,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// What a joint is called.
+    /// Returns the name of a joint.
     pub fn joint_name(&self, joint: &Joint) -> String {
         match joint.turns {
             Turns::Motor(k) => format!("drive_{}", quoted(&self.machine.spec().drives[k].name)),
@@ -98,14 +98,14 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// What the joint is called that holds a part.
+    /// Returns the name of the joint that carries a part.
     pub fn holder(&self, part: Part) -> String {
         let joint = self.joints.iter().find(|joint| joint.child == part);
         joint.map_or_else(|| format!("joint_{}", self.name(part)), |joint| self.joint_name(joint))
     }
 
-    /// Whether joints come after what they follow, from the root to the tips: in the order of the file, and in that of
-    /// their names, as others keep them.
+    /// Returns whether each joint comes after the joint that it mimics, from the root to the tips. This must hold in
+    /// the order of the file and in that of the joints' names, by which some programs sort them.
     fn is_readable(&self) -> bool {
         let mut by_name: Vec<(String, &Joint)> =
             self.joints.iter().map(|joint| (self.joint_name(joint), joint)).collect();
@@ -115,7 +115,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Whether joints that follow come after those that they follow, depth first.
+/// Returns whether each joint comes after the joint that it mimics, depth first.
 fn is_ordered(joints: &[&Joint]) -> bool {
     let mut below: BTreeMap<Part, Vec<&Joint>> = BTreeMap::new();
     for joint in joints.iter().rev() {
@@ -133,7 +133,7 @@ fn is_ordered(joints: &[&Joint]) -> bool {
     true
 }
 
-/// The joints of a machine whose motors turn these links; none: a shaft.
+/// Returns the joints of a machine; `turned` holds the link that each motor turns, `None` for a shaft.
 fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
     let parts = machine.resolved_links();
     let motors = machine.motors();
@@ -142,7 +142,7 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
         Some(parent) => (Part::Link(parent), parts[parent].sign * parts[j].at),
     };
     let driven = |k: usize| turned[k].map_or(Part::Shaft(k), Part::Link);
-    // A shaft sits on what turns with the drive that carries its motor, at its root.
+    // A shaft sits at the root of the part that turns with the drive carrying its motor.
     let seat = |k: usize| match (turned[k], motors.on(k)) {
         (Some(j), _) => root(j),
         (None, Some(on)) => (driven(on), 0.0),
@@ -182,7 +182,8 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
     joints
 }
 
-/// q_to − q_from as a sum of motor angles, each with 1 or −1, in an order in which none is far from the next.
+/// Returns q_to − q_from as a sum of motor angles, each with sign 1 or −1: first from drive `from` along its carriers
+/// to the common carrier, then from there to drive `to`.
 fn turns(machine: &Machine, from: Option<usize>, to: Option<usize>) -> Vec<(usize, f64)> {
     let motors = machine.motors();
     let carriers = |k: Option<usize>| std::iter::successors(k, |k| motors.on(*k)).collect::<Vec<_>>();

@@ -1,20 +1,20 @@
-//! [`Turn`]: an angle of a machine as a sum of the angles in its pins.
+//! [`Turn`]: an angle between links as a sum of pin angles.
 
 use crate::mechanics::machine::Machine;
 
-/// Σ ± the angles in the pins that hold links. The angle in the pin at the root of a link is that from the drive of the
-/// link it hangs on to its own; on the base, from its x axis.
+/// A sum of pin angles with signs. The angle of the pin at a link's root is that of its drive relative to its parent's
+/// drive, or to the x axis of the base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
-    /// Links by number, each with 1 or −1.
+    /// Indices of the links whose root pins these are, each with sign 1 or −1.
     pub pins: Vec<(usize, f64)>,
 }
 
 impl Turn {
-    /// From the drive of one link to that of another; none: from the x axis of the base.
+    /// Returns the angle from the drive of link `from` to that of link `to`; `None`: from the x axis of the base.
     pub fn between(machine: &Machine, from: Option<usize>, to: usize) -> Self {
         let (down, up) = (pins(machine, Some(to)), pins(machine, from));
-        // What holds both turns neither against the other.
+        // Pins that hold both links cancel.
         let shared = down.iter().rev().zip(up.iter().rev()).take_while(|(a, b)| a == b).count();
         let kept = |list: &[usize]| list[..list.len() - shared].to_vec();
         let down = kept(&down).into_iter().rev().map(|j| (j, 1.0));
@@ -22,8 +22,8 @@ impl Turn {
         Self { pins: down.chain(up).collect() }
     }
 
-    /// Of a drive against another, q_to − q_from; none: against the base, q_to. A link of the one on a link of the other is
-    /// preferred.
+    /// Returns the angle q_to − q_from between two drives, or q_to if `from` is `None`; `None` if no link follows one
+    /// of them. A single pin between links of the two drives is preferred.
     pub fn of_drives(machine: &Machine, from: Option<usize>, to: usize) -> Option<Self> {
         let parts = machine.resolved_links();
         let first = |k: usize| parts.iter().position(|part| part.drive == k);
@@ -37,7 +37,7 @@ impl Turn {
         Some(Self::between(machine, from, to))
     }
 
-    /// The one pin that turns by just this, if there is one.
+    /// Returns the pin whose angle this is, if the sum is one pin with sign 1.
     pub fn pin(&self) -> Option<usize> {
         match self.pins[..] {
             [(pin, 1.0)] => Some(pin),
@@ -46,7 +46,7 @@ impl Turn {
     }
 }
 
-/// The pins that hold a link, from its own to that on the base.
+/// Returns the pins from the root of a link down to the base.
 fn pins(machine: &Machine, link: Option<usize>) -> Vec<usize> {
     std::iter::successors(link, |j| machine.resolved_links()[*j].parent).collect()
 }

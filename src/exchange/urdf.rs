@@ -7,37 +7,36 @@
 //! | θ_k | angle of joint `drive_k`: that of motor k, q_k − q_on, or q_k for a motor on the base | rad |
 //! | N | gear ratio of a rotor: it turns by N θ_k in its stator | |
 //!
-//! The joints `drive_k` are the only ones that move by themselves. The frame of a link sits at its root with x along
-//! e(q_k), so a link that runs against its drive lies along −x. Projected on the drives, mass matrix and gravity are
-//! those of the machine.
+//! The joints `drive_k` are the only independent ones. The frame of a link has its origin at the link's root and x
+//! along e(q_k), so a link that runs against its drive lies along −x. Projected on the drives, mass matrix and gravity
+//! are those of the machine.
 //!
-//! # What URDF cannot say
-//! Gravity, pins that close loops (the joints in series hold them closed all the same), limits of an angle between
-//! drives whose motors do not turn by it, and limits of acceleration and jerk: these stand in an element `<stillbase>`,
-//! which others pass over and [`import`](super::import) reads. Friction, springs and the base's own motion belong to a
-//! scenario. Inertias about axes that a plane motion does not ask are made up.
+//! # What URDF cannot express
+//! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none
+//! for limits of an angle that is not a motor's. (Mimic joints keep the loops closed.) All these stand in an element
+//! `<stillbase>`, which other programs ignore and [`import`](super::import) reads. Friction, springs and the base's own
+//! motion belong to a scenario. Inertias about axes in the plane do not affect a plane motion and are invented.
 
 use super::look::{COLOURS, RADIUS};
 use super::tree::{Joint, Part, Tree, Turns};
 use super::xml::{Lines, quoted, remark};
 use crate::mechanics::machine::{Machine, Payload, RelativeAngle};
 
-/// What counts for nothing beside the machine, as a share of its mass: some programs take a link without mass for one
-/// of 1 kg.
-const NOTHING: f64 = 1e-13;
-/// What a joint has to have and the machine does not limit: torque in N m and rate in rad/s.
+/// Mass of auxiliary links as a fraction of the machine's mass: some programs read a link without mass as one of 1 kg.
+const AUXILIARY_MASS_FRACTION: f64 = 1e-13;
+/// Limit written for an unlimited torque, N m, or rate, rad/s, because URDF requires one.
 const UNLIMITED: f64 = 1e9;
-/// The model of a machine as text.
+/// Returns the model of a machine as text.
 pub fn urdf(machine: &Machine) -> String {
     Model::of(machine).text()
 }
 
-/// The joint that turns by the angle of motor k.
+/// Returns the name of the joint that turns by the angle of motor k.
 pub fn joint(machine: &Machine, k: usize) -> String {
     format!("drive_{}", machine.spec().drives[k].name)
 }
 
-/// What two limits of one joint leave; where that is nothing, one value.
+/// Returns the intersection of two intervals; if it is empty, an interval of one value.
 pub(super) fn meet(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let least = a[0].max(b[0]);
     [least, a[1].min(b[1]).max(least)]
@@ -46,7 +45,7 @@ pub(super) fn meet(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 struct Model<'a> {
     machine: &'a Machine,
     tree: Tree<'a>,
-    /// Of a body of no account, kg and kg m².
+    /// Mass, kg, and inertia, kg m², of an auxiliary link.
     least: f64,
     lines: Lines,
 }
@@ -55,15 +54,20 @@ struct Model<'a> {
 struct Body {
     /// Centre of mass, m.
     at: [f64; 3],
-    /// kg.
+    /// Mass, kg.
     mass: f64,
-    /// About its centre of mass, around z, kg m².
+    /// Inertia about its centre of mass, around z, kg m².
     inertia: f64,
 }
 
 impl<'a> Model<'a> {
     fn of(machine: &'a Machine) -> Self {
-        Self { machine, tree: Tree::of(machine), least: NOTHING * machine.mass(), lines: Lines::default() }
+        Self {
+            machine,
+            tree: Tree::of(machine),
+            least: AUXILIARY_MASS_FRACTION * machine.mass(),
+            lines: Lines::default(),
+        }
     }
 
     fn text(mut self) -> String {
@@ -80,7 +84,7 @@ impl<'a> Model<'a> {
         let joints = self.tree.joints.clone();
         joints.iter().for_each(|joint| self.part(joint.child));
         joints.iter().for_each(|joint| self.joint(joint));
-        self.besides();
+        self.extension();
         self.lines.add(0, format_args!("</robot>"));
         self.lines.into_text()
     }
@@ -89,8 +93,8 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("<!-- {} -->", remark(text)));
     }
 
-    /// What URDF has no word for.
-    fn besides(&mut self) {
+    /// Writes the element `<stillbase>` with all that URDF cannot express.
+    fn extension(&mut self) {
         let mut all = Vec::new();
         let machine = self.machine;
         let spec = machine.spec();
@@ -133,7 +137,7 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("</stillbase>"));
     }
 
-    /// Limits of a relative angle as those of the joint of a motor, rad.
+    /// Returns the limits of a relative angle as limits of a motor's joint, rad; `None` if it is not a motor's angle.
     fn limited(&self, angle: &RelativeAngle) -> Option<(usize, [f64; 2])> {
         let motors = self.machine.motors();
         let (least, most) = (angle.limits.start() - angle.offset, angle.limits.end() - angle.offset);
@@ -153,7 +157,7 @@ impl<'a> Model<'a> {
         let (kind, more) = match joint.turns {
             Turns::Not => ("fixed", String::new()),
             Turns::Motor(k) => self.limits(k, 1.0),
-            // Some want it of the kind that it follows.
+            // Some programs require the same type as that of the joint it follows.
             Turns::Follows(k, times) => {
                 let drive = quoted(&self.machine.spec().drives[k].name);
                 let (kind, limits) = self.limits(k, times);
@@ -171,7 +175,7 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("</joint>"));
     }
 
-    /// Kind and limits of a joint that turns by so many times the angle of a motor.
+    /// Returns type and limits of a joint that turns by `times` times the angle of motor k.
     fn limits(&self, k: usize, times: f64) -> (&'static str, String) {
         let drive = &self.machine.spec().drives[k];
         let ranges = self.machine.angles().iter().filter_map(|angle| self.limited(angle));
@@ -194,17 +198,17 @@ impl<'a> Model<'a> {
                 let at = [sign * link.com, sign * link.com_normal, link.axial];
                 Body { at, mass: link.mass, inertia: link.inertia }
             }
-            // Its mass belongs to what carries it.
+            // Its mass belongs to the link that carries it.
             Part::Rotor(k) => {
                 let inertia = machine.spec().drives[k].rotor.map_or(self.least, |rotor| rotor.inertia);
-                Body { inertia, ..self.nothing() }
+                Body { inertia, ..self.auxiliary() }
             }
             Part::Payload => {
                 let (payload, sign) = (machine.spec().payload, machine.resolved_links()[machine.end_link()].sign);
                 let [along, left] = payload.offset.map(|x| sign * x);
                 Body { at: [along, left, payload.axial], ..Body::from(payload) }
             }
-            Part::Base | Part::Shaft(_) | Part::Between(..) | Part::End => self.nothing(),
+            Part::Base | Part::Shaft(_) | Part::Between(..) | Part::End => self.auxiliary(),
         };
         let name = self.tree.name(part);
         self.lines.add(1, format_args!("<link name=\"{name}\">"));
@@ -217,7 +221,7 @@ impl<'a> Model<'a> {
 
     fn inertial(&mut self, body: &Body) {
         let Body { at: [x, y, z], mass, inertia } = body;
-        // Of a thin bar; a plane motion asks for the last one only.
+        // As for a thin bar; a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         self.lines.add(2, format_args!("<inertial>"));
         self.lines.add(3, format_args!("<origin xyz=\"{x} {y} {z}\"/>"));
@@ -227,12 +231,12 @@ impl<'a> Model<'a> {
         self.lines.add(2, format_args!("</inertial>"));
     }
 
-    /// A body of no account.
-    fn nothing(&self) -> Body {
+    /// Returns the body of an auxiliary link, with negligible mass and inertia.
+    fn auxiliary(&self) -> Body {
         Body { at: [0.0; 3], mass: self.least, inertia: self.least }
     }
 
-    /// What is seen of a link: a bar over all its pins, and its counterweights.
+    /// Writes the visual shape of a link: a bar over all its pins, and its counterweights.
     fn shape(&mut self, j: usize) {
         let machine = self.machine;
         let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);

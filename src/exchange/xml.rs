@@ -1,4 +1,4 @@
-//! Lines of XML.
+//! Writes lines of XML.
 
 use std::fmt::{Arguments, Write as _};
 
@@ -9,19 +9,19 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// One more line, indented by so many steps.
+    /// Adds a line, indented by `depth` steps.
     pub fn add(&mut self, depth: usize, line: Arguments<'_>) {
-        // A `String` takes everything.
+        // Writing to a `String` never fails.
         let _ = writeln!(self.out, "{:1$}{line}", "", 2 * depth);
     }
 
-    /// The whole text.
+    /// Returns the whole text.
     pub fn into_text(self) -> String {
         self.out
     }
 }
 
-/// Text that may stand in an attribute.
+/// Escapes text for an attribute.
 pub fn quoted(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -37,7 +37,7 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Text that may stand in a comment, which two hyphens would end.
+/// Escapes text for a comment, which must not contain two hyphens.
 pub fn remark(text: &str) -> String {
     quoted(text).replace("--", "-\u{2010}")
 }

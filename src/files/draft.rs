@@ -1,9 +1,8 @@
-//! [`Draft`]: a file in the making, beside the one that it is to become, and what becomes of it if the program ends.
+//! [`Draft`]: a temporary file in the folder of the file that it will become, and its removal if the program ends.
 //!
-//! The crate `tempfile` makes such files too, but leaves three things to do that make up this file: what a killed program
-//! left behind is found again and removed, by its name and because nobody holds its lock; who ends the program by a signal
-//! removes all drafts without dropping their owners, and keeps others from taking their names meanwhile; and a fault can be
-//! asked for at each step. What it would bring is the loop for a free name.
+//! The crate `tempfile` makes temporary files too, but does not do three things that this module does. Temporary files
+//! of killed programs are found by their names and released locks, and removed. A signal handler can remove all drafts
+//! without dropping their owners, while no draft can take its final name. Tests can inject a fault at each step.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -18,33 +17,33 @@ pub(super) fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// The files in the making of this program. Who holds them keeps others from beginning and from taking their names.
+/// Paths of this program's temporary files. While the lock is held, no draft can begin or take its final name.
 static MAKING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub(super) fn making() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     MAKING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// All files in the making are gone, and no other can begin or take its name as long as this lives.
+/// Guard after [`abandon`]: while it lives, no draft can begin or take its final name.
 #[derive(Debug)]
 pub struct Abandoned(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
 
-/// Gives up all files in the making, for who is about to end the program.
+/// Removes all temporary files, before the program ends.
 pub fn abandon() -> Abandoned {
     let parts = making();
     for part in parts.iter() {
-        // Nobody is left to tell.
+        // Errors cannot be reported any more.
         let _ = fs::remove_file(part);
     }
     Abandoned(parts)
 }
 
-/// What names of files in the making end in.
+/// Ending of the names of temporary files.
 pub(super) const PART_ENDING: &str = ".stillbase.part";
 
-/// Where a file is written before it takes its name: hidden beside it, `.case.csv.4711-0.stillbase.part`.
+/// Returns the path of a temporary file, hidden in the same folder: `.case.csv.4711-0.stillbase.part`.
 fn part_of(file: &Path, attempt: u32) -> PathBuf {
-    // A name may be as long as the file system allows already.
+    // The name may already be as long as the file system allows.
     let name: String = file.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
     file.with_file_name(format!(".{name}.{}-{attempt}{PART_ENDING}", std::process::id()))
 }
@@ -56,21 +55,21 @@ fn is_part(name: &OsStr) -> bool {
     number.is_some_and(|(process, attempt)| counted(process) && counted(attempt))
 }
 
-/// Removes what programs that were killed have left in a folder. Who makes a file holds a lock on it, which ends with
-/// the program whatever ends it.
+/// Removes temporary files of killed programs from a folder. A program holds a lock on each of its temporary files, and
+/// the system releases the lock when the program ends.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
     for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
         let Ok(part) = File::open(entry.path()) else { continue };
         if part.try_lock().is_ok() {
-            // Where it cannot be removed, it belongs to another user.
+            // A file that cannot be removed belongs to another user.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// A file beside the one that it is to become.
+/// A temporary file in the folder of the file that it will become.
 #[derive(Debug)]
 pub(super) struct Draft {
     pub part: PathBuf,
@@ -78,7 +77,7 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Begins a file beside another, locked.
+    /// Creates a locked temporary file for `file`.
     pub fn create(file: PathBuf) -> io::Result<(Self, File)> {
         sweep(folder_of(&file));
         let mut parts = making();
@@ -89,7 +88,7 @@ impl Draft {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
                 out => out?,
             };
-            // Another program may have removed it in between; where files cannot be locked, none are removed.
+            // Another program may have removed it before it was locked. Without file locks no program removes any.
             let swept = matches!(out.try_lock(), Err(TryLockError::WouldBlock)) || part.symlink_metadata().is_err();
             if !swept {
                 parts.insert(part.clone());
@@ -103,13 +102,13 @@ impl Draft {
 impl Drop for Draft {
     fn drop(&mut self) {
         let mut parts = making();
-        // Gone already if it has taken its name; if it cannot be removed, the next who writes here tries again.
+        // The file no longer exists if it has taken its final name. If it cannot be removed, a later sweep tries again.
         let _ = fs::remove_file(&self.part);
         parts.remove(&self.part);
     }
 }
 
-/// A file whose writing can be made to fail.
+/// A file whose writing can fail by an injected fault.
 #[derive(Debug)]
 pub(super) struct Checked(pub File);
 

@@ -1,5 +1,5 @@
-//! Faults that tests ask for, to see what becomes of files: the n-th step of writing fails, or the program ends there
-//! at once. Only debug builds have them.
+//! Fault injection for tests of file writing: the n-th step fails, or the program ends at once there. Only in debug
+//! builds.
 
 use std::io;
 #[cfg(debug_assertions)]
@@ -8,38 +8,39 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 /// A step of writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// Begin, write, sync, take a name: each can fail.
+    /// Creating, writing, syncing or renaming: each can fail.
     Fallible,
-    /// Tidying up, where a failure does no harm: the program can only end there.
+    /// Cleaning up, where a failure does no harm: an injected fault can only end the program there.
     Tidy,
 }
 
-/// Steps until the fault.
+/// Number of steps until the fault.
 #[cfg(debug_assertions)]
-static LEFT: AtomicI64 = AtomicI64::new(0);
+static STEPS_TO_FAULT: AtomicI64 = AtomicI64::new(0);
+/// Whether the fault ends the program; otherwise the step fails.
 #[cfg(debug_assertions)]
-static ENDS: AtomicBool = AtomicBool::new(false);
+static ENDS_PROGRAM: AtomicBool = AtomicBool::new(false);
 
-/// Wants a fault: `fail:3` fails at the third step, `end:3` ends the program there.
+/// Sets the fault: `fail:3` fails at the third step, `end:3` ends the program there.
 #[cfg(debug_assertions)]
 pub fn arm(wanted: &str) {
     if let Some((how, n)) = wanted.split_once(':') {
-        ENDS.store(how == "end", Relaxed);
-        LEFT.store(n.parse().unwrap_or(0), Relaxed);
+        ENDS_PROGRAM.store(how == "end", Relaxed);
+        STEPS_TO_FAULT.store(n.parse().unwrap_or(0), Relaxed);
     }
 }
 
-/// Whether the fault is due at this step; if so, [`strike`] is next.
+/// Counts a step and returns whether the fault is due at it; if so, the caller calls [`strike`].
 #[cfg(debug_assertions)]
 pub(super) fn is_due(step: Step) -> bool {
-    (step == Step::Fallible || ENDS.load(Relaxed)) && LEFT.fetch_sub(1, Relaxed) == 1
+    (step == Step::Fallible || ENDS_PROGRAM.load(Relaxed)) && STEPS_TO_FAULT.fetch_sub(1, Relaxed) == 1
 }
 
-/// Makes the wanted fault happen.
+/// Executes the fault.
 #[cfg(debug_assertions)]
 pub(super) fn strike() -> io::Result<()> {
-    if ENDS.load(Relaxed) {
-        // Nothing is tidied up, as if it had been killed.
+    if ENDS_PROGRAM.load(Relaxed) {
+        // Nothing is cleaned up, as if the program had been killed.
         std::process::exit(137);
     }
     Err(io::Error::other("a fault on purpose"))
@@ -55,7 +56,7 @@ pub(super) fn strike() -> io::Result<()> {
     Ok(())
 }
 
-/// Fails here if the fault is due.
+/// Counts a step and executes the fault if it is due.
 pub(super) fn at(step: Step) -> io::Result<()> {
     if is_due(step) { strike() } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! Machines and scenarios by name or by file.
+//! Finds machines and scenarios by name or by file.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::settings::range::shortened;
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
 
-/// A machine by built-in name or by file; a relative file is looked up beside `folder` if there is one.
+/// Returns a machine by built-in name or by file; a relative path is resolved in `folder`, if given.
 ///
 /// # Errors
-/// If it is neither, or the file is not a machine.
+/// If it is neither, or if the file is not a machine.
 pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
     if let Some(machine) = machine::builtin(name) {
         return Ok(machine.clone());
@@ -42,20 +42,20 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
     }
 }
 
-/// A scenario, and what has to be said of where it comes from.
+/// A scenario, with a note on its origin.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// It.
+    /// The scenario.
     pub scenario: Scenario,
-    /// That it was made around a machine, in a line.
+    /// Note that it was made for a machine, if so.
     pub made: Option<String>,
 }
 
-/// A scenario by built-in name or by file; a machine file that it names is looked up beside it. A machine in its place
-/// gets a task made for it.
+/// Returns a scenario by built-in name or by file; a machine file that it names is resolved in its folder. For a
+/// machine instead of a scenario, makes a scenario with a task.
 ///
 /// # Errors
-/// If it is neither, or the file is not a scenario, nor a machine.
+/// If it is neither, or if the file is neither a scenario nor a machine.
 pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
         return Ok(Found { scenario, made: None });
@@ -75,7 +75,7 @@ pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
-    // A model of another program: no TOML begins like this.
+    // A model of another program: TOML cannot begin with this character.
     if text.trim_start().starts_with('<') {
         let Imported { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
         let Found { scenario, made } = made(name, &machine)?;
@@ -89,7 +89,7 @@ pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
     Ok(Found { scenario, made: None })
 }
 
-/// A scenario around a machine that was found by a name.
+/// Makes a scenario for a machine, whose name or file is `name`.
 fn made(name: &str, machine: &Machine) -> Result<Found, ScenarioError> {
     let scenario = around(machine)?;
     let task = &scenario.task;

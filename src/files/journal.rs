@@ -1,5 +1,5 @@
-//! [`Journal`]: the present session in a file of the program's own, so that a crash, a kill or a power cut loses at most
-//! its last second. The file goes when the program ends in order; one that is left behind is offered at the next start.
+//! [`Journal`]: a backup of the present session, so that a crash, a kill or a power cut loses at most its last second.
+//! The file is removed when the program ends normally; a file that remains is offered for recovery at the next start.
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -7,28 +7,29 @@ use std::time::SystemTime;
 
 use super::{WriteError, write_new};
 
-/// Where journals stand: `stillbase/sessions` in the folder for what programs remember, such as `~/.local/state`.
+/// Returns the folder of journals: `stillbase/sessions` in the system's folder for program state, such as
+/// `~/.local/state`.
 pub fn folder() -> Option<PathBuf> {
     let own = directories::ProjectDirs::from("", "", "stillbase")?;
     Some(own.state_dir().unwrap_or_else(|| own.data_local_dir()).join("sessions"))
 }
 
-/// How many programs may run at once and keep a journal each; no file is looked for beyond.
-const MOST: usize = 64;
+/// Maximum number of journals, so of programs that run at once with a journal each.
+const MAX_JOURNALS: usize = 64;
 
-/// The journal of a program that runs. It is locked as long as that is so.
+/// The journal of a running program, which holds a lock on it.
 #[derive(Debug)]
 pub struct Journal {
     file: PathBuf,
     lock: (PathBuf, File),
 }
 
-/// What a program left behind that did not end in order.
+/// A journal of a program that did not end normally.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// The session.
+    /// File of the session.
     pub file: PathBuf,
-    /// When it was written last.
+    /// Time of its last change.
     pub when: SystemTime,
 }
 
@@ -36,7 +37,7 @@ fn names(folder: &Path, number: usize) -> [PathBuf; 2] {
     [folder.join(format!("session-{number}.toml")), folder.join(format!("session-{number}.lock"))]
 }
 
-/// A lock file of one's own, if nobody holds it.
+/// Opens and locks a lock file, if no other program holds it.
 fn locked(name: &Path) -> Option<File> {
     let file = File::options().create(true).truncate(false).write(true).open(name).ok()?;
     match file.try_lock() {
@@ -46,33 +47,33 @@ fn locked(name: &Path) -> Option<File> {
 }
 
 impl Journal {
-    /// The first that nobody writes and nobody left behind; `None` if the folder cannot be written.
+    /// Begins a journal under the first free number; `None` if there is none, or if the folder cannot be written.
     pub fn begin(folder: &Path) -> Option<Self> {
         fs::create_dir_all(folder).ok()?;
-        (0..MOST).find_map(|number| {
+        (0..MAX_JOURNALS).find_map(|number| {
             let [file, name] = names(folder, number);
             let lock = locked(&name)?;
-            // Looked for with the lock held: another program may have begun in between.
+            // Checked while the lock is held, because another program may have begun in between.
             file.symlink_metadata().is_err().then_some(Self { file, lock: (name, lock) })
         })
     }
 
-    /// Where it is written.
+    /// Returns its file.
     pub fn file(&self) -> &Path {
         &self.file
     }
 
-    /// Removes it: there is nothing to be offered at the next start.
+    /// Removes it, so that no recovery is offered at the next start.
     pub fn end(self) {
         forget(&self.file);
         let (name, lock) = self.lock;
-        // Before it is let go, so that nobody else takes what is about to be removed.
+        // Removed while still locked, so that no other program locks a file that is about to be removed.
         let _ = fs::remove_file(name);
         drop(lock);
     }
 }
 
-/// Writes a session, whole or not at all, and has it on the disk.
+/// Writes a session, whole or not at all, and syncs it to the disk.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -80,22 +81,22 @@ pub fn write(file: &Path, text: &str) -> Result<(), WriteError> {
     write_new(file, text.as_bytes(), true)
 }
 
-/// What was left behind by programs that did not end in order, newest first.
+/// Returns the journals of programs that did not end normally, newest first.
 pub fn left(folder: &Path) -> Vec<Left> {
     let of = |number: usize| {
         let [file, name] = names(folder, number);
         let about = file.symlink_metadata().ok().filter(fs::Metadata::is_file)?;
-        // Held: its program still runs.
+        // If the lock is held, its program still runs.
         locked(&name)?;
         Some(Left { file, when: about.modified().ok()? })
     };
-    let mut all: Vec<Left> = (0..MOST).filter_map(of).collect();
+    let mut all: Vec<Left> = (0..MAX_JOURNALS).filter_map(of).collect();
     all.sort_by_key(|left| std::cmp::Reverse(left.when));
     all
 }
 
-/// Removes what was left behind.
+/// Removes a journal.
 pub fn forget(file: &Path) {
-    // One that cannot be removed is offered once more, and nothing is lost.
+    // A journal that cannot be removed is offered again, and nothing is lost.
     let _ = fs::remove_file(file);
 }

@@ -1,5 +1,5 @@
-//! Files written so that nothing is lost: whole or not at all, and over another one only when asked to; and tables of
-//! numbers that others wrote.
+//! Writing of files without loss: a file appears whole or not at all, and replaces another only if forced. Reading of
+//! tables from other programs.
 
 mod draft;
 pub mod fault;
@@ -20,7 +20,7 @@ pub use draft::{Abandoned, abandon};
 pub use find::{Found, machine, scenario};
 pub use new_file::{NewFile, WriteError, check_new, finish_all, free_name, made, write_new};
 
-/// The whole name of a file that is there, so that it is found again from any folder.
+/// Returns the absolute path of an existing file.
 pub fn whole(file: &std::path::Path) -> Option<std::path::PathBuf> {
     file.canonicalize().ok()
 }

@@ -1,4 +1,4 @@
-//! [`NewFile`]: a file that appears whole or not at all, and replaces nothing unasked.
+//! [`NewFile`]: a file that appears whole or not at all, and replaces another only if forced.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -12,16 +12,16 @@ use super::fault::Step;
 /// Why a file was not written.
 #[derive(Debug, Error)]
 pub enum WriteError {
-    /// It is there already.
+    /// The file exists already.
     #[error("{} exists: want another name, or --force to replace it", .0.display())]
     Exists(PathBuf),
-    /// The name is that of a folder.
+    /// The name belongs to a folder.
     #[error("{} is a folder: want the name of a file", .0.display())]
     IsFolder(PathBuf),
-    /// A device or a pipe, which another file must not replace.
+    /// The name belongs to a device or a pipe, which is not replaced.
     #[error("{} is no plain file: want the name of a new one", .0.display())]
     NotPlain(PathBuf),
-    /// Its folder is not there.
+    /// Its folder does not exist.
     #[error("{}: no folder {}: want one that exists", file.display(), folder.display())]
     NoFolder {
         /// The file.
@@ -29,33 +29,34 @@ pub enum WriteError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The file system.
+    /// The file system reports an error.
     #[error("{}: {source}: want a place that can be written", file.display())]
     Failed {
         /// The file.
         file: PathBuf,
-        /// The system's reason.
+        /// Reason given by the operating system.
         source: io::Error,
     },
-    /// It is there, but the disk may not know it yet.
+    /// The file is complete, but its folder could not be synced to the disk.
     #[error("{} is written whole, but its folder was not synced ({source}): a power cut may undo it", file.display())]
     Unsynced {
         /// The file.
         file: PathBuf,
-        /// The system's reason.
+        /// Reason given by the operating system.
         source: io::Error,
     },
 }
 
-/// Refuses a file that exists, unless forced; folders and devices; and a file in a folder that does not exist.
+/// Checks that a file may be written: its folder exists, the name is not that of a folder or device, and the file does
+/// not exist unless `force` is set.
 ///
 /// # Errors
-/// If it is refused.
+/// If one of these does not hold.
 pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
     match fs::metadata(file) {
         Ok(there) if there.is_dir() => return Err(WriteError::IsFolder(file.into())),
         Ok(there) if !there.is_file() => return Err(WriteError::NotPlain(file.into())),
-        // A link to nowhere is something too.
+        // A dangling link counts as an existing file.
         _ if !force && fs::symlink_metadata(file).is_ok() => return Err(WriteError::Exists(file.into())),
         _ => {}
     }
@@ -66,19 +67,20 @@ pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
     }
 }
 
-/// A file in the making, buffered. It takes its name in [`finish`](Self::finish); dropped before, it leaves nothing.
+/// A new file while it is written, buffered. [`finish`](Self::finish) gives it its final name; if it is dropped before,
+/// nothing remains.
 #[derive(Debug)]
 pub struct NewFile {
-    /// What errors call it.
-    asked: PathBuf,
+    /// The requested path, which errors name.
+    requested: PathBuf,
     force: bool,
-    /// The file that it replaces has further names (hard links), which are to show the new content, too.
+    /// Whether the file that it replaces has further hard links, which are to have the new content too.
     has_other_names: bool,
     out: BufWriter<Checked>,
     draft: Draft,
 }
 
-/// The file that another one replaces.
+/// The file that a new file replaces.
 struct Before {
     metadata: fs::Metadata,
     has_other_names: bool,
@@ -94,13 +96,13 @@ impl Before {
         Some(Self { metadata, has_other_names })
     }
 
-    /// Gives a file its owner, as far as the system allows, and its permissions: who could not read the old content
-    /// cannot read the new one.
+    /// Copies its owner, as far as the system allows, and its permissions to a file, so that only those who could read
+    /// the old content can read the new one.
     fn lend_access(&self, file: &File) -> io::Result<()> {
         #[cfg(unix)]
         {
             use std::os::unix::fs::{MetadataExt, fchown};
-            // Only the superuser may give files away; the owner is then who writes.
+            // Only the superuser may change the owner; otherwise the writing user owns the file.
             let _ = fchown(file, Some(self.metadata.uid()), Some(self.metadata.gid()));
         }
         file.set_permissions(self.metadata.permissions())
@@ -108,13 +110,13 @@ impl Before {
 }
 
 impl NewFile {
-    /// Begins a file.
+    /// Begins a new file.
     ///
     /// # Errors
     /// As [`check_new`], or if its folder cannot be written.
     pub fn create(file: &Path, force: bool) -> Result<Self, WriteError> {
         check_new(file, force)?;
-        // Through a link, so that the link stays.
+        // A link is followed, so that the link itself stays.
         let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
         let failed = |source| WriteError::Failed { file: file.into(), source };
         let before = Before::of(&target);
@@ -123,15 +125,15 @@ impl NewFile {
             before.lend_access(&out).map_err(failed)?;
         }
         let has_other_names = before.is_some_and(|before| before.has_other_names);
-        Ok(Self { asked: file.into(), force, has_other_names, out: BufWriter::new(Checked(out)), draft })
+        Ok(Self { requested: file.into(), force, has_other_names, out: BufWriter::new(Checked(out)), draft })
     }
 
-    /// What was asked for.
+    /// Returns the requested path.
     pub fn path(&self) -> &Path {
-        &self.asked
+        &self.requested
     }
 
-    /// The last bytes so far, at most so many, and where they begin.
+    /// Returns the offset of the last bytes written so far, and the bytes, at most `most`.
     ///
     /// # Errors
     /// If they cannot be read.
@@ -145,7 +147,7 @@ impl NewFile {
         Ok((from, bytes))
     }
 
-    /// Writes over what stands somewhere.
+    /// Overwrites the bytes at an offset.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -155,7 +157,7 @@ impl NewFile {
         self.out.seek(SeekFrom::End(0)).map(|_| ())
     }
 
-    /// Puts the file under its name.
+    /// Gives the file its final name.
     ///
     /// # Errors
     /// If not everything could be written, or another file has taken the name meanwhile.
@@ -164,23 +166,23 @@ impl NewFile {
     }
 
     fn failed(&self, source: io::Error) -> WriteError {
-        WriteError::Failed { file: self.asked.clone(), source }
+        WriteError::Failed { file: self.requested.clone(), source }
     }
 
-    /// Everything on the disk, under whatever name.
-    fn settle(&mut self) -> Result<(), WriteError> {
-        let settled = self
+    /// Syncs its content to the disk, still under its temporary name.
+    fn sync_content(&mut self) -> Result<(), WriteError> {
+        let synced = self
             .out
             .flush()
             .and_then(|()| super::fault::at(Step::Fallible))
             .and_then(|()| self.out.get_ref().0.sync_all());
-        settled.map_err(|source| self.failed(source))
+        synced.map_err(|source| self.failed(source))
     }
 
-    /// Takes its name; what was there before, if it may be replaced, is kept aside if asked to.
+    /// Gives the file its final name. If `keep`, a file that it replaces is kept under another name.
     fn take_name(&self, keep: bool) -> Result<Taken, WriteError> {
         let Draft { part, file } = &self.draft;
-        check_new(&self.asked, self.force)?;
+        check_new(&self.requested, self.force)?;
         let in_place = self.has_other_names;
         let before = if self.force && (keep || in_place) { aside(part, file, in_place) } else { None };
         let named = |()| match (self.force, in_place, &before) {
@@ -194,7 +196,7 @@ impl NewFile {
             Err(error) => {
                 before.map(fs::remove_file);
                 Err(match error.kind() {
-                    ErrorKind::AlreadyExists => WriteError::Exists(self.asked.clone()),
+                    ErrorKind::AlreadyExists => WriteError::Exists(self.requested.clone()),
                     _ => self.failed(error),
                 })
             }
@@ -202,18 +204,18 @@ impl NewFile {
     }
 }
 
-/// Gives a file in the making a name that must be free: of two that try, one succeeds.
+/// Gives a temporary file a final name that must be free: of two programs that try, one succeeds.
 fn link(part: &Path, file: &Path) -> io::Result<()> {
     match fs::hard_link(part, file) {
         Ok(()) => {
             if super::fault::at(Step::Tidy).is_ok() {
-                // It goes with the draft otherwise.
+                // Otherwise it is removed with the draft.
                 let _ = fs::remove_file(part);
             }
             Ok(())
         }
         Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(e),
-        // A file system without second names: an empty file keeps the name until the whole one replaces it.
+        // On a file system without hard links, an empty file reserves the name until the complete file replaces it.
         Err(_) => {
             OpenOptions::new().write(true).create_new(true).open(file)?;
             fs::rename(part, file).inspect_err(|_| _ = fs::remove_file(file))
@@ -221,8 +223,8 @@ fn link(part: &Path, file: &Path) -> io::Result<()> {
     }
 }
 
-/// Writes the content of a file into another one, which keeps all its names, and has it on the disk. Other than a name,
-/// content does not change at once: ended in between, both versions are left beside it until the next file is written.
+/// Copies the content of a file into another, which keeps all its hard links, and syncs it. Unlike a rename this is not
+/// atomic: if the program ends in between, both versions remain under temporary names until the next file is written.
 fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
     let (mut from, mut to) = (File::open(from)?, OpenOptions::new().write(true).truncate(true).open(to)?);
     super::fault::at(Step::Tidy)?;
@@ -230,8 +232,8 @@ fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
     to.sync_all()
 }
 
-/// What a file holds that is about to be replaced, under another name, if the file system has room for that: a copy
-/// where the file is written over. A sweep takes it for left over.
+/// Keeps the content of a file that is about to be replaced under a temporary name, if the file system allows it: as a
+/// copy if the file will be overwritten, or else as a hard link. A sweep removes it later.
 fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     let aside =
         part.with_file_name(format!("{}0{PART_ENDING}", part.file_name()?.to_str()?.strip_suffix(PART_ENDING)?));
@@ -245,19 +247,18 @@ fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     .map(|()| aside)
 }
 
-/// A name that was taken.
+/// A final name that a file has taken.
 struct Taken {
     file: PathBuf,
-    /// What had the name before.
+    /// The previous file of that name, under its temporary name.
     before: Option<PathBuf>,
-    /// Its content was replaced, not its name.
+    /// Whether the content of the previous file was overwritten, rather than its name replaced.
     in_place: bool,
 }
 
 impl Taken {
-    /// As it was.
+    /// Restores the previous state: the previous file, or a free name.
     fn give_back(self, force: bool) {
-        // What was kept aside comes back; a name that was free is free again.
         let _ = match &self.before {
             Some(before) if self.in_place => copy_into(before, &self.file).and_then(|()| fs::remove_file(before)),
             Some(before) => fs::rename(before, &self.file),
@@ -267,17 +268,17 @@ impl Taken {
     }
 }
 
-/// Puts files that belong together under their names: all, or none. They take them in their order, so where the last
-/// one is, all are.
+/// Gives files that belong together their final names: all, or none. They take the names in order, so if the last one
+/// exists, all exist.
 ///
 /// # Errors
 /// If not everything could be written, or another file has taken a name meanwhile.
 pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteError> {
     for file in &mut files {
-        file.settle()?;
+        file.sync_content()?;
     }
     let mut taken = Vec::with_capacity(N);
-    // Nothing may come between: not the end of the program either.
+    // While the lock is held, no other draft takes a name, and a signal handler cannot end the program.
     let parts = making();
     for file in &files {
         match file.take_name(N > 1) {
@@ -295,12 +296,12 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
     drop(parts);
     for file in &files {
         let synced = super::fault::at(Step::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
-        synced.map_err(|source| WriteError::Unsynced { file: file.asked.clone(), source })?;
+        synced.map_err(|source| WriteError::Unsynced { file: file.requested.clone(), source })?;
     }
     Ok(())
 }
 
-/// Has the disk know the names in a folder.
+/// Syncs the names in a folder to the disk.
 fn sync(folder: &Path) -> io::Result<()> {
     if !cfg!(unix) {
         return Ok(());
@@ -308,7 +309,7 @@ fn sync(folder: &Path) -> io::Result<()> {
     // A folder that may be written need not be readable.
     let Ok(folder) = File::open(folder) else { return Ok(()) };
     match folder.sync_all() {
-        // Not every file system knows how.
+        // Not every file system can sync folders.
         Err(e) if matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
         done => done,
     }
@@ -323,15 +324,15 @@ impl Write for NewFile {
     }
 }
 
-/// Writes a whole file, or leaves everything as it was.
+/// Writes a whole file, or leaves everything unchanged.
 ///
 /// # Errors
-/// If it exists and is not to be replaced, or cannot be written.
+/// If the file exists and `force` is not set, or if it cannot be written.
 pub fn write_new(file: &Path, bytes: &[u8], force: bool) -> Result<(), WriteError> {
     made(file, bytes, force)?.finish()
 }
 
-/// A whole file that has yet to take its name.
+/// Writes a whole file that has yet to take its final name.
 ///
 /// # Errors
 /// As [`write_new`].
@@ -341,9 +342,9 @@ pub fn made(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteErro
     Ok(out)
 }
 
-/// `name.ending`, or `name-1.ending` and so on, whichever is free in the current folder.
+/// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder.
 pub fn free_name(name: &str, ending: &str) -> PathBuf {
-    // A name is free text; as the name of a file it must stay in this folder.
+    // `name` is free text; the file must stay in this folder.
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | ' ') { c } else { '-' };
     let name: String = name.chars().map(plain).take(100).collect();
     let numbered = (1..1000).map(|i| PathBuf::from(format!("{name}-{i}.{ending}")));

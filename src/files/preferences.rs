@@ -1,4 +1,4 @@
-//! What is remembered from one start to the next, in a file of the person's own.
+//! Preferences of a user, which are kept from one start to the next.
 
 use std::path::PathBuf;
 
@@ -7,18 +7,19 @@ use serde::de::DeserializeOwned;
 
 use super::{text, write_new};
 
-/// Where it stands: `stillbase/preferences.toml` in the folder for settings, such as `~/.config`.
+/// Returns the file of preferences: `stillbase/preferences.toml` in the system's folder for settings, such as
+/// `~/.config`.
 pub fn file() -> Option<PathBuf> {
     Some(directories::ProjectDirs::from("", "", "stillbase")?.config_dir().join("preferences.toml"))
 }
 
-/// What was remembered; nothing if there is no file, or one that is not understood.
+/// Loads the preferences; the defaults if there is no file, or if it cannot be parsed.
 pub fn load<T: DeserializeOwned + Default>() -> T {
     let text = file().and_then(|file| text::read(&file).ok());
     text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Remembers; what cannot be written is forgotten, since nothing of a session depends on it.
+/// Saves preferences; errors are ignored, because no session depends on them.
 pub fn save(preferences: &impl Serialize) {
     let written = || -> Option<()> {
         let (file, text) = (file()?, toml::to_string(preferences).ok()?);

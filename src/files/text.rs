@@ -1,4 +1,4 @@
-//! Text read from plain files of a bounded size.
+//! Reads text from plain files of bounded size.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
@@ -6,26 +6,26 @@ use std::path::Path;
 
 use crate::settings::text::MOST_BYTES;
 
-/// Reads a text file: a plain one, of at most [`MOST_BYTES`].
+/// Reads a plain text file of at most [`MOST_BYTES`].
 ///
 /// # Errors
-/// If it is none.
+/// If it is not such a file, or cannot be read.
 pub fn read(file: &Path) -> io::Result<String> {
-    // To open a pipe would already wait for its other end.
+    // Opening a pipe would block until its other end is opened.
     check(&fs::metadata(file)?, MOST_BYTES)?;
     let opened = File::open(file)?;
     check(&opened.metadata()?, MOST_BYTES)?;
     let mut text = String::new();
-    // It may grow, and some files do not say how long they are.
+    // The file may grow, and some files report no length.
     opened.take(MOST_BYTES + 1).read_to_string(&mut text)?;
     let length = text.len() as u64;
     if length > MOST_BYTES { Err(too_long(length)) } else { Ok(text) }
 }
 
-/// Refuses what is no plain file or too long.
+/// Checks that a file is a plain file of at most `most` bytes.
 ///
 /// # Errors
-/// If it is refused.
+/// If it is not.
 pub fn check(file: &Metadata, most: u64) -> io::Result<()> {
     match file.len() {
         _ if file.is_dir() => Err(io::Error::new(ErrorKind::IsADirectory, "a folder")),

@@ -7,12 +7,12 @@
 //! | H_kl | mass matrix, Re Z_kl + δ_kl J_k, and J r_k r_l of every rotor | kg m² |
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
 //! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::mechanics::machine::Motors)) | N m |
-//! | D_k | Σ_l H_lk, and what rotors on the base leave; angular momentum about B is D q̇ | kg m² |
+//! | D_k | Σ_l H_lk, and J r_k (1 − Σ_l r_l) of every rotor; angular momentum about B is D q̇ | kg m² |
 //! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g | N |
 //! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g | N m |
 //!
 //! # Source
-//! (4) with the sign of gravity put right: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
+//! (4) with the sign of gravity corrected: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
 
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, Wrench, cross, dot};
@@ -22,7 +22,7 @@ macro_rules! by_drives {
     ($n:expr, $f:ident($($arg:expr),*)) => {
         by_drives!(@ $n, $f, [], ($($arg),*))
     };
-    // The same with whether the base moves.
+    // The same, with a second constant: whether the base moves.
     ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
         match $moves {
             false => by_drives!(@ $n, $f, [false], ($($arg),*)),
@@ -44,7 +44,7 @@ macro_rules! by_drives {
 }
 pub(crate) use by_drives;
 
-/// A force held at the end effector and the field it all moves in.
+/// External loads: the field of gravity, and a force at the end effector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// Acceleration of gravity g, m/s².
@@ -67,18 +67,18 @@ impl MassMatrix {
         self.h[k][l]
     }
 
-    /// D_k, kg m²: Σ_l H_lk, (A3), and what rotors on the base leave.
+    /// Returns D_k, kg m²: Σ_l H_lk, (A3), and the part of rotors with stators on the base.
     pub fn momentum_row(&self, k: usize) -> f64 {
         (0..self.n).map(|l| self.h[l][k]).sum::<f64>() + self.taken_up[k]
     }
 
-    /// H x.
+    /// Returns H x.
     #[inline]
     pub fn times(&self, x: &PerDrive) -> PerDrive {
         by_drives!(self.n, times_padded(self, x))
     }
 
-    /// H⁻¹ x by the factors L D Lᵀ; H is positive definite for every machine whose links have mass.
+    /// Returns H⁻¹ x by the factorisation H = L D Lᵀ. H is positive definite for every machine whose links have mass.
     #[inline]
     pub fn solve(&self, x: &PerDrive) -> PerDrive {
         by_drives!(self.n, solve_padded(self, x))
@@ -89,11 +89,11 @@ impl MassMatrix {
     }
 }
 
-// What follows works on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more than
-// the arithmetic.
+// The functions below work on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more
+// than the arithmetic.
 pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
-/// The first N of a padded array.
+/// Returns the first N elements of a padded array.
 #[inline]
 pub(crate) fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
     const { assert!(N <= MAX_DRIVES) }
@@ -113,11 +113,11 @@ pub(crate) fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
 
-/// H = L D Lᵀ, which needs no root.
+/// Factors of H = L D Lᵀ, without square roots.
 pub(crate) struct Factors<const N: usize> {
-    /// L below its diagonal.
+    /// L, strictly below the diagonal.
     l: Square<N>,
-    /// 1/D.
+    /// Reciprocals of the diagonal of D.
     inverse: [f64; N],
 }
 
@@ -135,7 +135,7 @@ impl<const N: usize> Factors<N> {
         Self { l, inverse }
     }
 
-    /// H⁻¹ x.
+    /// Returns H⁻¹ x.
     #[inline(always)]
     pub(crate) fn solve(&self, mut x: [f64; N]) -> [f64; N] {
         for i in 0..N {
@@ -153,7 +153,7 @@ fn solve<const N: usize>(h: &Square<N>, x: [f64; N]) -> [f64; N] {
     Factors::of(h).solve(x)
 }
 
-/// H and V, (4).
+/// Computes the mass matrix H, kg m², and the velocity terms V, N m, (4).
 #[inline]
 pub fn mass_matrix(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
     by_drives!(inertia.drives, mass_matrix_of(inertia, e, qd))
@@ -184,7 +184,7 @@ pub(crate) fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &
     (h, v)
 }
 
-/// −γᵀ g − Jᵀ F, the part of the torque that holds still, N m.
+/// Returns the torque that holds the machine at rest, −γᵀ g − Jᵀ F, N m.
 #[inline]
 pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, holding_torque_of(inertia, e, around))
@@ -197,13 +197,13 @@ fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surr
 
 #[inline(always)]
 fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
-    // (i e) · a = e × a for a unit vector e turned by a right angle
+    // (i e) · a = e × a: multiplying by i turns e by a right angle.
     std::array::from_fn(|k| {
         -cross(inertia.g[k] * e[k], around.gravity) - inertia.end_effector[k] * cross(e[k], around.force)
     })
 }
 
-/// Torques for given accelerations, (4), N m: those of the motors where all sit on the base.
+/// Returns the generalised torques for given accelerations, (4), N m: those of the motors if all sit on the base.
 #[inline]
 pub fn inverse(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
@@ -220,7 +220,7 @@ fn inverse_of<const N: usize>(
     torques(inertia, first::<N, _>(e), first(qd.padded()), first(qdd.padded()), around).into()
 }
 
-/// The same at the machine's own size.
+/// Returns the torques of [`inverse`] at the machine's own size.
 #[inline(always)]
 pub(crate) fn torques<const N: usize>(
     inertia: &Inertia,
@@ -234,7 +234,7 @@ pub(crate) fn torques<const N: usize>(
     std::array::from_fn(|k| inertial[k] + v[k] + holding[k])
 }
 
-/// Accelerations for given torques, rad/s².
+/// Returns the accelerations, rad/s², for given torques, N m.
 #[inline]
 pub fn forward(inertia: &Inertia, e: &Units, qd: &PerDrive, torque: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
@@ -254,29 +254,29 @@ fn forward_of<const N: usize>(
     solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k])).into()
 }
 
-/// What the manipulator transmits to its base, in its two parts.
+/// Wrench that the manipulator exerts on its base, in two parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BaseWrench {
-    /// From weight and from a force held at the end effector: M g + F and its moment about B.
+    /// Part from weight and from a force at the end effector: M g + F, and the moment of both about B.
     pub statical: Wrench,
-    /// From motion: −d/dt of the linear and of the angular momentum.
+    /// Part from motion: −d/dt of the linear and of the angular momentum.
     pub dynamic: Wrench,
 }
 
 impl BaseWrench {
-    /// The sum of both parts.
+    /// Returns the sum of both parts.
     pub fn total(&self) -> Wrench {
         Wrench { force: self.statical.force + self.dynamic.force, moment: self.statical.moment + self.dynamic.moment }
     }
 }
 
-/// f_B and n_B, (1) and (5).
+/// Returns the base wrench, f_B, N, and n_B about B, N m, (1) and (5).
 #[inline]
 pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
     inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
 
-/// d/dt (D q̇) from H q̈, V and q̈.
+/// Returns the rate of the angular momentum about B, d/dt (D q̇), N m, from H q̈, V and q̈.
 #[inline(always)]
 pub(crate) fn angular_rate<const N: usize>(
     inertia: &Inertia,
@@ -312,7 +312,7 @@ pub(crate) fn wrench_with<const N: usize>(
     }
 }
 
-/// Torques and base wrench of a motion, in one evaluation.
+/// Returns torques, N m, and base wrench of a motion, in one evaluation.
 #[inline]
 pub fn inverse_with_wrench(
     inertia: &Inertia,
@@ -340,8 +340,8 @@ fn inverse_with_wrench_of<const N: usize>(
     (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
 }
 
-/// Σ_j m_j |a_cj|, N: what the links would transmit if nothing cancelled. `moments` holds m_j a_jk, kg m, all drives
-/// of a link side by side.
+/// Returns Σ_j m_j |r̈_cj|, N: the sum of the magnitudes of the links' inertial forces, which do not cancel in it.
+/// `moments` holds m_j a_jk, kg m, of all drives of a link side by side.
 #[inline]
 pub fn inertial_pull(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
     by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))

@@ -1,4 +1,4 @@
-//! Where the end effector is and how it moves: (14), its Jacobian, and inverses of two-drive sub-chains.
+//! Kinematics of the end effector: its position, (14), its Jacobian, and inverses of two-drive sub-chains.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -13,28 +13,28 @@ use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
 
 const I: Vector = Complex::new(0.0, 1.0);
 
-/// The end effector p, m, (14).
+/// Returns the position p of the end effector, m, (14).
 pub fn end_effector(tip: &Chain, e: &Units) -> Vector {
     place_of(tip, e)
 }
 
-/// Column k of the Jacobian in absolute drive angles, m.
+/// Returns column k of the Jacobian with respect to absolute drive angles, m.
 pub fn column(tip: &Chain, e: &Units, k: usize) -> Vector {
     I * e[k] * tip[k]
 }
 
-/// ṗ = J q̇, m/s.
+/// Returns the velocity of the end effector, ṗ = J q̇, m/s.
 pub fn velocity(tip: &Chain, e: &Units, qd: &PerDrive) -> Vector {
     I * qd.iter().zip(tip.iter().zip(e)).map(|(qd, (w, e))| e * (w * qd)).sum::<Vector>()
 }
 
-/// p̈ = J q̈ + J̇ q̇, m/s².
+/// Returns the acceleration of the end effector, p̈ = J q̈ + J̇ q̇, m/s².
 pub fn acceleration(tip: &Chain, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
     (0..qd.len()).map(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k] * tip[k]).sum()
 }
 
-/// The minimum-norm solution q̇ = J⁺ v, Jᵀ (J Jᵀ)⁻¹ v, and its exact derivative for v̇: J̇ and J enter both factors.
-/// `None` where J has lost rank.
+/// Returns the minimum-norm solution q̇ = J⁺ v = Jᵀ (J Jᵀ)⁻¹ v, rad/s, and its exact time derivative for v̇, with J̇ in
+/// both factors. `None` where J is rank deficient.
 pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> Option<(PerDrive, PerDrive)> {
     let j = |k: usize| column(tip, e, k);
     let gram = |a: &dyn Fn(usize) -> Vector, b: &dyn Fn(usize) -> Vector| {
@@ -61,9 +61,9 @@ pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> 
     Some((qd, qdd))
 }
 
-/// The least rates that give the end effector the velocity v, m/s, while Σ λ_k q_k stays, and their exact derivative
-/// for v̇: q̇ = Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. `None` where A has lost rank, as it always has for fewer than three
-/// drives.
+/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, at constant Σ λ_k q_k, and
+/// their exact time derivative for v̇: q̇ = Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. `None` where A is rank deficient, as it
+/// always is for fewer than three drives.
 pub fn minimum_norm_held(
     tip: &Chain,
     lambda: &PerDrive,
@@ -74,30 +74,31 @@ pub fn minimum_norm_held(
     minimum_norm_with(tip, (lambda, 0.0), |_| PerDrive::zeros(lambda.len()), e, v, vd)
 }
 
-/// The same with another row beside the Jacobian, and what it makes of the rates: a constant. `changes` is how the row
-/// changes with rates.
+/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, and satisfy `extra` · q̇ =
+/// `rate`, a constant; and their exact time derivative for v̇. The row `extra` joins the Jacobian; `extra_rate` returns
+/// its time derivative for given rates. `None` where the matrix is rank deficient.
 pub fn minimum_norm_with(
     tip: &Chain,
-    (beside, rate): (&PerDrive, f64),
-    changes: impl Fn(&PerDrive) -> PerDrive,
+    (extra, rate): (&PerDrive, f64),
+    extra_rate: impl Fn(&PerDrive) -> PerDrive,
     e: &Units,
     v: Vector,
     vd: Vector,
 ) -> Option<(PerDrive, PerDrive)> {
-    let n = beside.len();
+    let n = extra.len();
     if n < 3 {
         return None;
     }
-    // That row as long as the arms, so that all rows are of one size.
+    // The extra row is scaled to the reach, so that all rows are of one size.
     let reach = tip.iter().map(|c| c.abs()).sum::<f64>();
-    let scale = reach / beside.max_abs();
-    let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * beside[k]);
+    let scale = reach / extra.max_abs();
+    let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * extra[k]);
     let a = |k: usize| row(column(tip, e, k), k);
     let gram = (0..n).fold(Matrix3::zeros(), |g, k| g + a(k) * a(k).transpose());
     let inverse = gram.try_inverse().filter(|_| gram.determinant() > 1e-14 * gram.trace().powi(3))?;
     let y = inverse * Vector3::new(v.re, v.im, scale * rate);
     let qd = PerDrive::from_fn(n, |k| a(k).dot(&y));
-    let changed = changes(&qd);
+    let changed = extra_rate(&qd);
     let ad = |k: usize| {
         let jd = I * column(tip, e, k) * qd[k];
         Vector3::new(jd.re, jd.im, scale * changed[k])
@@ -108,20 +109,22 @@ pub fn minimum_norm_with(
     Some((qd, qdd))
 }
 
-/// The angle equal to `angle` modulo 2π that lies nearest to `near`.
+/// Returns the angle equal to `angle` modulo 2π that is nearest to `near`, rad.
 pub fn closest_turn(angle: f64, near: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle + turn * ((near - angle) / turn).round()
 }
 
-/// Rates (q̇_k, q̇_l) with i c_k e_k q̇_k + i c_l e_l q̇_l = v. `None` where the two links are parallel.
+/// Returns the rates (q̇_k, q̇_l), rad/s, with i c_k e_k q̇_k + i c_l e_l q̇_l = v. `None` where the two links are
+/// parallel.
 pub fn two_link_rates(ck: f64, cl: f64, ek: Vector, el: Vector, v: Vector) -> Option<(f64, f64)> {
     let (jk, jl) = (I * ek * ck, I * el * cl);
     let det = cross(jk, jl);
     (det.abs() > 1e-12 * (ck * cl).abs()).then(|| (cross(v, jl) / det, cross(jk, v) / det))
 }
 
-/// How well force passes through the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change point.
+/// Returns the worst force transmission of the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change
+/// point.
 pub fn least_transmission(e: &Units, n: usize) -> f64 {
     crate::mechanics::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
 }

@@ -1,4 +1,4 @@
-//! [`Loads`]: what drives and base bear in a state of motion.
+//! [`Loads`]: loads on drives and base in a state of motion.
 
 use serde::Serialize;
 
@@ -6,25 +6,25 @@ use super::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_wi
 use super::machine::Inertia;
 use super::planar::{DriveAngles, PerDrive};
 
-/// What drives and base have to bear in a state of motion, Eqs (1) to (6).
+/// Loads on drives and base in a state of motion, Eqs (1) to (6).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Loads {
-    /// H_kl, kg m².
+    /// Mass matrix H_kl, kg m².
     pub mass_matrix: Vec<Vec<f64>>,
-    /// Of each motor, N m.
+    /// Torque of each motor, N m.
     pub torque: Vec<f64>,
-    /// What the manipulator transmits to its base, weight included, N.
+    /// Force f_B that the manipulator exerts on its base, weight included, N.
     pub base_force: [f64; 2],
-    /// The same about B, positive counter-clockwise, N m.
+    /// Moment n_B about B that the manipulator exerts on its base, weight included, counter-clockwise, N m.
     pub base_moment: f64,
-    /// Centre of mass, seen from B, m.
+    /// Centre of mass relative to B, m.
     pub com: [f64; 2],
-    /// About B, kg m²/s.
+    /// Angular momentum about B, kg m²/s.
     pub angular_momentum_about_base: f64,
 }
 
 impl Loads {
-    /// Of a machine with angles q, rad, and their rates and accelerations, of as many drives as it has.
+    /// Computes the loads of a machine with drive angles q, rad, rates q̇, rad/s, and accelerations q̈, rad/s².
     pub fn of(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Self {
         let e = DriveAngles(*q).units();
         let (h, _) = mass_matrix(inertia, &e, qd);

@@ -1,4 +1,4 @@
-//! What a machine is: its links and drives, how it moves, what that takes, and what its base feels.
+//! Mechanics of a machine: links and drives, kinematics, dynamics, balance, and the forces on its base.
 
 pub mod balance;
 pub mod counterweights;

@@ -1,15 +1,15 @@
-//! A sheet as DXF of release 12, which every program for cutting reads: lines, circles, closed polylines and text on
-//! layers by what they are; a unit of the drawing is a millimetre.
+//! A sheet as DXF of release 12, which every program for cutting reads: lines, circles, closed polylines and text, on
+//! one layer for each purpose. A unit of the drawing is a millimetre.
 
 use std::fmt::Write as _;
 
 use super::sheet::{Anchor, Shape, Sheet};
 use crate::settings::number::fixed;
 
-/// Layers and their colours by number: what is cut, what is drilled, discs, and what is only read.
+/// Layers with their colour numbers: outlines to cut, holes to drill, discs, and annotations.
 const LAYERS: [(&str, u8); 4] = [("OUTLINE", 7), ("HOLES", 5), ("COUNTERWEIGHT", 1), ("TEXT", 8)];
 
-/// The file's text, of ASCII only.
+/// Returns the text of the file, in ASCII.
 pub fn dxf(sheet: &Sheet) -> String {
     let mut out = Tags::default();
     out.header(sheet.size);
@@ -24,7 +24,7 @@ pub fn dxf(sheet: &Sheet) -> String {
     out.out
 }
 
-/// Pairs of a code and a value, a line each.
+/// Writes pairs of a group code and a value, each on its own line.
 #[derive(Default)]
 struct Tags {
     out: String,
@@ -32,7 +32,7 @@ struct Tags {
 
 impl Tags {
     fn text(&mut self, code: u16, value: &str) {
-        // A `String` takes everything.
+        // Writing to a `String` never fails.
         let _ = writeln!(self.out, "{code}\n{value}");
     }
 
@@ -112,7 +112,7 @@ impl Tags {
         self.point(11, to);
     }
 
-    /// Two straight sides and two half circles, closed.
+    /// Writes a closed outline of two straight sides and two half circles.
     fn bar(&mut self, [x, y]: [f64; 2], length: f64, radius: f64) {
         self.entity("POLYLINE", "OUTLINE");
         self.count(66, 1);
@@ -142,7 +142,7 @@ impl Tags {
                 self.point(10, *at);
                 self.number(40, *height);
                 self.text(1, &ascii(text));
-                // Letters of the plain type are wide.
+                // Relative width, because letters of the default font are wide.
                 self.number(41, 0.75);
                 if *anchor == Anchor::Middle {
                     self.count(72, 1);
@@ -153,7 +153,7 @@ impl Tags {
     }
 }
 
-/// Text as a line of the file can hold it.
+/// Escapes text for a line of the file.
 fn ascii(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {

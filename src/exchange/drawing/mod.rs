@@ -1,4 +1,4 @@
-//! Links as parts to cut, flat and in real size: SVG to look at, DXF for the machine that cuts.
+//! Drawings of links for cutting, flat and at scale 1 : 1: SVG to look at, DXF for cutting machines.
 
 mod dxf;
 mod sheet;

@@ -1,4 +1,4 @@
-//! [`Sheet`]: every link of a machine laid out flat, in rows, none over another.
+//! [`Sheet`]: every link of a machine laid out flat, in rows, without overlap.
 //!
 //! Lengths are mm, x to the right and y up from the lower left corner of the sheet. A link lies with its axis along x,
 //! its root to the left of its tip.
@@ -9,27 +9,27 @@ use crate::exchange::cut::{Cut, CutError, SAME, ends, holes};
 use crate::mechanics::machine::{Counterweight, Machine};
 use crate::settings::number::{counted, fixed};
 
-/// What is drawn, as plain shapes.
+/// A drawing as plain shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// What it is called.
+    /// Its title.
     pub title: String,
-    /// Across and up, mm.
+    /// Width and height, mm.
     pub size: [f64; 2],
-    /// In the order in which they are painted.
+    /// Its shapes, in the order in which they are painted.
     pub shapes: Vec<Shape>,
 }
 
 /// A shape on the sheet, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// The outline of a link: a bar with round ends around two points at one height.
+    /// The outline of a link: a horizontal bar with round ends.
     Bar {
-        /// The left centre.
+        /// Centre of its left end.
         from: [f64; 2],
-        /// How far from there to the right one.
+        /// Distance to the centre of its right end.
         length: f64,
-        /// Of its ends, half its width.
+        /// Radius of its ends, half its width.
         radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
@@ -54,27 +54,27 @@ pub enum Shape {
     Line([[f64; 2]; 2]),
     /// A centre of mass.
     Mark {
-        /// Where.
+        /// Its centre.
         at: [f64; 2],
-        /// Half its size.
+        /// Radius of its symbol.
         radius: f64,
     },
     /// A line of text.
     Words {
-        /// Its base line.
+        /// Position of its anchor on the base line.
         at: [f64; 2],
-        /// Of its capitals, about.
+        /// Approximate height of its capitals.
         height: f64,
-        /// Which end is there.
+        /// The point of the text at this position.
         anchor: Anchor,
-        /// How it stands out.
+        /// Its emphasis.
         paint: Paint,
-        /// What it says.
+        /// Its content.
         text: String,
     },
 }
 
-/// Which end of a text is where it is put.
+/// The point of a text that is at its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor {
     /// Its left end.
@@ -83,25 +83,25 @@ pub enum Anchor {
     Middle,
 }
 
-/// How a text stands out.
+/// Emphasis of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
-    /// A name.
+    /// For a name.
     Strong,
-    /// All else.
+    /// For all other text.
     Plain,
 }
 
-/// How wide a letter is at most, as a share of its height.
-const LETTER: f64 = 0.78;
-/// A line of text after another, as a share of its height.
-const LEADING: f64 = 1.7;
+/// Estimated width of a letter, as a fraction of its height.
+const LETTER_WIDTH: f64 = 0.78;
+/// Distance between lines of text, as a multiple of their height.
+const LINE_SPACING: f64 = 1.7;
 
 impl Sheet {
-    /// All links of a machine.
+    /// Draws all links of a machine.
     ///
     /// # Errors
-    /// What cannot be cut.
+    /// If the links cannot be cut with these dimensions.
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
         cut.check(machine)?;
         let longest = machine.resolved_links().iter().map(|part| part.length).fold(0.0, f64::max);
@@ -115,19 +115,19 @@ fn mm(metres: f64) -> String {
     fixed(1e3 * metres, 1)
 }
 
-/// A text with a sign that is as long as a plus.
+/// Returns a length in mm with a true minus sign, as wide as a plus.
 fn signed(metres: f64) -> String {
     mm(metres).replace('-', "\u{2212}")
 }
 
 fn width_of(text: &str, height: f64) -> f64 {
-    text.chars().count() as f64 * LETTER * height
+    text.chars().count() as f64 * LETTER_WIDTH * height
 }
 
-/// A link with what is written about it, around its own root.
+/// The drawing of a link with its annotations, with the link's root as origin.
 struct Piece {
     shapes: Vec<Shape>,
-    /// How far it goes to the left, down, right and up.
+    /// Its extent: left, bottom, right and top, mm.
     reach: [f64; 4],
 }
 
@@ -151,12 +151,12 @@ impl Piece {
         let radius = 0.55 * height;
         piece.covers([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
         if piece.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
-            // Which link it belongs to.
+            // A line shows to which link the mark belongs.
             piece.shapes.push(Shape::Line([[0.0, 0.0], com]));
         }
         piece.shapes.push(Shape::Mark { at: com, radius });
         piece.stations(&holes, part.length, height);
-        piece.told(machine, cut, j, &weights, height);
+        piece.annotate(machine, cut, j, &weights, height);
         piece
     }
 
@@ -171,7 +171,7 @@ impl Piece {
         self.shapes.push(Shape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
     }
 
-    /// How far holes are from each other, and from the tip.
+    /// Draws the distances between neighbouring holes, and to the tip.
     fn stations(&mut self, holes: &[f64], tip: f64, height: f64) {
         let mut stations = holes.to_vec();
         if stations.iter().all(|at| (at - tip).abs() > SAME) {
@@ -198,8 +198,8 @@ impl Piece {
         self.shapes.push(Shape::Words { at, height, anchor, paint, text });
     }
 
-    /// Its name above it, and what it is like below.
-    fn told(&mut self, machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight], height: f64) {
+    /// Writes the link's name above the bar, and its data below.
+    fn annotate(&mut self, machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight], height: f64) {
         let (link, part) = (&machine.spec().links[j], &machine.resolved_links()[j]);
         let drive = &machine.spec().drives[part.drive].name;
         let (left, top) = (self.reach[0], self.reach[3] + 1.1 * height);
@@ -210,14 +210,14 @@ impl Piece {
         self.words([left + shift, top], height, Anchor::Start, Paint::Plain, about.clone());
         self.covers([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
         for line in below(machine, cut, j, weights) {
-            let at = [left, self.reach[1] - LEADING * height];
+            let at = [left, self.reach[1] - LINE_SPACING * height];
             self.covers([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
             self.words(at, height, Anchor::Start, Paint::Plain, line);
         }
     }
 }
 
-/// What stands below a link.
+/// Returns the lines of text below a link.
 fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> Vec<String> {
     let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
     let holes = holes(machine, j);
@@ -241,14 +241,14 @@ fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> 
     lines
 }
 
-/// Of the bar less its holes, m².
+/// Returns the area of a bar without its holes, m².
 fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
     let (holes, [from, to]) = (holes(machine, j), ends(machine, j));
     let round = |diameter: f64| 0.25 * PI * diameter * diameter;
     (to - from) * cut.bar_width + round(cut.bar_width) - holes.len() as f64 * round(cut.pin_diameter)
 }
 
-/// What is said of a counterweight.
+/// Returns the line of text about a counterweight.
 fn disc(cut: &Cut, weight: &Counterweight) -> String {
     let (mass, at) = (fixed(weight.mass, 3), signed(weight.at));
     let Some(thickness) = cut.thickness_of(weight.mass, weight.radius) else {
@@ -263,7 +263,7 @@ fn disc(cut: &Cut, weight: &Counterweight) -> String {
     format!("counterweight Ø {across} mm at {at} mm: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
 }
 
-/// Rows from the top down, as wide as makes the sheet a little wider than high.
+/// Arranges the pieces in rows from the top down, with a width that makes the sheet a little wider than high.
 fn laid_out(machine: &Machine, cut: &Cut, pieces: Vec<Piece>, height: f64) -> Sheet {
     let margin = 3.0 * height;
     let extent = |piece: &Piece| [piece.reach[2] - piece.reach[0], piece.reach[3] - piece.reach[1]];
@@ -305,7 +305,7 @@ fn title_height(line: usize, height: f64) -> f64 {
     if line == 0 { 2.2 * height } else { height }
 }
 
-/// What the sheet is.
+/// Returns the lines of the title.
 fn title(machine: &Machine, cut: &Cut) -> [String; 3] {
     let links = counted(machine.links().len(), "link");
     let discs = match machine.spec().counterweights.len() {
@@ -325,9 +325,9 @@ fn title(machine: &Machine, cut: &Cut) -> [String; 3] {
     ]
 }
 
-/// Puts pieces side by side, their tops at a height, and says how far down they go.
+/// Places pieces side by side below the height `top`, and returns the height of their lower edge.
 fn put(shapes: &mut Vec<Shape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
-    // Axes of a row lie at one height.
+    // The axes of all links in a row are at the same height.
     let up = row.iter().map(|(_, piece)| piece.reach[3]).fold(0.0, f64::max);
     let down = row.iter().map(|(_, piece)| piece.reach[1]).fold(0.0, f64::min);
     for (x, piece) in row {
@@ -341,7 +341,7 @@ fn put(shapes: &mut Vec<Shape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
 }
 
 impl Shape {
-    /// Whether it is a bar that goes as far as a point.
+    /// Returns whether it is a bar whose straight part contains a point.
     fn is_around(&self, [x, y]: [f64; 2]) -> bool {
         match self {
             Self::Bar { from, length, radius, .. } => {

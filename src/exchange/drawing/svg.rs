@@ -1,15 +1,15 @@
-//! A sheet as SVG in real size: a unit of the drawing is a millimetre.
+//! A sheet as SVG at scale 1 : 1: a unit of the drawing is a millimetre.
 
 use super::sheet::{Anchor, Paint, Shape, Sheet};
 use crate::exchange::xml::{Lines, quoted};
 use crate::settings::number::fixed;
 
-/// Colours of the drives, as the window has them on white.
+/// Colours of the drives, as the window shows them on white.
 const COLOURS: [&str; 8] = ["#0072b2", "#c2410c", "#047857", "#a86d00", "#9c4f86", "#7a7100", "#1d4f91", "#5b6270"];
 const INK: &str = "#1d2129";
 const DIM: &str = "#6b7280";
 
-/// The file's text.
+/// Returns the text of the file.
 pub fn svg(sheet: &Sheet) -> String {
     let [width, height] = sheet.size.map(|x| fixed(x, 2));
     let mut lines = Lines::default();
@@ -30,7 +30,7 @@ pub fn svg(sheet: &Sheet) -> String {
     lines.into_text()
 }
 
-/// Micrometres are enough.
+/// Writes a length in mm with three decimals, so to a micrometre.
 fn n(x: f64) -> String {
     fixed(x, 3)
 }
@@ -91,7 +91,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
                 Anchor::Start => "",
                 Anchor::Middle => " text-anchor=\"middle\"",
             };
-            // Capitals are some seven tenths of the size of a type.
+            // The height of capitals is about 0.72 of the font size.
             let size = n(height / 0.72);
             lines.add(
                 1,
@@ -103,7 +103,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
     }
 }
 
-/// A ring with two quarters filled, as draughtsmen mark a centre of mass.
+/// Draws the symbol of a centre of mass: a circle with two filled quadrants.
 fn mark(lines: &mut Lines, [x, y]: [String; 2], radius: f64) {
     let r = n(radius);
     let quarter = format!("M0 0V-{r}A{r} {r} 0 0 1 {r} 0ZM0 0V{r}A{r} {r} 0 0 1 -{r} 0Z");

@@ -1,4 +1,4 @@
-//! [`Bodies`]: those of MJCF with one hinge each, in the pose of the file.
+//! [`Bodies`]: the bodies of MJCF, with at most one hinge each, in the pose of the file.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ use super::refusal::{ImportError, called, wrong};
 use super::shapes::{Solid, solid};
 use crate::settings::range::clipped;
 
-/// A point: the part that has it, none for the base, and where it is on the axes of the base.
+/// A point: its part, `None` for the base, and its position in the axes of the base, m.
 pub type End = (Option<usize>, Vector3<f64>);
-/// Angles that differ by less are equal, rad.
-const SAME: f64 = 1e-9;
+/// Relative tolerance within which angles, rad, are equal.
+const ANGLE_TOLERANCE: f64 = 1e-9;
 
 /// Bodies, hinges and sites of a model.
 pub struct Bodies<'a> {
@@ -24,15 +24,15 @@ pub struct Bodies<'a> {
     pub model: Node<'a, 'a>,
     pub defaults: Defaults<'a>,
     compiler: Compiler,
-    /// Depth first.
+    /// The parts, depth first.
     pub parts: Vec<Part>,
     bodies: Vec<Node<'a, 'a>>,
     hinges: Hinges<'a>,
-    /// Where parts are before the keyframe turns their hinges.
+    /// Frames of the parts as drawn, before the keyframe turns their hinges.
     drawn: Vec<Isometry3<f64>>,
-    /// Sites: their names, a part, and where on the axes of the base.
+    /// Sites: name and point.
     pub sites: Vec<(&'a str, End)>,
-    /// The end of the last shape of the last part that has one, a capsule, cylinder or box.
+    /// Second end point of the last shape with `fromto`.
     pub last_end: Option<End>,
     pub notes: Vec<String>,
 }
@@ -41,10 +41,11 @@ pub struct Bodies<'a> {
 struct Hinges<'a> {
     /// The part of each hinge, by name.
     named: BTreeMap<&'a str, usize>,
-    /// By part: its hinge, what its angle is as drawn and in the pose of the file, rad, and what limits it.
+    /// The hinge of each part, if it has one.
     of: Vec<Option<Hinge<'a>>>,
 }
 
+/// A hinge: its angle as drawn and in the pose of the file, rad, and its limits, rad.
 #[derive(Clone)]
 struct Hinge<'a> {
     element: Element<'a>,
@@ -53,7 +54,7 @@ struct Hinge<'a> {
     limits: Option<[f64; 2]>,
 }
 
-/// A body with what carries it and the class of all in it that names none.
+/// A body, with the part that carries it and the default class of elements in it.
 struct Open<'a> {
     body: Node<'a, 'a>,
     parent: Option<usize>,
@@ -61,10 +62,10 @@ struct Open<'a> {
 }
 
 impl<'a> Bodies<'a> {
-    /// Of a `<mujoco>`.
+    /// Reads the bodies of a `<mujoco>`.
     ///
     /// # Errors
-    /// What is no body with a hinge or fixed.
+    /// If a body is neither fixed nor on a single hinge, or if an element is not supported.
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let other = |node: &Node| ["include", "replicate", "attach", "frame"].contains(&node.tag_name().name());
         if let Some(node) = model.descendants().find(other) {
@@ -124,8 +125,8 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// Mass, centre of mass and inertia of a body on the axes of the base. A body that nothing weighs has its centre
-    /// of mass where MuJoCo puts it: its own place, taken once more from its own frame.
+    /// Returns mass, centre of mass and inertia of a body in the axes of the base. A body without mass has its centre
+    /// of mass where MuJoCo puts it: at its own position, applied once more in its own frame.
     fn weight(
         &mut self,
         open: &Open<'a>,
@@ -150,7 +151,7 @@ impl<'a> Bodies<'a> {
                 shapes = shapes.and(one);
             }
         }
-        // Where no shape has a mass what is written counts all the same.
+        // If no shape has a mass, `<inertial>` counts in any case.
         let written = inertial.filter(|_| shapes.mass <= 0.0);
         let mut all = shapes;
         if let Some(node) = written {
@@ -172,7 +173,7 @@ impl<'a> Bodies<'a> {
         Ok(all)
     }
 
-    /// Masses and inertias brought to what the file says all weigh together.
+    /// Scales masses and inertias to the total mass that the file prescribes.
     fn scale(&mut self) {
         let now: f64 = self.parts.iter().map(|part| part.mass).sum();
         let Some(total) = self.compiler.total.filter(|_| now > 0.0) else { return };
@@ -182,49 +183,49 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// An element outside of all bodies.
+    /// Returns an element outside of all bodies with its class.
     ///
     /// # Errors
-    /// If its class is none.
+    /// If its class does not exist.
     pub fn element(&self, node: Node<'a, 'a>) -> Result<Element<'a>, ImportError> {
         self.defaults.element(node, &self.defaults.main())
     }
 
-    /// Whether a range of an element is a limit.
+    /// Returns whether the range of an element is a limit.
     pub fn is_limit(&self, element: &Element<'a>, attribute: &str) -> bool {
         self.compiler.is_limit(element, attribute)
     }
 
-    /// The hinge of a part.
+    /// Returns the hinge of a part.
     pub fn hinge(&self, i: usize) -> Option<&Element<'a>> {
         self.hinges.of.get(i).and_then(Option::as_ref).map(|hinge| &hinge.element)
     }
 
-    /// The part of the hinge that an attribute names.
+    /// Returns the part of the hinge that an attribute names.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there is no such hinge.
     pub fn part_of(&self, node: impl Source<'a>, attribute: &'static str) -> Result<usize, ImportError> {
         self.hinges.part_of(node, attribute)
     }
 
-    /// What the angle of a hinge is in the pose of the file, rad.
+    /// Returns the angle of a part's hinge in the pose of the file, rad.
     pub fn angle(&self, i: usize) -> f64 {
         self.hinges.of.get(i).and_then(Option::as_ref).map_or(0.0, |hinge| hinge.now)
     }
 
-    /// The same as it is drawn.
+    /// Returns the angle of a part's hinge as drawn, rad.
     pub fn drawn_angle(&self, i: usize) -> f64 {
         self.hinges.of.get(i).and_then(Option::as_ref).map_or(0.0, |hinge| hinge.drawn)
     }
 
-    /// Least and greatest angle of a hinge, rad.
+    /// Returns the limits of a part's hinge, rad.
     pub fn range(&self, i: usize) -> Option<[f64; 2]> {
         self.hinges.of.get(i)?.as_ref()?.limits
     }
 
-    /// The point that works: a site or body with a name that says so, else the only site, else where the last shape of
-    /// the last body ends.
+    /// Finds the end effector: a site or body with a usual name of one, or else the only site that is not a pin, or
+    /// else the end of the last shape.
     pub fn end(&mut self) -> Option<End> {
         let sites = self.sites.iter().filter_map(|(name, end)| Some((end_rank(name)?, *end)));
         let bodies = self.parts.iter().enumerate();
@@ -251,10 +252,10 @@ impl<'a> Bodies<'a> {
         Some(end)
     }
 
-    /// Both ends of a connect.
+    /// Returns both points of a `<connect>`.
     ///
     /// # Errors
-    /// If a site or body is not there.
+    /// If a site or body does not exist.
     pub fn ends(&self, node: Node<'a, 'a>) -> Result<[End; 2], ImportError> {
         if node.has_attribute("site1") {
             let end = |attribute: &'static str| {
@@ -271,7 +272,7 @@ impl<'a> Bodies<'a> {
         };
         let (a, b) = (body("body1")?, body("body2")?);
         let anchor = Point3::from(vector(node, "anchor")?.unwrap_or_default());
-        // It is given in the first body, and the same point of the other as both are drawn.
+        // The anchor is given in the frame of the first body; the other body's point coincides with it as drawn.
         let drawn = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.drawn[i]);
         let now = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.parts[i].frame);
         let in_b = drawn(b).inverse() * drawn(a) * anchor;
@@ -279,7 +280,7 @@ impl<'a> Bodies<'a> {
     }
 }
 
-/// Bodies depth first, as the angles of a pose are listed.
+/// Lists the bodies depth first, which is the order of the angles of a pose.
 fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'a>>, ImportError> {
     if child(model, "worldbody").is_none() {
         return Err(wrong(model, "it has no <worldbody>", "one, with the machine in it"));
@@ -350,7 +351,7 @@ impl<'a> Hinges<'a> {
         })
     }
 
-    /// Turns hinges to where equalities hold them, as MuJoCo does when it runs.
+    /// Sets hinge angles so that the joint equalities hold, as MuJoCo does in simulation.
     fn coupled(&mut self, model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<(), ImportError> {
         let all = each(model, "equality").flat_map(|node| each(node, "joint"));
         let mut couplings = Vec::new();
@@ -362,7 +363,7 @@ impl<'a> Hinges<'a> {
             }
         }
         let off = |hinge: &Option<Hinge>| hinge.as_ref().map_or(0.0, |hinge| hinge.now - hinge.drawn);
-        // One of them may hang on another, in any order.
+        // Equalities may depend on each other in any order, so they are applied repeatedly.
         for _ in 0..couplings.len() {
             let mut is_done = true;
             for (part, other, factors) in &couplings {
@@ -370,7 +371,7 @@ impl<'a> Hinges<'a> {
                 let want = factors.iter().rev().fold(0.0, |sum, factor| sum * x + factor);
                 if let Some(hinge) = self.of[*part].as_mut().filter(|hinge| {
                     let size = 1.0 + want.abs();
-                    (hinge.now - hinge.drawn - want).abs() > SAME * size && want.is_finite()
+                    (hinge.now - hinge.drawn - want).abs() > ANGLE_TOLERANCE * size && want.is_finite()
                 }) {
                     hinge.now = hinge.drawn + want;
                     is_done = false;
@@ -384,7 +385,7 @@ impl<'a> Hinges<'a> {
     }
 }
 
-/// The hinge of a body, if it has one.
+/// Returns the hinge of a body, if it has one.
 fn hinge<'a>(open: &Open<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
     if let Some(node) = child(open.body, "freejoint") {
         return Err(wrong(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
@@ -401,12 +402,12 @@ fn hinge<'a>(open: &Open<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<
     }
 }
 
-/// Whether an equality holds.
+/// Returns whether an equality is active.
 pub fn is_active<'a>(element: &Element<'a>) -> bool {
     element.get("active") != Some("false")
 }
 
-/// Factors of a coupling by rising power.
+/// Returns the polynomial coefficients of a coupling, by ascending power.
 pub fn polynomial<'a>(element: &Element<'a>) -> Result<Vec<f64>, ImportError> {
     Ok(numbers(element, "polycoef")?.unwrap_or_else(|| vec![0.0, 1.0]))
 }

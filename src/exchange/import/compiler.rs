@@ -1,4 +1,4 @@
-//! [`Compiler`]: how a file of MJCF is to be read, and where its elements are.
+//! [`Compiler`]: the settings with which a file of MJCF is read, and the positions of its elements.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -7,10 +7,10 @@ use super::read::{Source, each, number, several, vector};
 use super::refusal::{ImportError, wrong};
 use crate::settings::range::clipped;
 
-/// Whose masses count: those of shapes or those that are written down.
+/// Source of masses: shapes or `<inertial>` elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighing {
-    /// Shapes, where no `<inertial>` stands.
+    /// Shapes, unless there is an `<inertial>`.
     Auto,
     /// Shapes always.
     Shapes,
@@ -18,29 +18,29 @@ pub enum Weighing {
     Written,
 }
 
-/// What `<compiler>` says.
+/// Settings of `<compiler>`.
 #[derive(Clone, Debug)]
 pub struct Compiler {
-    /// A degree or 1, rad.
+    /// Unit of angles, rad: a degree or 1.
     pub unit: f64,
-    /// Axes of Euler angles in their order; whether each turns with those before it.
+    /// Axes of Euler angles in their order, each with whether it is intrinsic, that is, turns with those before it.
     sequence: [(Unit<Vector3<f64>>, bool); 3],
-    /// Whether a range is a limit by itself.
+    /// Whether a range is a limit unless stated otherwise.
     pub are_ranges_limits: bool,
     pub weighing: Weighing,
     /// Groups whose shapes have mass.
     pub groups: [f64; 2],
-    /// What bodies weigh at least, kg, and their principal inertias, kg m².
+    /// Lower bounds of the mass of bodies, kg, and of their principal inertias, kg m².
     least: [f64; 2],
-    /// What all bodies weigh together, kg.
+    /// Prescribed total mass of all bodies, kg.
     pub total: Option<f64>,
 }
 
 impl Compiler {
-    /// Of a `<mujoco>`; of several the last counts.
+    /// Reads the settings of a `<mujoco>`; of several values of a setting the last counts.
     ///
     /// # Errors
-    /// If it says what is not known.
+    /// If a setting has an unknown value.
     pub fn of(model: Node<'_, '_>) -> Result<Self, ImportError> {
         let last = |name: &str| each(model, "compiler").filter(|node| node.has_attribute(name)).last();
         let word = |name: &str| last(name).and_then(|node| node.attribute(name));
@@ -72,7 +72,7 @@ impl Compiler {
         })
     }
 
-    /// Whether a range of an element is a limit.
+    /// Returns whether the range of an element is a limit.
     pub fn is_limit<'a>(&self, element: &impl Source<'a>, attribute: &str) -> bool {
         match element.get(attribute) {
             Some("true") => true,
@@ -81,10 +81,10 @@ impl Compiler {
         }
     }
 
-    /// Where an element is and how it is turned.
+    /// Returns position and orientation of an element.
     ///
     /// # Errors
-    /// If it has no direction.
+    /// If a vector or quaternion of its orientation is zero.
     pub fn place<'a>(&self, element: &impl Source<'a>) -> Result<Isometry3<f64>, ImportError> {
         let at = vector(element, "pos")?.unwrap_or_default();
         Ok(Isometry3::from_parts(Translation3::from(at), self.turn(element)?))
@@ -119,7 +119,7 @@ impl Compiler {
         }))
     }
 
-    /// The mass and inertia of a body, no less than the file allows.
+    /// Returns mass and inertia of a body, raised to the lower bounds of the file.
     pub fn bounded(&self, mass: f64, inertia: Matrix3<f64>) -> (f64, Matrix3<f64>) {
         let [least_mass, least_inertia] = self.least;
         if least_inertia <= 0.0 {
@@ -131,7 +131,7 @@ impl Compiler {
     }
 }
 
-/// The shortest turn of z to an axis.
+/// Returns the smallest rotation that turns z to an axis.
 pub fn to_axis(axis: &Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
     let half_turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
     UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), axis).unwrap_or(half_turn)

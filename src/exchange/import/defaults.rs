@@ -1,4 +1,4 @@
-//! [`Defaults`]: what elements of MJCF are by their classes, and [`Element`]: one with what its class says.
+//! [`Defaults`]: the default classes of MJCF, and [`Element`]: an element with the defaults of its class.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -9,24 +9,24 @@ use super::read::{Source, each};
 use super::refusal::{ImportError, wrong};
 use crate::settings::range::clipped;
 
-/// The most classes of a file: each holds all that it inherits.
+/// Maximum number of classes of a file: each holds all attributes that it inherits.
 const MAX_CLASSES: usize = 200;
 
-/// The most sizes of a shape.
+/// Maximum number of sizes of a shape.
 const MAX_SIZES: usize = 3;
-/// The most attributes that a class gives all kinds of elements together.
+/// Maximum number of attributes of a class, for all kinds of elements together.
 const MAX_VALUES: usize = 1000;
 
-/// What a class says.
+/// Default attributes of a class.
 #[derive(Clone, Debug, Default)]
 struct Values<'a> {
     /// Attributes by the kind of element and their names.
     words: BTreeMap<(&'a str, &'a str), &'a str>,
-    /// Sizes of shapes: of what a class or shape leaves out those of its parent stay.
+    /// Sizes of shapes: sizes that a class or shape does not give are inherited from its parent.
     sizes: Vec<&'a str>,
 }
 
-/// A class with all that it inherits.
+/// A class with all attributes that it inherits.
 #[derive(Clone, Debug)]
 pub struct Class<'a>(Rc<Values<'a>>);
 
@@ -37,7 +37,7 @@ pub struct Defaults<'a> {
     named: BTreeMap<&'a str, Class<'a>>,
 }
 
-/// An element, and what its class says where it says nothing.
+/// An element, with its class for attributes that it does not give.
 #[derive(Clone, Debug)]
 pub struct Element<'a> {
     node: Node<'a, 'a>,
@@ -56,7 +56,7 @@ impl<'a> Source<'a> for Element<'a> {
 }
 
 impl<'a> Element<'a> {
-    /// Sizes of a shape as they stand: its own, and after them those of its class.
+    /// Returns the sizes of a shape as text: its own, and after them those of its class.
     pub fn sizes(&self) -> Vec<&'a str> {
         let mut sizes = self.class.0.sizes.clone();
         over(&mut sizes, self.node.attribute("size"));
@@ -64,31 +64,31 @@ impl<'a> Element<'a> {
     }
 }
 
-/// The first sizes of these replaced.
+/// Replaces the first of the sizes by those given.
 fn over<'a>(sizes: &mut Vec<&'a str>, own: Option<&'a str>) {
     let own: Vec<&str> = own.unwrap_or_default().split_whitespace().take(MAX_SIZES).collect();
     let rest = sizes.split_off(own.len().min(sizes.len()));
     *sizes = own.into_iter().chain(rest).collect();
 }
 
-/// Under which tag a class speaks of an element: that of the element, or one that stands for several.
+/// Returns the tag under which a class lists defaults of an element: its own, or one shared by several kinds.
 fn kind<'a>(node: Node<'a, 'a>) -> &'a str {
     let parent = node.parent().map(|parent| parent.tag_name().name());
     match (parent, node.tag_name().name()) {
         (Some("actuator"), _) => "actuator",
         (Some("equality"), _) => "equality",
         (Some("tendon"), _) => "tendon",
-        // Shortcuts of actuators share what they say.
+        // All kinds of actuators share their defaults.
         (_, "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder") => "actuator",
         (_, own) => own,
     }
 }
 
 impl<'a> Defaults<'a> {
-    /// Of a `<mujoco>`.
+    /// Reads the classes of a `<mujoco>`.
     ///
     /// # Errors
-    /// If a class has no name or one that is taken, or there are too many.
+    /// If a class has no name or the name of another, or if there are too many classes.
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let mut main = Values::default();
         each(model, "default").try_for_each(|node| take(node, &mut main))?;
@@ -120,31 +120,31 @@ impl<'a> Defaults<'a> {
         Ok(defaults)
     }
 
-    /// The class of all that names none.
+    /// Returns the class of elements that name none.
     pub fn main(&self) -> Class<'a> {
         self.main.clone()
     }
 
-    /// The class that an attribute names; `usual` where it is left out.
+    /// Returns the class that an attribute names, or `usual` if the attribute is absent.
     ///
     /// # Errors
-    /// If there is none of that name.
+    /// If there is no class of that name.
     pub fn class(&self, node: Node<'a, 'a>, attribute: &str, usual: &Class<'a>) -> Result<Class<'a>, ImportError> {
         let Some(name) = node.attribute(attribute) else { return Ok(usual.clone()) };
         let known = self.named.get(name).cloned();
         known.ok_or_else(|| wrong(node, format!("no class \"{}\"", clipped(name)), "the name of a <default>"))
     }
 
-    /// An element by its own class, or by the usual one of where it stands.
+    /// Returns an element with its own class, or with the class `usual` if it names none.
     ///
     /// # Errors
-    /// If its class is none.
+    /// If its class does not exist.
     pub fn element(&self, node: Node<'a, 'a>, usual: &Class<'a>) -> Result<Element<'a>, ImportError> {
         Ok(Element { node, class: self.class(node, "class", usual)? })
     }
 }
 
-/// What a `<default>` says, over what is there.
+/// Adds the attributes of a `<default>`, which replace earlier ones.
 fn take<'a>(node: Node<'a, 'a>, values: &mut Values<'a>) -> Result<(), ImportError> {
     for child in node.children().filter(|child| child.is_element() && !child.has_tag_name("default")) {
         values.words.extend(child.attributes().map(|attribute| ((kind(child), attribute.name()), attribute.value())));

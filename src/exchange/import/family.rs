@@ -1,11 +1,11 @@
-//! A linkage laid into the plane of motion, as a machine of the family.
+//! Projects a linkage onto the plane of motion and makes a machine of the family.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | n | the axis that all hinges are parallel to; x and y of the plane are two axes of the file's base | |
-//! | ψ_k | direction of drive k in the reference pose, q_k there: that of its first link that reaches anywhere | rad |
-//! | s | a place on a link's axis, from its root | m |
+//! | n | common direction of all hinge axes; x and y of the plane derive from the axes of the file's base | |
+//! | ψ_k | direction of drive k, its q_k, in the reference pose: that of its first link with length | rad |
+//! | s | position on a link's axis, from its root | m |
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,16 +18,17 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
-/// A mass below this share of all is none.
+/// Masses and inertias up to this fraction of the total are treated as zero.
 pub const NOTHING: f64 = 1e-9;
-/// Lengths below this share of the machine's are none.
-const NO_LENGTH: f64 = 1e-9;
-/// Directions whose sine is below this are one.
-const ALONG: f64 = 1e-9;
-/// The gear of a rotor that stands for an armature: the largest there is, for an armature adds nothing to the momentum.
+/// Lengths up to this fraction of the machine's size are treated as zero.
+const ZERO_LENGTH_FRACTION: f64 = 1e-9;
+/// Two directions are parallel up to this sine of the angle between them.
+const PARALLEL_UP_TO_SINE: f64 = 1e-9;
+/// Gear ratio of a rotor that replaces an armature: the largest allowed, because an armature adds nothing to the
+/// momentum.
 const ARMATURE_RATIO: f64 = 1e4;
-/// The length of a link that carries nothing and has its centre of mass at its root, m.
-const SHORT: f64 = 0.01;
+/// Shortest length of a link without pins beyond its root, m.
+const MIN_LENGTH_M: f64 = 0.01;
 
 /// A machine from another program.
 #[derive(Clone, Debug)]
@@ -36,27 +37,27 @@ pub struct Imported {
     pub machine: Machine,
     /// Angles of its drives in the pose of the file, rad: where all joints of URDF are at 0, in the keyframe of MJCF.
     pub pose: Vec<f64>,
-    /// What the machine stands on, where the file says so: a base that moves is of a scenario.
+    /// Mass properties of the base, if the file has them; a scenario may use them for a moving base.
     pub base: Option<BaseBody>,
-    /// What was left out or taken for granted.
+    /// Notes on omissions and assumptions.
     pub notes: Vec<String>,
 }
 
-/// A base with all that is fixed to it.
+/// A base with all parts that are fixed to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseBody {
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// About its centre of mass, around the axis of the drives, kg m².
+    /// Inertia about its centre of mass, around the direction of the drives' axis, kg m².
     pub inertia: f64,
-    /// Its centre of mass as seen from the axis of the drives, m.
+    /// Position of its centre of mass relative to the axis of the drives, m.
     pub com: Vector,
 }
 
-/// The machine of a linkage.
+/// Makes a machine of a linkage.
 ///
 /// # Errors
-/// What is outside of the family.
+/// If the linkage is outside the family of machines.
 pub fn imported(linkage: &Linkage) -> Result<Imported, ImportError> {
     let flat = Flat::of(linkage)?;
     let mut notes = linkage.notes.clone();
@@ -66,15 +67,15 @@ pub fn imported(linkage: &Linkage) -> Result<Imported, ImportError> {
     Ok(Imported { machine, pose, base, notes })
 }
 
-/// A part with all that is fixed to it, in the plane.
+/// A part with all parts that are fixed to it, projected onto the plane.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     mass: f64,
-    /// m.
+    /// Centre of mass in the plane, m.
     com: Vector,
-    /// Along n, m.
+    /// Height of the centre of mass along n, m.
     height: f64,
-    /// About n through the centre of mass, kg m².
+    /// Inertia about n through the centre of mass, kg m².
     inertia: f64,
 }
 
@@ -94,17 +95,17 @@ impl Body {
     }
 }
 
-/// The linkage in its plane, in the reference pose.
+/// The linkage projected onto its plane, in the reference pose.
 struct Flat {
     axes: [Vector3<f64>; 3],
-    /// Of each part that turns, with what is fixed to it.
+    /// Body of each part that turns, with all that is fixed to it.
     bodies: Vec<Body>,
-    /// Where each part turns.
+    /// Position of each part's hinge, m.
     roots: Vec<Vector>,
     owners: Vec<Option<usize>>,
     /// Parts that are links.
     links: Vec<usize>,
-    /// How large the machine is, m.
+    /// Size of the machine, m: largest distance of a point from the first hinge.
     size: f64,
 }
 
@@ -135,7 +136,7 @@ impl Flat {
             let rotor = linkage.rotors.iter().find(|(rotor, ..)| *rotor == i);
             let to = if rotor.is_some() { part.parent.and_then(|parent| owners[parent]) } else { owners[i] };
             if let Some(to) = to {
-                // Of a rotor only its mass belongs to what carries it.
+                // Only the mass of a rotor belongs to the part that carries it.
                 match rotor {
                     Some(_) if body.mass <= NOTHING * total => {}
                     Some(_) => bodies[to] = bodies[to].and(Body { inertia: 0.0, ..body }),
@@ -166,7 +167,7 @@ impl Flat {
         Vector::new(self.axes[0].dot(p), self.axes[1].dot(p))
     }
 
-    /// Where the drives are: where the first link turns on the base.
+    /// Returns the axis of the drives, m: the hinge of the first link on the base.
     fn base(&self, parts: &[Part]) -> Result<Vector, ImportError> {
         for i in &self.links {
             if self.carrier(parts, *i)?.is_none() {
@@ -176,7 +177,7 @@ impl Flat {
         Err(ImportError::whole("no link with mass turns on the base", "at least one"))
     }
 
-    /// The base with all that is fixed to it, if it weighs anything.
+    /// Returns the base with all parts that are fixed to it, if it has mass and inertia.
     fn ground(&self, linkage: &Linkage) -> Result<Option<BaseBody>, ImportError> {
         let Some(ground) = &linkage.ground else { return Ok(None) };
         let normal = self.axes[2];
@@ -189,7 +190,7 @@ impl Flat {
         let total: f64 = linkage.parts.iter().map(|part| part.mass).sum();
         let is_still = |part: &Part| part.parent.is_none_or(|parent| self.owners[parent].is_none());
         let parts = linkage.parts.iter().enumerate().filter_map(|(i, part)| {
-            // Of a rotor in the base only its mass belongs to it.
+            // Only the mass of a rotor in the base belongs to the base.
             let is_rotor = linkage.rotors.iter().any(|(rotor, ..)| *rotor == i) && is_still(part);
             let inertia = if is_rotor { Matrix3::zeros() } else { part.inertia };
             let counts = self.owners[i].is_none() || (is_rotor && part.mass > NOTHING * total);
@@ -201,11 +202,15 @@ impl Flat {
         Ok(is_any.then_some(BaseBody { mass: all.mass, inertia: all.inertia, com }))
     }
 
-    fn is_none(&self, v: Vector) -> bool {
-        v.norm() <= NO_LENGTH * self.size
+    /// Returns whether a length is treated as zero.
+    fn is_zero(&self, v: Vector) -> bool {
+        v.norm() <= ZERO_LENGTH_FRACTION * self.size
     }
 
-    /// The link that holds a part that turns, and whether what is between them reaches anywhere.
+    /// Returns the link that carries a turning part; `None` for the base.
+    ///
+    /// # Errors
+    /// If a massless part between the two has length.
     fn carrier(&self, parts: &[Part], i: usize) -> Result<Option<usize>, ImportError> {
         let mut at = i;
         loop {
@@ -213,7 +218,7 @@ impl Flat {
             if self.links.contains(&next) {
                 return Ok(Some(next));
             }
-            if !self.is_none(self.roots[i] - self.roots[next]) {
+            if !self.is_zero(self.roots[i] - self.roots[next]) {
                 return Err(parts[next].wrong("it has length and no mass", "a mass, and an inertia"));
             }
             at = next;
@@ -221,7 +226,7 @@ impl Flat {
     }
 }
 
-/// One rotor for a motor, and its mass on its axis.
+/// Checks that each motor has at most one rotor, and that the rotor's centre of mass is on its axis.
 fn check_rotors(
     linkage: &Linkage,
     roots: &[Vector],
@@ -235,7 +240,7 @@ fn check_rotors(
             return Err(part.wrong(format!("a second rotor of \"{name}\""), "one rotor for a motor"));
         }
         let off = (flat(&part.com) - roots[*i]).norm();
-        if part.mass > NOTHING * total && off > NO_LENGTH * (1.0 + roots[*i].norm()) {
+        if part.mass > NOTHING * total && off > ZERO_LENGTH_FRACTION * (1.0 + roots[*i].norm()) {
             return Err(
                 part.wrong(format!("a rotor with its mass {} m off its axis", Short(off)), "a rotor that is balanced")
             );
@@ -250,7 +255,7 @@ struct Builder<'a> {
     notes: &'a mut Vec<String>,
 }
 
-/// A link's axis: which way it runs from its root, 1 along its drive, and the places on it.
+/// A link's axis: its direction, 1 along its drive or −1 against it, and the positions of pins on it, m.
 struct Axis {
     sign: f64,
     places: Vec<f64>,
@@ -275,7 +280,7 @@ impl Builder<'_> {
             carriers[*i] = flat.carrier(&linkage.parts, *i)?;
             match carriers[*i] {
                 Some(carrier) => points[carrier].push(flat.roots[*i]),
-                None if flat.is_none(flat.roots[*i] - base) => {}
+                None if flat.is_zero(flat.roots[*i] - base) => {}
                 None => {
                     let want = "all links on the base on one axis, that of the drives";
                     return Err(linkage.parts[*i].wrong("it turns elsewhere on the base than others", want));
@@ -330,7 +335,7 @@ impl Builder<'_> {
         Ok((spec, psi))
     }
 
-    /// ψ of a drive.
+    /// Returns ψ of a drive, rad.
     fn direction(&self, k: usize, points: &[Vec<Vector>]) -> Result<f64, ImportError> {
         let flat = self.flat;
         let own: Vec<usize> = flat.links.iter().copied().filter(|i| self.linkage.sets[*i] == Some(k)).collect();
@@ -340,15 +345,16 @@ impl Builder<'_> {
         };
         let farthest = |i: &usize| {
             let all = points[*i].iter().map(|at| at - flat.roots[*i]);
-            all.reduce(|a, b| if b.norm() > a.norm() * (1.0 + 1e-9) { b } else { a }).filter(|v| !flat.is_none(*v))
+            all.reduce(|a, b| if b.norm() > a.norm() * (1.0 + 1e-9) { b } else { a }).filter(|v| !flat.is_zero(*v))
         };
-        // Where a link lies along the x axis of its own file, or nowhere, that is its drive's, whichever way it runs.
+        // If a link lies along the x axis of its frame in the file, or has no length, this axis is the drive's
+        // direction.
         let x = |i: usize| flat.flat(&(self.linkage.parts[i].frame.rotation * Vector3::x()));
-        let is_along = |x: Vector, v: Vector| (v * x.conj()).im.abs() <= ALONG * v.norm();
+        let is_along = |x: Vector, v: Vector| (v * x.conj()).im.abs() <= PARALLEL_UP_TO_SINE * v.norm();
         let far = own.iter().find_map(|i| Some((*i, farthest(i)?)));
         let com = flat.bodies[*first].com - flat.roots[*first];
         Ok(match far {
-            _ if x(*first).norm() < 1.0 - ALONG => far.map_or(com, |(_, v)| v).arg(),
+            _ if x(*first).norm() < 1.0 - PARALLEL_UP_TO_SINE => far.map_or(com, |(_, v)| v).arg(),
             Some((i, v)) if !is_along(x(i), v) => v.arg(),
             Some((i, _)) => x(i).arg(),
             None => x(*first).arg(),
@@ -363,7 +369,7 @@ impl Builder<'_> {
         let mut places = Vec::new();
         for at in points {
             let local = (at - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
-            if local.im.abs() > NO_LENGTH * flat.size {
+            if local.im.abs() > ZERO_LENGTH_FRACTION * flat.size {
                 let off = Short(local.im);
                 let what = format!("a pin {off} m beside the line that links of its drive run along");
                 return Err(part.wrong(what, "bars whose pins lie on one line, parallel for links of one drive"));
@@ -391,8 +397,9 @@ impl Builder<'_> {
         let body = flat.bodies[i];
         let com = axis.sign * (body.com - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
         let reach = axis.places.iter().fold(0.0_f64, |most, s| most.max(*s));
-        // What carries nothing shows no length.
-        let length = if reach > NO_LENGTH * flat.size { reach } else { (2.0 * com.re.abs()).max(SHORT) };
+        // The length of a link without pins beyond its root is not known.
+        let length =
+            if reach > ZERO_LENGTH_FRACTION * flat.size { reach } else { (2.0 * com.re.abs()).max(MIN_LENGTH_M) };
         let rounded = |x: f64| if x.abs() <= 1e-15 * flat.size { 0.0 } else { x };
         Ok(Link {
             name: names[i].clone(),
@@ -408,7 +415,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Names of parts, without what this program puts before them, where they are still told apart.
+    /// Returns the names of the parts, without this program's prefix if they stay unique.
     fn names(&self) -> Vec<String> {
         let parts = &self.linkage.parts;
         let short = |name: &str| name.strip_prefix("link_").or(name.strip_prefix("link ")).unwrap_or(name).to_owned();
@@ -416,7 +423,7 @@ impl Builder<'_> {
         let links: std::collections::BTreeSet<&String> = self.flat.links.iter().map(|i| &all[*i]).collect();
         match links.len() == self.flat.links.len() {
             true => all,
-            false => told_apart(parts.iter().map(|part| part.name.clone()).collect()),
+            false => made_unique(parts.iter().map(|part| part.name.clone()).collect()),
         }
     }
 
@@ -429,7 +436,7 @@ impl Builder<'_> {
         let all: Vec<String> = motors.iter().map(short).collect();
         match all.iter().filter(|own| **own == all[k]).count() {
             1 => all[k].clone(),
-            _ => told_apart(motors.iter().map(|motor| motor.name.clone()).collect())[k].clone(),
+            _ => made_unique(motors.iter().map(|motor| motor.name.clone()).collect())[k].clone(),
         }
     }
 
@@ -467,7 +474,7 @@ impl Builder<'_> {
         motors.map(drive).collect()
     }
 
-    /// Limits of motors as those of angles between drives.
+    /// Returns the limits as those of angles between drives.
     fn angles(&mut self, psi: &[f64]) -> Vec<Angle> {
         let mut angles: Vec<Angle> = Vec::new();
         for Limit { name, to, from, now, range } in &self.linkage.limits {
@@ -494,18 +501,18 @@ impl Builder<'_> {
     }
 }
 
-/// Names of which those that stand before get a number.
-fn told_apart(names: Vec<String>) -> Vec<String> {
+/// Makes names unique by adding numbers to repeated ones.
+fn made_unique(names: Vec<String>) -> Vec<String> {
     let mut taken: std::collections::BTreeSet<String> = names.iter().cloned().collect();
     let mut seen = std::collections::BTreeSet::new();
-    let mut told = Vec::with_capacity(names.len());
+    let mut unique = Vec::with_capacity(names.len());
     for name in names {
         let mut own = name.clone();
         if !seen.insert(name.clone()) {
             own = (2..).map(|n| format!("{name} {n}")).find(|own| !taken.contains(own)).unwrap_or(own);
             taken.insert(own.clone());
         }
-        told.push(own);
+        unique.push(own);
     }
-    told
+    unique
 }

@@ -1,15 +1,15 @@
-//! [`Linkage`]: what both formats come to: parts in space with their hinges, and which of them turn together.
+//! [`Linkage`]: the common result of both readers: parts in space with their hinges, and the sets that turn together.
 
 use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 
 use super::refusal::ImportError;
 
-/// Directions whose sine is below this are parallel.
-const PARALLEL: f64 = 1e-9;
-/// The most parts: more are no machine of the family, and take long.
+/// Two directions are parallel up to this sine of the angle between them.
+const PARALLEL_UP_TO_SINE: f64 = 1e-9;
+/// Maximum number of parts: files with more are not machines of the family, and would take long.
 pub const MOST_PARTS: usize = 400;
 
-/// Names by which others know the point that works, in small letters without what joins words; the surest first.
+/// Usual names of an end effector, in lower case without separators; the most specific first.
 const ENDS: [&str; 16] = [
     "endeffector",
     "endeffectorsite",
@@ -29,7 +29,7 @@ const ENDS: [&str; 16] = [
     "gripper",
 ];
 
-/// How sure a name is one of the point that works, 0 the surest; none: it is not.
+/// Returns the rank of a name among the usual names of an end effector, 0 the most specific; `None` if it is not one.
 pub fn end_rank(name: &str) -> Option<usize> {
     let bare = name.chars().filter(|c| c.is_alphanumeric()).take(40).flat_map(char::to_lowercase).collect::<String>();
     ENDS.iter().position(|own| *own == bare)
@@ -38,27 +38,27 @@ pub fn end_rank(name: &str) -> Option<usize> {
 /// Parts in a reference pose.
 #[derive(Debug)]
 pub struct Linkage {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// In the axes of the base, m/s².
+    /// Acceleration of gravity in the axes of the base, m/s².
     pub gravity: Vector3<f64>,
-    /// None before the one that carries it.
+    /// Its parts, each after the part that carries it.
     pub parts: Vec<Part>,
-    /// For each part the set of those that turn together with it; none: those that do not turn.
+    /// For each part, the set of parts that turn together to which it belongs; `None` for parts that do not turn.
     pub sets: Vec<Option<usize>>,
-    /// What turns each set, in their order.
+    /// The motor that turns each set, in the order of the sets.
     pub motors: Vec<Motor>,
-    /// What is allowed between sets.
+    /// Limits of angles between sets.
     pub limits: Vec<Limit>,
-    /// Parts that are rotors, the motor that turns each, and how often it turns for one turn of that.
+    /// Rotors: the part, the motor that turns it, and its gear ratio.
     pub rotors: Vec<(usize, usize, f64)>,
-    /// Points of two parts that are one.
+    /// Closures: two points of different parts that coincide.
     pub loops: Vec<[Point; 2]>,
-    /// The point that works: a part, and where on the base's axes it is in the reference pose, m.
+    /// The end effector: a part, and a position in the axes of the base in the reference pose, m.
     pub end: Option<Point>,
-    /// What the base weighs, where the file says so.
+    /// Mass properties of the base, if the file has them.
     pub ground: Option<Ground>,
-    /// What was left out.
+    /// Notes on elements that were omitted.
     pub notes: Vec<String>,
 }
 
@@ -67,94 +67,98 @@ pub struct Linkage {
 pub struct Part {
     /// Its name.
     pub name: String,
-    /// As messages call it.
+    /// Its name in messages.
     pub called: String,
-    /// Where the file has it, bytes.
+    /// Byte offset of its element in the file.
     pub at: usize,
-    /// What carries it; none: the base.
+    /// The part that carries it; `None` for the base.
     pub parent: Option<usize>,
-    /// From its own axes to those of the base, in the reference pose.
+    /// Transformation from its own axes to those of the base, in the reference pose.
     pub frame: Isometry3<f64>,
-    /// The axis about which it turns, in the axes of the base, and a point on it; none: it is fixed.
+    /// The axis about which it turns, in the axes of the base, and a point on the axis, m; `None` if it is fixed.
     pub hinge: Option<(Unit<Vector3<f64>>, Vector3<f64>)>,
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
     /// Centre of mass in the axes of the base, m.
     pub com: Vector3<f64>,
-    /// About it, in the axes of the base, kg m².
+    /// Inertia about the centre of mass, in the axes of the base, kg m².
     pub inertia: Matrix3<f64>,
 }
 
-/// What turns a set of parts against another.
+/// A motor, which turns a set of parts relative to another.
 #[derive(Clone, Debug, Default)]
 pub struct Motor {
     /// Its name.
     pub name: String,
-    /// The part whose hinge it turns, if it is one.
+    /// The part whose hinge it turns, if it turns a single hinge.
     pub hinge: Option<usize>,
-    /// The set that carries it; none: the base.
+    /// The set that carries it; `None` for the base.
     pub from: Option<usize>,
-    /// N m.
+    /// Limit of |torque|, N m.
     pub torque_limit: Option<f64>,
-    /// rad/s.
+    /// Limit of |rate|, rad/s.
     pub speed_limit: Option<f64>,
-    /// rad/s².
+    /// Limit of |acceleration|, rad/s².
     pub acceleration_limit: Option<f64>,
-    /// rad/s³.
+    /// Limit of |jerk|, rad/s³.
     pub jerk_limit: Option<f64>,
-    /// What it adds to the inertia of its angle, and nothing to the momentum, kg m².
+    /// Armature, kg m²: adds to the inertia of the motor's angle but not to the momentum.
     pub armature: f64,
 }
 
-/// How far a set may turn against another.
+/// Limits of the angle of a set relative to another.
 #[derive(Clone, Debug)]
 pub struct Limit {
-    /// What the angle is called, if it has a name.
+    /// Name of the angle, if it has one.
     pub name: Option<String>,
-    /// A set.
+    /// The set whose angle counts positive.
     pub to: usize,
-    /// Another; none: the base.
+    /// The set whose angle counts negative; `None` for the base.
     pub from: Option<usize>,
-    /// What the angle is in the reference pose, rad about the common axis.
+    /// The angle in the reference pose, rad about the common axis.
     pub now: f64,
-    /// Least and greatest, rad; none: it turns freely.
+    /// Lower and upper limit, rad; `None` if it turns freely.
     pub range: Option<[f64; 2]>,
 }
 
-/// A point of a part: where it is on the axes of the base in the reference pose, m.
+/// A point of a part: index of the part, and position in the axes of the base in the reference pose, m.
 pub type Point = (usize, Vector3<f64>);
 
-/// What all stands on, with all that is fixed to it.
+/// Mass properties of the base.
 #[derive(Clone, Copy, Debug)]
 pub struct Ground {
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
     /// Centre of mass in the axes of the base, m.
     pub com: Vector3<f64>,
-    /// About it, kg m².
+    /// Inertia about the centre of mass, kg m².
     pub inertia: Matrix3<f64>,
 }
 
 impl Part {
-    /// What is wrong with it.
+    /// Makes an error of this part.
     pub fn wrong(&self, what: impl Into<String>, want: impl Into<String>) -> ImportError {
         ImportError::of(self.at, &self.called, what, want)
     }
 }
 
-/// The axis that all hinges are parallel to, and for each part 1 where its own runs along it, −1 against it.
+/// Returns the common direction of all hinge axes, and for each part the sign of its own axis: 1 along it, −1 against
+/// it.
+///
+/// # Errors
+/// If there is no hinge, or if the axes are not parallel.
 pub fn common_axis(parts: &[Part]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), ImportError> {
     let first = parts.iter().find_map(|part| part.hinge).map(|(axis, _)| axis);
     let Some(first) = first else {
         return Err(ImportError::whole("nothing turns", "links on revolute joints or hinges"));
     };
-    // Upwards, as far as there is such: angles then turn as they do in the file.
+    // The common axis points towards positive z, y or x if possible, so that angles have the sign of the file.
     let up = [first.z, first.y, first.x].into_iter().find(|x| x.abs() > 0.5).unwrap_or(1.0);
     let axis = if up < 0.0 { -first } else { first };
     let mut signs = Vec::with_capacity(parts.len());
     for part in parts {
         let own = part.hinge.map_or(axis, |(own, _)| own);
-        if own.cross(&axis).norm() > PARALLEL {
+        if own.cross(&axis).norm() > PARALLEL_UP_TO_SINE {
             let [x, y, z] = [own.x, own.y, own.z].map(|x| crate::settings::number::fixed(x, 3));
             return Err(part.wrong(
                 format!("it turns about {x} {y} {z}, not parallel to the others"),
@@ -166,7 +170,8 @@ pub fn common_axis(parts: &[Part]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), Imp
     Ok((axis, signs))
 }
 
-/// For each part the one that it moves with: itself where it turns, else what it is fixed to; none: the base.
+/// Returns for each part the turning part with which it moves: itself if it has a hinge, or else the part to which it
+/// is fixed; `None` for the base.
 pub fn owners(parts: &[Part]) -> Vec<Option<usize>> {
     let mut owners: Vec<Option<usize>> = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {
@@ -176,10 +181,10 @@ pub fn owners(parts: &[Part]) -> Vec<Option<usize>> {
     owners
 }
 
-/// x, y and the normal of the plane, in the axes of the base.
+/// Returns x, y and the normal of the plane, in the axes of the base.
 pub fn plane(normal: &Unit<Vector3<f64>>) -> [Vector3<f64>; 3] {
     let n = normal.into_inner();
-    // The plane's x is the base's, where that lies in it or near it; else its y.
+    // The plane's x is the projection of the base's x, or of its y if x is nearly normal to the plane.
     let x = if n.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let x = (x - n * n.dot(&x)).normalize();
     [x, n.cross(&x), n]

@@ -1,8 +1,8 @@
-//! Machines from other programs: planar URDF and MJCF whose links each follow one drive.
+//! Import of machines from other programs: planar URDF and MJCF whose links each follow one drive.
 //!
-//! A reader for each format (`urdf`, `mjcf`) gives a `linkage` in space: parts, their hinges in a reference pose,
-//! which of them turn together, motors and rotors. `family` lays it into the plane of motion and makes a machine of
-//! it, or says what is outside of the family.
+//! A reader for each format (`urdf`, `mjcf`) returns a `linkage` in space: parts, their hinges in a reference pose, the
+//! sets of parts that turn together, motors and rotors. `family` projects the linkage onto the plane of motion and
+//! makes a machine of it, or returns the reason why it is outside the family of machines.
 
 mod bodies;
 mod compiler;
@@ -21,15 +21,15 @@ pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};
 
-/// The most nodes of a file: more take gigabytes.
-const MOST_NODES: u32 = 400_000;
+/// Maximum number of XML nodes of a file: more would take gigabytes.
+const MAX_NODES: u32 = 400_000;
 
-/// Reads a machine from the text of a URDF or MJCF file, whichever it is.
+/// Reads a machine from the text of a URDF or MJCF file.
 ///
 /// # Errors
-/// The first thing that is no machine of the family: which element, in which line, and what would be right.
+/// If the file is not a machine of the family; names the first wrong element, its line, and what would be right.
 pub fn import(text: &str) -> Result<Imported, ImportError> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     scan::check_bounds(text).map_err(|error| error.located(text))?;
     let document = Document::parse_with_options(text, options).map_err(|why| refusal::syntax(&why.to_string()))?;
     let root = document.root_element();

@@ -1,4 +1,4 @@
-//! Numbers and children of elements.
+//! Reads attributes and children of elements.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use roxmltree::Node;
@@ -7,17 +7,17 @@ use super::refusal::{ImportError, wrong};
 use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
-/// The largest number that is read, either way: beyond it, products would not be finite.
-const MOST: f64 = 1e9;
+/// Largest magnitude of a number that is read: products of larger numbers could overflow.
+const MAX_MAGNITUDE: f64 = 1e9;
 
-/// The most numbers of an attribute: a pose has one for each hinge.
+/// Maximum number of numbers in an attribute: a pose has one for each hinge.
 const MAX_NUMBERS: usize = 1000;
 
-/// Where attributes come from: an element, or one with what its class says.
+/// A source of attributes: an element, or an element with the defaults of its class.
 pub trait Source<'a> {
-    /// An attribute.
+    /// Returns the value of an attribute.
     fn get(&self, name: &str) -> Option<&'a str>;
-    /// The element.
+    /// Returns the element.
     fn node(&self) -> Node<'a, 'a>;
 }
 
@@ -41,26 +41,26 @@ impl<'a, S: Source<'a>> Source<'a> for &S {
     }
 }
 
-/// Children that are elements of a name.
+/// Returns the child elements of a name.
 pub fn each<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |child| child.has_tag_name(name))
 }
 
-/// The first child of a name.
+/// Returns the first child element of a name.
 pub fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>> {
     each(node, name).next()
 }
 
-/// An attribute that has to be there.
+/// Returns a required attribute.
 pub fn word<'a>(node: impl Source<'a>, name: &'static str) -> Result<&'a str, ImportError> {
     node.get(name).ok_or_else(|| wrong(node.node(), format!("it has no {name}"), format!("{name}=\"…\"")))
 }
 
-/// The numbers of an attribute, none where it is left out.
+/// Returns the numbers of an attribute; `None` if it is absent.
 pub fn numbers<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vec<f64>>, ImportError> {
     let Some(text) = node.get(name) else { return Ok(None) };
     let number = |word: &str| {
-        let value = word.parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= MOST);
+        let value = word.parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= MAX_MAGNITUDE);
         value.ok_or_else(|| {
             let what = format!("{name} has \"{}\"", clipped(word));
             wrong(node.node(), what, "numbers from -1e9 to 1e9")
@@ -74,30 +74,30 @@ pub fn numbers<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<V
     }
 }
 
-/// So many numbers of an attribute, none where it is left out.
+/// Returns the `N` numbers of an attribute; `None` if it is absent.
 pub fn several<'a, const N: usize>(node: impl Source<'a>, name: &'static str) -> Result<Option<[f64; N]>, ImportError> {
     let Some(all) = numbers(&node, name)? else { return Ok(None) };
     let count = all.len();
     all.try_into().map(Some).map_err(|_| wrong(node.node(), format!("{name} has {count} numbers"), format!("{N}")))
 }
 
-/// One number, none where it is left out.
+/// Returns the number of an attribute; `None` if it is absent.
 pub fn number<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<f64>, ImportError> {
     Ok(several::<1>(node, name)?.map(|[x]| x))
 }
 
-/// One number that has to be there.
+/// Returns the number of a required attribute.
 pub fn given<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
     word(&node, name)?;
     number(node, name).map(|x| x.unwrap_or(0.0))
 }
 
-/// A point or direction.
+/// Returns a point or direction; `None` if it is absent.
 pub fn vector<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vector3<f64>>, ImportError> {
     Ok(several::<3>(node, name)?.map(Vector3::from))
 }
 
-/// A mass, kg, not below 0.
+/// Returns a required mass, kg, not below 0.
 pub fn mass<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
     match given(&node, name)? {
         mass if mass >= 0.0 => Ok(mass),
@@ -105,7 +105,7 @@ pub fn mass<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, Import
     }
 }
 
-/// Inertias about x, y and z with those of their pairs xy, xz, yz, in axes that are turned.
+/// Returns the inertia matrix, rotated by `axes`, from moments about x, y, z and products xy, xz, yz.
 pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6], axes: &Rotation3<f64>) -> Matrix3<f64> {
     let own = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     axes * own * axes.transpose()

@@ -1,14 +1,14 @@
-//! [`ImportError`]: why a file is no machine of the family.
+//! [`ImportError`]: the reason why a file is not a machine of the family.
 
 use roxmltree::Node;
 
 use crate::settings::range::{clipped, shortened};
 
-/// What is wrong with a file, and where.
+/// Error in a file, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}{element}{what}: want {want}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
 pub struct ImportError {
-    /// Where the element begins, bytes.
+    /// Byte offset of the element.
     at: Option<usize>,
     line: Option<usize>,
     element: String,
@@ -17,18 +17,18 @@ pub struct ImportError {
 }
 
 impl ImportError {
-    /// Of an element by its name and where it begins.
+    /// Makes the error of an element, by its name and byte offset.
     pub fn of(at: usize, element: &str, what: impl Into<String>, want: impl Into<String>) -> Self {
         let element = format!("{}: ", shortened(element, 100));
         Self { at: Some(at), line: None, element, what: what.into(), want: want.into() }
     }
 
-    /// Of the whole file.
+    /// Makes an error of the whole file.
     pub fn whole(what: impl Into<String>, want: impl Into<String>) -> Self {
         Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into() }
     }
 
-    /// With the line of the element.
+    /// Adds the line of the element.
     #[must_use]
     pub fn located(self, text: &str) -> Self {
         let line = |at: usize| text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1;
@@ -36,18 +36,18 @@ impl ImportError {
     }
 }
 
-/// What is wrong with an element.
+/// Makes the error of an element.
 pub fn wrong(node: Node<'_, '_>, what: impl Into<String>, want: impl Into<String>) -> ImportError {
     ImportError::of(node.range().start, &called(node), what, want)
 }
 
-/// An element as a message calls it: `link "arm"`.
+/// Returns the name of an element in messages: `link "arm"`.
 pub fn called(node: Node<'_, '_>) -> String {
     let kind = clipped(node.tag_name().name());
     node.attribute("name").map_or_else(|| format!("<{kind}>"), |name| format!("{kind} \"{}\"", clipped(name)))
 }
 
-/// What the reader of XML says.
+/// Makes the error that the XML parser reports.
 pub fn syntax(why: &str) -> ImportError {
     ImportError::whole(shortened(why, 300), "XML without document types, as URDF and MJCF are")
 }

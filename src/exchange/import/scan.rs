@@ -1,25 +1,25 @@
-//! Bounds on XML, checked in one pass before it is parsed: the parser's work grows with the square of the attributes of
-//! one element, and with depth times namespaces.
+//! Bounds on XML, checked in one pass before it is parsed: the parser's work grows with the square of the number of
+//! attributes of one element, and with depth times number of namespaces.
 
 use super::refusal::ImportError;
 
-/// The deepest an element may lie: as many bodies in a row as there may be links, and some around them.
+/// Maximum depth of an element: one body in another for the maximum number of links, and some elements around them.
 const MAX_DEPTH: usize = 250;
-/// The most attributes of one element: MJCF has elements with some 40.
+/// Maximum number of attributes of one element: MJCF has elements with some 40.
 const MAX_ATTRIBUTES: usize = 100;
-/// The most declarations of namespaces in a file: URDF and MJCF need none, files from elsewhere bring a few.
+/// Maximum number of namespace declarations in a file: URDF and MJCF need none, files of other programs have a few.
 const MAX_NAMESPACES: usize = 32;
 
-/// What is counted of an element.
+/// Counts of a start tag.
 struct Tag {
     attributes: usize,
     namespaces: usize,
     closes_itself: bool,
-    /// Where it ends, bytes.
+    /// Byte offset after the tag.
     end: usize,
 }
 
-/// Refuses a file that would take long to parse; what is wrong otherwise is left to the parser.
+/// Checks that a file does not take long to parse; the parser reports all other errors.
 pub fn check_bounds(text: &str) -> Result<(), ImportError> {
     let bytes = text.as_bytes();
     let refused = |at: usize, count: usize, what: &str, most: usize| {
@@ -59,10 +59,10 @@ pub fn check_bounds(text: &str) -> Result<(), ImportError> {
     Ok(())
 }
 
-/// The element that begins at a byte: its attributes are told by their signs of equality outside of quotes.
+/// Reads the tag that begins at a byte offset. Equals signs outside of quotes count as attributes.
 fn tag(bytes: &[u8], start: usize) -> Tag {
     let mut tag = Tag { attributes: 0, namespaces: 0, closes_itself: false, end: bytes.len() };
-    // The open quote; where the last word began, and whether the next byte of a word begins another.
+    // The open quote; the offset of the last word; and whether the next byte of a word begins a new word.
     let (mut quote, mut word, mut is_between) = (None, start + 1, false);
     for (i, byte) in bytes.iter().enumerate().skip(start + 1) {
         match (quote, byte) {
@@ -90,13 +90,13 @@ fn tag(bytes: &[u8], start: usize) -> Tag {
     tag
 }
 
-/// Where a word is next, bytes.
+/// Returns the byte offset of the next occurrence of a word.
 fn find(bytes: &[u8], from: usize, word: &[u8]) -> Option<usize> {
     let rest = bytes.get(from..)?;
     rest.windows(word.len()).position(|own| own == word).map(|i| from + i)
 }
 
-/// The byte after a word.
+/// Returns the byte offset after the next occurrence of a word.
 fn past(bytes: &[u8], from: usize, word: &[u8]) -> usize {
     find(bytes, from, word).map_or(bytes.len(), |i| i + word.len())
 }

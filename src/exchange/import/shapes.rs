@@ -1,4 +1,4 @@
-//! Masses and inertias of shapes of MJCF by their density.
+//! Masses and inertias of shapes of MJCF from their density.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -6,7 +6,7 @@
 //! | r, h | radius and half of the length along z | m |
 //! | a, b, c | halves of the lengths along x, y and z | m |
 //! | V | volume | m³ |
-//! | i | principal inertias about the centre over the mass | m² |
+//! | i | principal inertias about the centre, divided by the mass | m² |
 
 use std::f64::consts::PI;
 
@@ -19,8 +19,8 @@ use super::refusal::{ImportError, wrong};
 use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
-/// That of what says nothing, kg/m³: water.
-const USUAL_DENSITY: f64 = 1000.0;
+/// Density of shapes that give none, kg/m³: that of water.
+const DEFAULT_DENSITY: f64 = 1000.0;
 
 /// A rigid body: mass, kg, centre of mass, m, and inertia about it, kg m², in the same axes.
 #[derive(Clone, Copy, Debug)]
@@ -31,12 +31,12 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Nothing at a place.
+    /// Returns a body without mass at a position.
     pub fn none(com: Vector3<f64>) -> Self {
         Self { mass: 0.0, com, inertia: Matrix3::zeros() }
     }
 
-    /// Both as one.
+    /// Returns both bodies combined to one.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let mass = self.mass + other.mass;
@@ -49,15 +49,16 @@ impl Solid {
     }
 }
 
-/// Inertia of 1 kg at a place.
+/// Returns the inertia of a point mass of 1 kg about the origin.
 fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * at.norm_squared() - at * at.transpose()
 }
 
-/// What a shape weighs on the axes that `frame` gives those of its body; none where its mass does not count.
+/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body; `None` if its mass does
+/// not count.
 ///
 /// # Errors
-/// If its mass or inertia cannot be told.
+/// If its mass or inertia cannot be computed.
 pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -> Result<Option<Solid>, ImportError> {
     let group = number(shape, "group")?.unwrap_or(0.0);
     let [first, last] = compiler.groups;
@@ -77,7 +78,7 @@ pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -
     if let Some(bad) = size.iter().find(|x| **x <= 0.0) {
         return Err(wrong(shape.node(), format!("a size of {} m", Short(*bad)), "sizes above 0"));
     }
-    let density = number(shape, "density")?.unwrap_or(USUAL_DENSITY);
+    let density = number(shape, "density")?.unwrap_or(DEFAULT_DENSITY);
     let mass = mass.unwrap_or(density * volume);
     if mass < 0.0 {
         return Err(wrong(shape.node(), format!("a mass of {} kg", Short(mass)), "one that is not below 0"));
@@ -88,9 +89,9 @@ pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -
     Ok(Some(Solid { mass, com: place.translation.vector, inertia }))
 }
 
-/// Where a shape is on its body, and as many sizes as its kind has, m.
+/// Returns position and orientation of a shape on its body, and the sizes of its kind, m.
 fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isometry3<f64>, Vec<f64>), ImportError> {
-    // What is no number is said so.
+    // Reports words that are not numbers.
     numbers(shape, "size")?;
     let mut size: Vec<f64> = shape.sizes().into_iter().map_while(|word| word.parse().ok()).collect();
     let count = match kind {
@@ -109,7 +110,7 @@ fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isome
         size.truncate(count);
         return Ok((compiler.place(shape)?, size));
     };
-    // Along z from the first point to the second, and as wide along x as along y.
+    // Along z from the first point to the second, with the same width along x and y.
     let [from, to] = [0, 3].map(|i| Vector3::new(ends[i], ends[i + 1], ends[i + 2]));
     let axis = Unit::try_new(to - from, 1e-12)
         .ok_or_else(|| wrong(shape.node(), "its ends are one point", "fromto with two points"))?;
@@ -118,7 +119,7 @@ fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isome
     Ok((Isometry3::from_parts(Translation3::from(0.5 * (from + to)), to_axis(&axis)), size))
 }
 
-/// V and i of a kind that has them.
+/// Returns V and i of a kind of shape; `None` for kinds that are not supported.
 fn measured(kind: &str, size: &[f64]) -> Option<(f64, Vector3<f64>)> {
     Some(match (kind, size) {
         ("sphere", [r]) => (4.0 / 3.0 * PI * r.powi(3), Vector3::repeat(0.4 * r * r)),
@@ -129,7 +130,7 @@ fn measured(kind: &str, size: &[f64]) -> Option<(f64, Vector3<f64>)> {
         ("capsule", [r, h]) => {
             let [cylinder, ball] = [2.0 * PI * r * r * h, 4.0 / 3.0 * PI * r.powi(3)];
             let volume = cylinder + ball;
-            // Half a ball has its centre of mass 3/8 r beyond its cut.
+            // The centre of mass of a half ball is 3/8 r from its flat face.
             let across = cylinder * (3.0 * r * r + 4.0 * h * h) / 12.0 + ball * (0.4 * r * r + h * h + 0.75 * h * r);
             let along = cylinder * 0.5 * r * r + ball * 0.4 * r * r;
             (volume, Vector3::new(across, across, along) / volume)
@@ -140,7 +141,7 @@ fn measured(kind: &str, size: &[f64]) -> Option<(f64, Vector3<f64>)> {
     })
 }
 
-/// Sums of two squares.
+/// Returns b² + c², a² + c², a² + b².
 fn squares(a: f64, b: f64, c: f64) -> Vector3<f64> {
     let [a, b, c] = [a, b, c].map(|x| x * x);
     Vector3::new(b + c, a + c, a + b)

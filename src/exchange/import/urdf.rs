@@ -1,4 +1,4 @@
-//! URDF: a tree of links; joints that mimic others say what turns together.
+//! URDF reader: a tree of links; mimic joints determine which parts turn together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,18 +13,18 @@ use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::{Short, fixed};
 use crate::settings::range::{clipped, shortened};
 
-/// Rates that differ by less are the same.
-const SAME: f64 = 1e-9;
-/// A limit as large as this, or 0, is none.
+/// Tolerance within which rate ratios are equal; also the relative tolerance of limits.
+const RATE_TOLERANCE: f64 = 1e-9;
+/// A limit of 0, or of at least this, is treated as no limit.
 const UNLIMITED: f64 = 1e9;
 
-/// The most joints: what this program writes of the largest machine has fewer.
+/// Maximum number of joints: the export of the largest machine has fewer.
 const MAX_JOINTS: usize = 4000;
 
-/// The most joints that mimic each other in a row.
+/// Maximum number of joints in a row of which each mimics the next.
 const MAX_FOLLOWED: usize = 100;
 
-/// Of a `<robot>`.
+/// Reads the linkage of a `<robot>`.
 pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     let file = File::of(robot)?;
     let mut parts = Vec::new();
@@ -39,9 +39,9 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
             limits.push(Limit { name: None, to: k, from: motors[k].from, now: 0.0, range: Some(range) });
         }
     }
-    let besides = Besides { robot, joints: free.iter().map(|i| joints[*i]).collect(), links: file.numbers(&parts) };
-    besides.limits(&mut limits)?;
-    besides.motors(&mut motors)?;
+    let extension = Extension { robot, joints: free.iter().map(|i| joints[*i]).collect(), links: file.numbers(&parts) };
+    extension.limits(&mut limits)?;
+    extension.motors(&mut motors)?;
     let end = end(&parts, &owners(&parts));
     let meshes = robot.descendants().any(|node| node.has_tag_name("mesh"));
     let mut notes = Vec::new();
@@ -53,8 +53,8 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     let ground = ground.or(Some((0.0, Vector3::zeros(), Matrix3::zeros())));
     Ok(Linkage {
         name: robot.attribute("name").unwrap_or("robot").into(),
-        gravity: besides.gravity()?,
-        loops: besides.loops(&parts)?,
+        gravity: extension.gravity()?,
+        loops: extension.loops(&parts)?,
         parts,
         sets,
         motors,
@@ -66,21 +66,21 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     })
 }
 
-/// What this program writes beside URDF: `<stillbase>`.
-struct Besides<'a> {
+/// The element `<stillbase>`, which this program adds to URDF.
+struct Extension<'a> {
     robot: Node<'a, 'a>,
-    /// Joints that move by themselves, as motors are counted.
+    /// Independent joints, in the order of the motors.
     joints: Vec<Node<'a, 'a>>,
     /// Parts by the names of their links.
     links: BTreeMap<&'a str, usize>,
 }
 
-impl<'a> Besides<'a> {
+impl<'a> Extension<'a> {
     fn each(&self, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> + use<'a> {
         each(self.robot, "stillbase").flat_map(move |node| each(node, name))
     }
 
-    /// The motor of the joint that an attribute names.
+    /// Returns the motor of the joint that an attribute names.
     fn motor(&self, node: Node<'a, 'a>, attribute: &'static str) -> Result<usize, ImportError> {
         let name = word(node, attribute)?;
         let known = self.joints.iter().position(|joint| joint.attribute("name") == Some(name));
@@ -93,7 +93,7 @@ impl<'a> Besides<'a> {
         Ok(Vector3::new(number(node, "x")?.unwrap_or(0.0), number(node, "y")?.unwrap_or(0.0), 0.0))
     }
 
-    /// Adds limits of angles between what two joints turn; what says the same as a joint takes its place.
+    /// Adds the limits of relative angles. Limits of a joint that they already imply are removed.
     fn limits(&self, limits: &mut Vec<Limit>) -> Result<(), ImportError> {
         let mut own = Vec::new();
         for node in self.each("angle").take(MAX_JOINTS) {
@@ -103,8 +103,8 @@ impl<'a> Besides<'a> {
             let name = node.attribute("name").map(Into::into);
             own.push(Limit { name, to, from: Some(from), now, range });
         }
-        // What all angles of the pair leave, as the joint between them turns.
-        let left = |joint: &Limit| {
+        // The intersection of the limits of all angles between the same two drives, with the sign of the joint.
+        let intersection = |joint: &Limit| {
             let of = |own: &Limit| {
                 let [least, most] = own.range?.map(|x| x - own.now);
                 match (own.to, own.from) {
@@ -115,18 +115,18 @@ impl<'a> Besides<'a> {
             };
             own.iter().filter_map(of).reduce(meet)
         };
-        let is_near = |a: f64, b: f64| (a - b).abs() <= SAME * (1.0 + b.abs());
-        let is_said = |joint: &Limit| {
-            let (said, own) = (left(joint), joint.range);
-            said.zip(own).is_some_and(|(said, own)| (0..2).all(|i| is_near(said[i], own[i])))
+        let is_near = |a: f64, b: f64| (a - b).abs() <= RATE_TOLERANCE * (1.0 + b.abs());
+        let is_implied = |joint: &Limit| {
+            let (implied, own) = (intersection(joint), joint.range);
+            implied.zip(own).is_some_and(|(implied, own)| (0..2).all(|i| is_near(implied[i], own[i])))
         };
-        limits.retain(|joint| !is_said(joint));
+        limits.retain(|joint| !is_implied(joint));
         own.append(limits);
         *limits = own;
         Ok(())
     }
 
-    /// Adds limits that URDF has no word for.
+    /// Adds limits that URDF cannot express.
     fn motors(&self, motors: &mut [Motor]) -> Result<(), ImportError> {
         for node in self.each("limit").take(MAX_JOINTS) {
             let k = self.motor(node, "joint")?;
@@ -136,7 +136,7 @@ impl<'a> Besides<'a> {
         Ok(())
     }
 
-    /// Pins that close loops.
+    /// Returns the pins that close loops.
     fn loops(&self, parts: &[Part]) -> Result<Vec<[Point; 2]>, ImportError> {
         let owners = owners(parts);
         let end = |node: Node<'a, 'a>, link: &'static str, at: &'static str| {
@@ -156,7 +156,7 @@ impl<'a> Besides<'a> {
 /// Links and joints by name.
 struct File<'a> {
     links: BTreeMap<&'a str, Node<'a, 'a>>,
-    /// Joints by the link that they carry.
+    /// Joints, each with the names of its parent link and its child link.
     joints: Vec<(Node<'a, 'a>, &'a str, &'a str)>,
     root: &'a str,
 }
@@ -209,7 +209,7 @@ impl<'a> File<'a> {
         Ok(Self { links, joints, root })
     }
 
-    /// Parts from the base on, each with its joint.
+    /// Collects the parts from the base on, each with its joint.
     fn walk(&self, parts: &mut Vec<Part>, joints: &mut Vec<Node<'a, 'a>>) -> Result<(), ImportError> {
         let mut below: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (i, (_, parent, _)) in self.joints.iter().enumerate() {
@@ -228,21 +228,21 @@ impl<'a> File<'a> {
                 open.push((link, Some(own), parts[own].frame));
             }
         }
-        // Links that carry each other in a circle hang on no base.
+        // Links that carry each other in a cycle are not connected to the base.
         match below.into_values().flatten().next() {
             Some(i) => Err(wrong(self.joints[i].0, "links that carry each other", "a tree that begins at the base")),
             None => Ok(()),
         }
     }
 
-    /// Parts by the names of their links.
+    /// Returns the indices of the parts by the names of their links.
     fn numbers(&self, parts: &[Part]) -> BTreeMap<&'a str, usize> {
         let by_name: BTreeMap<&str, usize> =
             parts.iter().enumerate().map(|(i, part)| (part.name.as_str(), i)).collect();
         self.links.keys().filter_map(|name| Some((*name, *by_name.get(name)?))).collect()
     }
 
-    /// The joints that move by themselves, and how each part turns with them, about the common axis.
+    /// Returns the independent joints, and for each part the ratios of its rate to theirs, about the common axis.
     fn rates(
         &self,
         parts: &[Part],
@@ -276,10 +276,11 @@ impl<'a> File<'a> {
     }
 }
 
-/// The joint that one follows in the end, and how often it turns for one turn of that; itself where it mimics none.
+/// Returns the independent joint that joint `i` mimics, directly or through others, and the factor of its angle; joint
+/// `i` itself if it mimics none.
 fn followed(joints: &[Node<'_, '_>], named: &BTreeMap<&str, usize>, i: usize) -> Result<(usize, f64), ImportError> {
     let (mut at, mut times) = (i, 1.0);
-    // None is followed through more than a few others.
+    // Bounds the number of joints followed, so that a cycle ends.
     for _ in 0..=joints.len().min(MAX_FOLLOWED) {
         let Some(mimic) = child(joints[at], "mimic") else { return Ok((at, times)) };
         times *= number(mimic, "multiplier")?.unwrap_or(1.0);
@@ -299,7 +300,7 @@ fn origin(node: Node<'_, '_>) -> Result<Isometry3<f64>, ImportError> {
     Ok(Isometry3::from_parts(Translation3::from(place), turn))
 }
 
-/// A link with the joint that carries it.
+/// Reads a link with the joint that carries it.
 fn part(
     joint: Node<'_, '_>,
     link: Node<'_, '_>,
@@ -320,7 +321,7 @@ fn part(
         let axis = child(joint, "axis").map(|axis| vector(axis, "xyz")).transpose()?.flatten();
         let axis = Unit::try_new(axis.unwrap_or(Vector3::x()), 1e-6)
             .ok_or_else(|| wrong(joint, "an axis without direction", "three numbers that are not all 0"))?;
-        // What only follows may stand at an angle where what it follows is at 0.
+        // A mimic joint may have an offset angle.
         let offset = child(joint, "mimic").map(|mimic| number(mimic, "offset")).transpose()?.flatten().unwrap_or(0.0);
         frame *= UnitQuaternion::from_axis_angle(&axis, offset);
         hinge = Some((frame.rotation * axis, frame.translation.vector));
@@ -330,7 +331,7 @@ fn part(
     Ok(Part { name, called: called(link), at: link.range().start, parent, frame, hinge, mass, com, inertia })
 }
 
-/// Mass, centre of mass and inertia in the axes of the base.
+/// Reads mass, kg, centre of mass, m, and inertia, kg m², in the axes of the base.
 fn body(
     link: Node<'_, '_>,
     frame: &Isometry3<f64>,
@@ -355,17 +356,17 @@ fn body(
 
 type Turning = (Vec<Option<usize>>, Vec<Motor>, Vec<(usize, usize, f64)>);
 
-/// Which parts turn together, what turns them, and which are rotors.
+/// Returns the sets of parts that turn together, the motors that turn them, and the rotors.
 fn turning(
     parts: &[Part],
     joints: &[Node<'_, '_>],
     free: &[usize],
     rates: &[Vec<f64>],
 ) -> Result<Turning, ImportError> {
-    let is_same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let is_same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= RATE_TOLERANCE);
     let none = vec![0.0; free.len()];
     let is_still = |a: &[f64]| is_same(a, &none);
-    // The set of a motor's number is what it turns.
+    // Set k consists of the parts that motor k turns.
     let set = |own: &[f64]| free.iter().position(|i| is_same(&rates[*i], own));
     let of_parent = |i: usize| parts[i].parent.map_or(&none, |parent| &rates[parent]);
     let mut motors = Vec::new();
@@ -389,9 +390,9 @@ fn turning(
         let own = if is_still(&rates[i]) { None } else { set(&rates[i]) };
         if !carriers.contains(&i) && part.hinge.is_some() && child(joints[i], "mimic").is_some() {
             let relative: Vec<f64> = rates[i].iter().zip(of_parent(i)).map(|(a, b)| a - b).collect();
-            let only = relative.iter().position(|x| x.abs() > SAME);
-            let k = only.filter(|k| relative.iter().enumerate().all(|(l, x)| l == *k || x.abs() <= SAME));
-            // It sits where the motor does.
+            let only = relative.iter().position(|x| x.abs() > RATE_TOLERANCE);
+            let k = only.filter(|k| relative.iter().enumerate().all(|(l, x)| l == *k || x.abs() <= RATE_TOLERANCE));
+            // A rotor sits on the same body as its motor.
             let k = k.filter(|k| is_same(of_parent(i), of_parent(free[*k])));
             if let Some(k) = k.filter(|_| own.is_none() || part.mass <= light) {
                 rotors.push((i, k, relative[k]));
@@ -410,7 +411,7 @@ fn turning(
     Ok((sets, motors, rotors))
 }
 
-/// What is no mass beside that of all.
+/// Returns the mass, kg, up to which a part is treated as massless.
 fn light(parts: &[Part]) -> f64 {
     super::family::NOTHING * parts.iter().map(|part| part.mass).sum::<f64>()
 }
@@ -425,7 +426,7 @@ fn motor(joint: Node<'_, '_>, from: Option<usize>) -> Result<Motor, ImportError>
     Ok(Motor { name, from, torque_limit: bound("effort")?, speed_limit: bound("velocity")?, ..Motor::default() })
 }
 
-/// Limits of a joint, rad about the common axis.
+/// Reads the limits of a joint, rad about the common axis.
 fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError> {
     let Some(limit) = child(joint, "limit").filter(|_| joint.attribute("type") == Some("revolute")) else {
         return Ok(None);
@@ -447,7 +448,7 @@ fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError
     }
 }
 
-/// The part that works: one with a name that says so, else the only one that is fixed, weighs nothing and carries nothing.
+/// Finds the end effector: a part with a usual name of one, or else the only fixed part without mass and children.
 fn end(parts: &[Part], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
     let ranked = parts.iter().enumerate().filter_map(|(i, part)| Some((end_rank(&part.name)?, i)));
     let named = ranked.min().map(|(_, i)| i);

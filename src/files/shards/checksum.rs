@@ -1,5 +1,5 @@
-//! The checksum of a file of samples, over all its bytes. It stands in the text that names the study; while it is
-//! computed, zeros stand in its place.
+//! The checksum of a file of samples, over all its bytes. It is part of the text that identifies the study; while it is
+//! computed, zeros take its place.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -11,30 +11,30 @@ use crate::files::{NewFile, WriteError};
 /// The text before the checksum.
 pub const BEFORE: &str = " check ";
 
-/// What stands where the checksum will come.
+/// Placeholder of the checksum.
 pub const BLANK: &str = "0000000000000000";
 
 const DIGITS: u64 = BLANK.len() as u64;
 
-/// Where in a file its checksum is looked for.
+/// The end of a file at which its checksum is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// In its first bytes.
+    /// The first bytes.
     Head,
-    /// In its last.
+    /// The last bytes.
     Tail,
 }
 
-/// The checksum is within so many bytes of that end.
+/// The checksum is within this number of bytes of that end.
 const SEARCHED_BYTES: u64 = 1 << 16;
 
-/// Where the digits of a checksum begin among the bytes at an end, and what they say. Names of columns may look like
-/// it, but do not stand as near to the end.
+/// Finds the checksum among the bytes at an end, and returns the offset of its digits and its value. Names of columns
+/// may look like a checksum, but are further from that end.
 fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
     let before = BEFORE.as_bytes();
     let digits = |at: usize| {
         let text = bytes.get(at..at + BLANK.len())?;
-        // Each value has one spelling, so that no bit of it can change unseen.
+        // Only lower case digits count, so that each value has one spelling and every changed bit is noticed.
         let spelled = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
         u64::from_str_radix(std::str::from_utf8(text).ok().filter(|_| spelled)?, 16).ok()
     };
@@ -46,26 +46,26 @@ fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
     if end == End::Head { windows.find_map(found) } else { windows.rev().find_map(found) }
 }
 
-/// A file being written, which gets its checksum at the end.
+/// A file that is being written and receives its checksum at the end.
 pub struct CheckedFile {
     out: NewFile,
     sum: Checksum,
-    /// What was written first.
+    /// The first bytes written.
     head: Vec<u8>,
 }
 
 impl CheckedFile {
-    /// Nothing is written yet.
+    /// Begins with a file to which nothing is written yet.
     pub fn new(out: NewFile) -> Self {
         Self { out, sum: Checksum::new(), head: Vec::new() }
     }
 
-    /// What was asked for.
+    /// Returns the requested path.
     pub fn path(&self) -> &Path {
         self.out.path()
     }
 
-    /// Writes the checksum and puts it under its name.
+    /// Writes the checksum and gives the file its final name.
     ///
     /// # Errors
     /// If not everything could be written.
@@ -99,10 +99,10 @@ impl Write for CheckedFile {
     }
 }
 
-/// Whether the checksum at an end of a file is that of its bytes; `None` where there is none.
+/// Returns whether the checksum at an end of a file matches its bytes; `None` if there is no checksum.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the file cannot be read.
 pub fn holds(file: &mut File, end: End) -> io::Result<Option<bool>> {
     let length = file.metadata()?.len();
     let from = if end == End::Head { 0 } else { length.saturating_sub(SEARCHED_BYTES) };

@@ -1,4 +1,4 @@
-//! [`ShardError`]: why a shard cannot be read or written.
+//! [`ShardError`]: the reason why a shard cannot be read or written.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -7,18 +7,18 @@ use thiserror::Error;
 
 use crate::files::WriteError;
 
-/// Why a shard cannot be read or written, or shards are not one study.
+/// The reason why a shard cannot be read or written, or why shards do not form one study.
 #[derive(Debug, Error)]
 pub enum ShardError {
-    /// What is wrong, by file, and what was expected.
+    /// A file is wrong; the text says what was expected.
     #[error("{0}")]
     Wrong(String),
-    /// It cannot be written.
+    /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
-/// That something is wrong with a file.
+/// Makes the error of a file.
 pub(super) fn wrong(file: &Path, why: impl Display) -> ShardError {
     ShardError::Wrong(format!("{}: {why}", file.display()))
 }

@@ -1,26 +1,26 @@
-//! The two sums of 64 bits that stand in files of samples. Neither has to withstand anybody, only chance: they are short,
-//! quick, and keep their values for good, as files have them. What must never be equal by chance, the identifiers of
-//! recordings, is cut from SHA-256 instead.
+//! The two 64-bit hashes in files of samples. They guard against accidents, not against attacks, so they are short and
+//! fast; their values must never change, because files hold them. Identifiers of recordings, which must never coincide,
+//! are truncated SHA-256 hashes instead.
 
 /// The offset basis of FNV-1a, 64 bits.
 const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// FNV-1a of bytes: which study a file is of.
+/// Returns the FNV-1a hash of bytes, which identifies the study of a file.
 pub fn fnv_1a(bytes: &[u8]) -> u64 {
     let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
     bytes.iter().fold(OFFSET_BASIS, byte)
 }
 
-/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single
-/// word changes without it.
+/// A checksum like FNV-1a over words of eight bytes. Each step is a bijection of the sum, so a change of a single word
+/// always changes the checksum.
 pub struct Checksum {
     sum: u64,
-    /// What does not yet fill a word.
+    /// Bytes that do not yet fill a word.
     rest: Vec<u8>,
 }
 
 impl Checksum {
-    /// Of nothing yet.
+    /// Begins with no bytes.
     pub fn new() -> Self {
         Self { sum: OFFSET_BASIS, rest: Vec::with_capacity(8) }
     }
@@ -30,7 +30,7 @@ impl Checksum {
         (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
     }
 
-    /// Takes bytes in, in their order.
+    /// Adds bytes, in their order.
     pub fn add(&mut self, bytes: &[u8]) {
         let missing = if self.rest.is_empty() { 0 } else { (8 - self.rest.len()).min(bytes.len()) };
         let (first, bytes) = bytes.split_at(missing);
@@ -46,7 +46,7 @@ impl Checksum {
         }
     }
 
-    /// The sum of it all; a one marks the end, so that zeros after it are not nothing.
+    /// Returns the checksum of all bytes; a final byte 1 marks the end, so that appended zeros change it.
     pub fn total(&self) -> u64 {
         let mut last = self.rest.clone();
         last.push(1);

@@ -1,4 +1,4 @@
-//! Puts the shards of a study together, or says which of them are missing, doubled or of another study.
+//! Merges the shards of a study, or reports which of them are missing, duplicate or of another study.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -7,10 +7,10 @@ use super::error::ShardError;
 use super::rows::{Head, StudyId, StudyPart, Writer, outcome_of};
 use crate::study::tolerance::Outcome;
 
-/// Puts parts together, in whatever order they are named, and gives what their machines come to.
+/// Merges shards, given in any order, into one file, and returns the study and the outcomes of its machines.
 ///
 /// # Errors
-/// If a part is of another study, or samples are there twice or missing.
+/// If a shard belongs to another study, or if samples are duplicate or missing.
 pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<Outcome>), ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
@@ -24,7 +24,7 @@ pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, V
         let why = difference(&other.head, &head);
         return Err(ShardError::Wrong(format!("{other_file} and {file} are parts of different studies: {why}")));
     }
-    // A shard without a machine has no place of its own.
+    // Shards without machines come last.
     opened.sort_by_key(|(first, _)| first.unwrap_or(u64::MAX));
     let mut writer = Writer::create(whole, force, &head)?;
     let (mut next, mut outcomes, mut before) = (0, Vec::new(), None::<PathBuf>);
@@ -61,7 +61,7 @@ fn missing(first: u64, last: u64) -> ShardError {
     ShardError::Wrong(format!("samples {first} to {last} are in no part: want every shard"))
 }
 
-/// In what two heads differ.
+/// Returns the difference between two headers in words.
 fn difference(a: &Head, b: &Head) -> String {
     let (one, two) = (a.study, b.study);
     if one.samples != two.samples {

@@ -1,5 +1,5 @@
-//! Studies of tolerances in files, CSV or Parquet: one row a machine, each file a shard of the machines of one study, and
-//! shards put together again. A head names the study, and a checksum covers every byte.
+//! Tolerance studies in files, CSV or Parquet: one row a machine, each file a shard of the machines of one study, and
+//! the merging of shards. A header identifies the study, and a checksum covers every byte.
 
 mod checksum;
 mod error;

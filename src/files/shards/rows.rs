@@ -1,4 +1,4 @@
-//! Files of samples, CSV or Parquet: one row a machine, and a head by which shards know each other.
+//! Files of samples, CSV or Parquet: one row a machine, and a header that identifies the study.
 
 use std::fmt;
 use std::fs::File;
@@ -25,14 +25,14 @@ use crate::files::{NewFile, WriteError};
 use crate::session::scenario::{Scenario, Tolerance};
 use crate::study::tolerance::Outcome;
 
-/// Which study rows belong to. Its text heads the column of samples in a CSV file.
+/// Identifier of a study. In a CSV file its text is the title of the column of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StudyId {
-    /// Machines of the whole study.
+    /// Number of machines of the whole study.
     pub samples: u64,
-    /// Which random machines.
+    /// Seed of the random machines.
     pub seed: u64,
-    /// A number of everything else: scenario, spreads, instants, mode.
+    /// Hash of all other inputs: scenario, spreads, instants, mode, and version of the program.
     pub problem: u64,
 }
 
@@ -44,8 +44,8 @@ impl fmt::Display for StudyId {
 }
 
 impl StudyId {
-    /// Of the machines of a scenario with its tolerances, of which so many instants are looked at, or which are simulated:
-    /// everything that a machine's row depends on.
+    /// Makes the identifier from everything on which a machine's row depends: the scenario, its tolerances, number of
+    /// samples and seed, the number of instants evaluated, and whether the machines are simulated.
     pub fn of(
         scenario: &Scenario,
         tolerance: &Tolerance,
@@ -79,33 +79,33 @@ impl StudyId {
     }
 }
 
-/// What a file holds.
+/// Header of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
-    /// Of which study.
+    /// The study to which the file belongs.
     pub study: StudyId,
-    /// Names of the columns after the sample's, with units.
+    /// Names of the columns after that of the sample, with units.
     pub columns: Vec<String>,
 }
 
 impl Head {
-    /// Of machines that vary in numbers by name, with units.
+    /// Makes the header of machines that vary in the named numbers, with units.
     pub fn new(study: StudyId, numbers: impl IntoIterator<Item = String>) -> Self {
         Self { study, columns: numbers.into_iter().chain(OUTCOME_COLUMNS.map(str::to_owned)).collect() }
     }
 }
 
-/// The last numbers of a row: what its machine comes to.
+/// Returns the outcome of a machine, the last numbers of its row.
 pub fn outcome_of(row: &[f64]) -> Outcome {
     let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOMES]);
     let [peak_moment, peak_force, rms_moment, rms_force] = last;
     Outcome { peak_moment, peak_force, rms_moment, rms_force }
 }
 
-/// How many numbers each machine comes to.
+/// Number of columns of the outcome of a machine.
 pub const OUTCOMES: usize = 4;
 
-/// The last columns: what each machine comes to.
+/// Names of the last columns, the outcome of each machine.
 pub const OUTCOME_COLUMNS: [&str; OUTCOMES] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
 
 /// The kinds of file.
@@ -116,7 +116,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Where its files name their study.
+    /// Returns the end of its files at which the study is identified.
     fn end(self) -> End {
         if self == Self::Csv { End::Head } else { End::Tail }
     }
@@ -130,30 +130,30 @@ fn kind_of(file: &Path) -> Result<Kind, ShardError> {
     }
 }
 
-/// Rows of a Parquet row group.
+/// Maximum number of rows of a Parquet row group.
 const GROUP_ROWS: usize = 65_536;
 
-/// Columns of a file, at most: far more than any machine has parameters.
+/// Maximum number of columns of a file: far more than any machine has parameters.
 const MAX_COLUMNS: usize = 1000;
 
-/// The longest line of a CSV file, bytes.
+/// Maximum length of a line of a CSV file, bytes.
 const MAX_LINE_BYTES: u64 = 1 << 18;
 
-/// The longest table of contents of a Parquet file, bytes: that of as many machines as there may be.
+/// Maximum size of the footer of a Parquet file, bytes: enough for the maximum number of machines.
 const MAX_CONTENTS_BYTES: u64 = 1 << 27;
 
-/// The key under which a Parquet file names its study.
+/// The metadata key under which a Parquet file identifies its study.
 const STUDY_KEY: &str = "stillbase.study";
 
 /// Writes rows.
 pub enum Writer {
-    /// One line a row.
+    /// Writes one line a row.
     Csv(Box<csv::Writer<CheckedFile>>),
-    /// Columns, a group of rows at a time.
+    /// Writes columns, one row group at a time.
     Parquet(Box<Groups>),
 }
 
-/// A Parquet file in the making.
+/// A Parquet file that is being written.
 pub struct Groups {
     writer: SerializedFileWriter<CheckedFile>,
     file: PathBuf,
@@ -165,7 +165,7 @@ impl Writer {
     /// Begins a file.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If it cannot be created.
     pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, ShardError> {
         let kind = kind_of(file)?;
         let out = CheckedFile::new(NewFile::create(file, force)?);
@@ -180,7 +180,7 @@ impl Writer {
         }
     }
 
-    /// One more machine: the numbers that vary, and what it comes to.
+    /// Writes a machine: the numbers that vary, and its outcome.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -189,7 +189,7 @@ impl Writer {
         self.row(sample, &[numbers, &[peak_moment, peak_force, rms_moment, rms_force]].concat())
     }
 
-    /// One more row.
+    /// Writes a row.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -203,7 +203,7 @@ impl Writer {
         }
     }
 
-    /// Puts the file under its name.
+    /// Gives the file its final name.
     ///
     /// # Errors
     /// If not everything could be written.
@@ -242,7 +242,7 @@ impl Groups {
         let others = head.columns.iter().map(|name| column(name, Physical::DOUBLE));
         let fields = sample.chain(others).collect::<Result<Vec<_>, _>>().map_err(&failed)?;
         let schema = Type::group_type_builder("machine").with_fields(fields).build().map_err(&failed)?;
-        // Random numbers gain nothing by a dictionary.
+        // Random numbers do not compress with a dictionary.
         let properties = WriterProperties::builder()
             .set_dictionary_enabled(false)
             .set_created_by(format!("stillbase {}", env!("CARGO_PKG_VERSION")))
@@ -289,11 +289,11 @@ impl Groups {
     }
 }
 
-/// A file of rows, opened.
+/// An opened file of rows.
 pub struct StudyPart {
     /// Path of the file.
     pub file: PathBuf,
-    /// What it holds.
+    /// Its header.
     pub head: Head,
     reader: Reader,
 }
@@ -304,10 +304,10 @@ enum Reader {
 }
 
 impl StudyPart {
-    /// Opens a file, sees that it is as it was written, and reads its head.
+    /// Opens a file, verifies its checksum, and reads its header.
     ///
     /// # Errors
-    /// If it is none that this program wrote, or has changed since.
+    /// If this program did not write the file, or if the file has changed since.
     pub fn open(file: &Path) -> Result<Self, ShardError> {
         let (kind, mut opened) = plain_file(file)?;
         let unreadable = |e| wrong(file, e);
@@ -321,7 +321,7 @@ impl StudyPart {
         }
     }
 
-    /// The number of its first sample; `None` if it holds none.
+    /// Returns the number of its first sample; `None` if it has no rows.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -334,7 +334,7 @@ impl StudyPart {
         Ok(first)
     }
 
-    /// Reads the head.
+    /// Reads the header.
     fn load(file: &Path) -> Result<Self, ShardError> {
         let (kind, opened) = plain_file(file)?;
         let (study, columns, reader) = match kind {
@@ -374,10 +374,10 @@ impl StudyPart {
         Ok(Self { file: file.into(), head, reader })
     }
 
-    /// Shows rows until `see` has seen enough, each of finite numbers, its last those of a machine.
+    /// Calls `see` with each row, its sample and its finite numbers, until `see` breaks.
     ///
     /// # Errors
-    /// If one cannot be read or cannot be, or what `see` says.
+    /// If a row cannot be read or is not plausible, or if `see` fails.
     pub fn rows(
         self,
         mut see: impl FnMut(u64, &[f64]) -> Result<ControlFlow<()>, ShardError>,
@@ -435,24 +435,24 @@ fn foreign(file: &Path) -> ShardError {
     wrong(file, why)
 }
 
-/// A file by its name: a plain one.
+/// Opens a plain file.
 fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
     let kind = kind_of(file)?;
     let unreadable = |e| wrong(file, format!("{e}: want a plain file that can be read"));
-    // To open a pipe would already wait for its other end.
+    // Opening a pipe would block until its other end is opened.
     let there = std::fs::metadata(file).and_then(|there| crate::files::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
     Ok((kind, File::open(file).map_err(unreadable)?))
 }
 
-/// The next line with its end, empty after the last; none if it cannot be read or is too long.
+/// Returns the next line with its end, empty after the last; `None` if it cannot be read or is too long.
 fn line(reader: &mut BufReader<File>) -> Option<Vec<u8>> {
     let mut line = Vec::new();
     reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line).ok()?;
     ((line.len() as u64) < MAX_LINE_BYTES).then_some(line)
 }
 
-/// A reader of a Parquet file whose table of contents can be what it says.
+/// Opens a Parquet file after checks that its footer and its row groups are plausible.
 fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, ShardError> {
     let mut contents = || {
         let length = opened.metadata().ok()?.len();
@@ -483,7 +483,7 @@ fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<
     if contents.row_groups().iter().all(within) { Ok(reader) } else { Err(foreign(file)) }
 }
 
-/// The columns of a group: numbers of samples, and everything else.
+/// Reads the columns of a row group: the sample numbers, and all others.
 fn group_of(
     file: &Path,
     reader: &SerializedFileReader<File>,
@@ -507,7 +507,7 @@ fn group_of(
     if whole { Ok((samples, columns)) } else { Err(foreign(file)) }
 }
 
-/// What the Parquet reader makes of a file: it panics on some damaged files, which are refused here.
+/// Calls the Parquet reader, and turns its panics, which some damaged files cause, into errors.
 fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Result<T, ShardError> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
@@ -516,12 +516,12 @@ fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Resu
     done.unwrap_or_else(|_| Err(foreign(file)))
 }
 
-/// How many rows a group has, if it is as large as those that are written here.
+/// Returns the number of rows of a row group, if it is one that this program could have written.
 fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
     usize::try_from(group.num_rows()).ok().filter(|rows| (1..=GROUP_ROWS).contains(rows))
 }
 
-/// What is wrong with a row that no machine has.
+/// Checks that a row could be that of a machine.
 fn plausible(study: &StudyId, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
     if sample >= study.samples {
         return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));

@@ -1,27 +1,28 @@
-//! Columns that are to be continuous motions: whole turns are taken out of angles, and jumps are refused.
+//! Columns of continuous motions: angles are unwrapped, and jumps are refused.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::settings::number::Short;
 
-/// An angle without unit beyond this, rad, is taken for one in degrees.
-const MAX_PLAIN_ANGLE: f64 = 2.0 * TAU;
-/// From one sample to the next an angle may move by this much, rad.
-const MAX_STEP: f64 = 0.5 * PI;
-/// A step this many times as fast as both beside it is a jump, if it is also larger than the least one.
+/// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is refused.
+const MAX_PLAIN_ANGLE_RAD: f64 = 2.0 * TAU;
+/// Largest step of an angle from one sample to the next, rad.
+const MAX_STEP_RAD: f64 = 0.5 * PI;
+/// A step is a jump if it is this many times as fast as both neighbouring steps, and larger than the smallest jump.
 const JUMP_FACTOR: f64 = 10.0;
-/// The least jumps, rad and m.
+/// Smallest jump of an angle, rad.
 const MIN_JUMP_RAD: f64 = 0.1;
+/// Smallest jump of a length, m.
 const MIN_JUMP_M: f64 = 0.02;
-/// A time between samples this many times as long as the usual one is a gap.
+/// A time step is a gap if it is this many times as long as the median time step.
 pub(super) const GAP_FACTOR: f64 = 10.0;
 
-/// What keeps a column from being a continuous motion.
+/// The reason why a column is not a continuous motion.
 pub(super) struct Broken {
-    /// At which row, counted from 0.
+    /// Index of the row, from 0.
     pub row: usize,
     what: String,
-    /// Whether it is a jump from the row before.
+    /// For a jump from the previous row, the end of the message.
     jump: Option<String>,
 }
 
@@ -32,7 +33,7 @@ impl Broken {
         Self { row, what: format!("column {name}: a jump of {step:.3} {unit} from line "), jump: Some(rest) }
     }
 
-    /// In words, by the lines of rows.
+    /// Returns the reason in words; `lines` holds the line of each row.
     pub fn why(&self, lines: &[u64]) -> String {
         match &self.jump {
             Some(rest) => format!("{}{}{rest}", self.what, lines[self.row - 1]),
@@ -41,12 +42,13 @@ impl Broken {
     }
 }
 
-/// Takes whole turns out of the steps of column `k` of angles, rad; how many there were. Column 0 is the time, s.
+/// Unwraps column `k` of angles, rad, and returns the number of steps from which whole turns were removed. Column 0 is
+/// the time, s.
 ///
 /// # Errors
-/// If these are no angles in rad, or jump.
+/// If the angles are not in rad, or if they jump.
 pub(super) fn continuous_angle(rows: &mut [Vec<f64>], k: usize, name: &str, has_unit: bool) -> Result<usize, Broken> {
-    if let Some(row) = rows.iter().position(|row| !has_unit && row[k].abs() > MAX_PLAIN_ANGLE) {
+    if let Some(row) = rows.iter().position(|row| !has_unit && row[k].abs() > MAX_PLAIN_ANGLE_RAD) {
         let what = format!(
             "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
              \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
@@ -55,13 +57,13 @@ pub(super) fn continuous_angle(rows: &mut [Vec<f64>], k: usize, name: &str, has_
         return Err(Broken { row, what, jump: None });
     }
     let turns = unwrap(rows, k);
-    match jump(rows, k, MIN_JUMP_RAD, MAX_STEP) {
+    match jump(rows, k, MIN_JUMP_RAD, MAX_STEP_RAD) {
         Some((row, step)) => Err(Broken::jump(name, row, step, "rad")),
         None => Ok(turns),
     }
 }
 
-/// Refuses a column `k` of lengths, m, that jumps. Column 0 is the time, s.
+/// Checks that column `k` of lengths, m, does not jump. Column 0 is the time, s.
 pub(super) fn continuous_length(rows: &[Vec<f64>], k: usize, name: &str) -> Result<(), Broken> {
     match jump(rows, k, MIN_JUMP_M, f64::INFINITY) {
         Some((row, step)) => Err(Broken::jump(name, row, step, "m")),
@@ -69,7 +71,7 @@ pub(super) fn continuous_length(rows: &[Vec<f64>], k: usize, name: &str) -> Resu
     }
 }
 
-/// Takes whole turns out of the steps of a column; how many there were.
+/// Unwraps a column of angles, rad, and returns the number of steps from which whole turns were removed.
 fn unwrap(rows: &mut [Vec<f64>], k: usize) -> usize {
     let (mut turns, mut count) = (0.0, 0);
     let mut before = rows[0][k];
@@ -85,8 +87,8 @@ fn unwrap(rows: &mut [Vec<f64>], k: usize) -> usize {
     count
 }
 
-/// The first step of a column that no smooth motion makes: at which row, and how large. Steps up to `min_jump` are none,
-/// those beyond `max_step` always are.
+/// Finds the first jump of a column and returns its row and size. Steps up to `min_jump` are never jumps, steps beyond
+/// `max_step` always are.
 fn jump(rows: &[Vec<f64>], k: usize, min_jump: f64, max_step: f64) -> Option<(usize, f64)> {
     let step = |i: usize| rows[i][k] - rows[i - 1][k];
     let speed = |i: usize| (step(i) / (rows[i][0] - rows[i - 1][0])).abs();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::mechanics::machine::Machine;
 use crate::settings::range::{clipped, shortened};
 
-/// Words for units, and what one of them is in SI units.
+/// Names of units, each with its value in SI units.
 pub(super) type Units = &'static [(&'static str, f64)];
 
 pub(super) const DEGREE: f64 = PI / 180.0;
@@ -14,20 +14,20 @@ pub(super) const ANGLE: Units = &[("rad", 1.0), ("radians", 1.0), ("deg", DEGREE
 
 /// A column of a table.
 pub(super) struct Column {
-    /// Counted from 0.
+    /// Index of the column, from 0.
     pub place: usize,
     pub name: String,
-    /// What a number of it is in SI units.
+    /// Factor that converts its numbers to SI units.
     pub scale: f64,
-    /// Whether its head says its unit.
+    /// Whether its header states the unit.
     pub has_unit: bool,
 }
 
 impl Column {
-    /// The one of these names among heads with their units; none if there is none.
+    /// Finds the column with one of these names among header cells, given as names with units; `None` if there is none.
     ///
     /// # Errors
-    /// If there are two, or its unit is none of those known.
+    /// If there are two such columns, or if the unit is unknown.
     pub fn find(cells: &[(String, Option<String>)], names: &[String], units: Units) -> Result<Option<Self>, String> {
         let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
         let Some((place, (name, unit))) = found.next() else { return Ok(None) };
@@ -48,13 +48,13 @@ impl Column {
     }
 }
 
-/// That a column is missing among those of a table.
+/// Returns the message that a column is missing in a table.
 pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> String {
     let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
     format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
 }
 
-/// `q1 (deg)` or `q1 [deg]`, trimmed and in small letters.
+/// Splits a lower case `q1 (deg)` or `q1 [deg]` into name and unit; `None` without brackets.
 pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     let bracketed = |open: char, close: char| {
         let (name, rest) = cell.split_once(open)?;
@@ -64,12 +64,12 @@ pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     Some((name, Some(unit).filter(|unit| !unit.is_empty())))
 }
 
-/// The columns of a machine's drive angles, as a header has them.
+/// Returns the header of the columns of a machine's drive angles.
 pub(super) fn angles(machine: &Machine) -> String {
     (1..=machine.drives()).map(|k| format!("q{k}")).collect::<Vec<_>>().join(",")
 }
 
-/// Names as they stand.
+/// Copies names into a vector.
 pub(super) fn named(all: &[&str]) -> Vec<String> {
     all.iter().map(|name| (*name).to_owned()).collect()
 }

@@ -1,39 +1,39 @@
-//! [`TableError`]: why text is not the table that is wanted.
+//! [`TableError`]: the reason why text is not the expected table.
 
 use std::fmt::{self, Display};
 
 use crate::study::advice::{Advice, Remedy};
 
-/// Why text is not the table that is wanted: where, and what was expected.
+/// The reason why text is not the expected table, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableError {
-    /// What the text is called.
+    /// Name of the file or text.
     pub file: String,
-    /// Line, counted from 1; none if the whole text is wrong.
+    /// Line, counted from 1; `None` if the whole text is wrong.
     pub line: Option<u64>,
-    /// What is wrong, by column where it is one, and what was expected.
+    /// The error, with its column if it has one, and what was expected.
     pub why: Advice,
 }
 
 impl TableError {
-    /// Of a line, counted from 1.
+    /// Makes an error of a line, counted from 1.
     pub(super) fn at(file: &str, line: u64, why: impl Display) -> Self {
         Self { line: Some(line), ..Self::whole(file, why) }
     }
 
-    /// Of the whole text.
+    /// Makes an error of the whole text.
     pub(super) fn whole(file: &str, why: impl Display) -> Self {
         Self { file: file.to_owned(), line: None, why: why.to_string().into() }
     }
 
-    /// The same with other names for the ways out.
+    /// Returns the same error with other names for the remedies.
     #[must_use]
     pub fn worded(self, name: impl Fn(Remedy) -> &'static str) -> Self {
         Self { why: self.why.worded(name), ..self }
     }
 }
 
-/// Where, and why.
+/// Puts file and line before the reason.
 impl From<TableError> for Advice {
     fn from(TableError { file, line, why }: TableError) -> Self {
         why.after(match line {

@@ -1,4 +1,4 @@
-//! [`Table`]: a motion or a measurement, told apart by the columns.
+//! [`Table`]: a motion or a measurement, distinguished by its columns.
 
 use std::path::Path;
 
@@ -12,17 +12,17 @@ use crate::mechanics::machine::Machine;
 use crate::settings::text::MOST_BYTES;
 use crate::study::trim::Motion;
 
-/// What a table is of.
+/// Content of a table.
 #[derive(Debug)]
 pub enum Table {
     /// A motion, given by samples.
     Motion(SampleTable),
-    /// Motions of a built machine, with what its base felt.
+    /// Measured motions of a built machine, with forces and moments on its base.
     Measurement(Vec<Motion>),
 }
 
 impl Table {
-    /// Reads a file that is either, of a machine: see [`Table::of`].
+    /// Reads a file that is either a motion or a measurement of a machine: see [`Table::of`].
     ///
     /// # Errors
     /// If it cannot be read, or is neither.
@@ -35,12 +35,12 @@ impl Table {
         Self::of(&text, &name, machine, gaps)
     }
 
-    /// Reads text that is either: with a column of a force or a moment on the base it is a measurement, as
-    /// [`motions`](super::motions) reads it, else a motion, as [`samples`](super::samples()) does. `file` is what errors
-    /// call the text; `gaps` lets gaps in the time of a motion pass.
+    /// Reads text that is either. With a column of a force or a moment on the base it is a measurement, which
+    /// [`motions`](super::motions) reads, otherwise a motion, which [`samples`](super::samples()) reads. `file` is the
+    /// name used in errors; `gaps` allows gaps in the time of a motion.
     ///
     /// # Errors
-    /// Where what is wrong, and what was expected: of columns, those of either.
+    /// If the text is neither; the error has its place and the expected columns of both.
     pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let want = head_wanted(machine);
         match feels(Reader::new(text, file, &want)?.head()) {

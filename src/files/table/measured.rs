@@ -1,4 +1,4 @@
-//! Motions of a built machine that were measured, with what its base felt.
+//! Measured motions of a built machine, with forces and moments on its base.
 
 use super::angle::{GAP_FACTOR, continuous_angle};
 use super::column::{ANGLE, Column, DEGREE, TIME, Units, angles, named, no_column, unit_in_brackets};
@@ -10,7 +10,7 @@ use crate::settings::number::{Short, counted};
 use crate::settings::range::clipped;
 use crate::study::trim::Motion;
 
-/// The most rows of a table.
+/// Maximum number of rows of a table.
 pub const MAX_ROWS: usize = 100_000;
 
 const RATE: Units = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE)];
@@ -36,14 +36,14 @@ const MOMENT: Units = &[
     ("kn m", 1e3),
 ];
 const LENGTH: Units = &[("m", 1.0)];
-/// Names of what the base feels.
+// Names of the columns of forces and moments on the base.
 const FORCE_X: &[&str] = &["fx", "f_x", "force/x", "force/dynamic_x"];
 const FORCE_Y: &[&str] = &["fy", "f_y", "force/y", "force/dynamic_y"];
 const MOMENT_Z: &[&str] = &["nz", "n_z", "mz", "m_z", "moment/total"];
-/// A base that moves by more than this, m or rad, is no fixed one.
+/// Largest motion of a base that counts as fixed, m or rad.
 const MAX_BASE_MOTION: f64 = 1e-9;
 
-/// Where everything stands.
+/// The columns of a measurement.
 struct Columns {
     time: Column,
     q: Vec<Column>,
@@ -51,23 +51,23 @@ struct Columns {
     qdd: Vec<Column>,
     force: [Column; 2],
     moment: Column,
-    /// Where the base is, if the file says so.
+    /// Position and angle of the base, as far as the file has them.
     base: Vec<Column>,
-    /// Where a motion is named.
+    /// Index of the column with the name of the motion.
     motion: Option<usize>,
 }
 
-/// Reads motions from CSV with a header: `t,q1,q2 …,fx,fy,nz`, in any order, with units if wanted. Rates `qd1 …` and
-/// accelerations `qdd1 …` are taken where they are. Motions part where the column `motion` says so, where time leaps and
-/// where it begins anew. `file` is what errors call the text.
+/// Reads motions from CSV with a header: `t,q1,q2 …,fx,fy,nz`, in any order, optionally with units. Columns of rates
+/// `qd1 …` and accelerations `qdd1 …` are read if present. A new motion begins where the column `motion` changes, after
+/// a gap in time, and where time begins again. `file` is the name used in errors.
 ///
 /// # Errors
-/// Where what is wrong, and what was expected.
+/// If the text is not such a table; the error has its place and what was expected.
 pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, TableError> {
     motions_or(text, file, machine, &head_wanted(machine))
 }
 
-/// The same, where `want` is the header that is wanted.
+/// As [`motions`]; errors describe the expected header by `want`.
 ///
 /// # Errors
 /// As [`motions`].
@@ -105,7 +105,7 @@ pub(super) fn motions_or(text: &str, file: &str, machine: &Machine, want: &str) 
     Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
 }
 
-/// Whether a table says anything of what the base feels.
+/// Returns whether a table has a column of a force or a moment on the base.
 pub(super) fn feels(head: &csv::StringRecord) -> bool {
     let is = |cell: &str, names: &[&str], units: Units| names.contains(&name_and_unit(cell, units).0.as_str());
     head.iter().any(|cell| is(cell, FORCE_X, FORCE) || is(cell, FORCE_Y, FORCE) || is(cell, MOMENT_Z, MOMENT))
@@ -115,21 +115,25 @@ fn head_wanted(machine: &Machine) -> String {
     format!("a header t,{},fx,fy,nz (s, rad, N, N m)", angles(machine))
 }
 
-/// Rows of one motion, and the lines that they stand in.
+/// Rows of one motion, with their lines in the file.
 #[derive(Default)]
 struct Part {
     rows: Vec<Vec<f64>>,
     lines: Vec<u64>,
 }
 
-/// Rows while they are read.
+/// Splits rows into motions while they are read.
 #[derive(Default)]
 struct Split {
     named: Vec<Part>,
 }
 
 impl Split {
-    /// One more row; time that goes back to before the start of its motion begins another one.
+    /// Adds a row. A new motion begins if `fresh`, or if the time goes back to the start of the present motion or
+    /// before.
+    ///
+    /// # Errors
+    /// If the time does not increase otherwise.
     fn take(&mut self, row: Vec<f64>, line: u64, fresh: bool) -> Result<(), String> {
         let now = self.named.last().filter(|_| !fresh);
         let (first, last) = (now.and_then(|part| part.rows.first()), now.and_then(|part| part.rows.last()));
@@ -148,7 +152,7 @@ impl Split {
         Ok(())
     }
 
-    /// Each motion by itself: they part where time makes a leap, too.
+    /// Returns the motions, also split at gaps in time.
     fn parts(self) -> Vec<Part> {
         let mut parts = Vec::new();
         for part in self.named {
@@ -185,10 +189,10 @@ impl Columns {
             };
             (0..drives).map(of).collect()
         };
-        // Of some drives only they are of no use.
+        // Rates and accelerations are used only if all drives have them.
         let all = |of: Vec<Option<Column>>| of.into_iter().collect::<Option<Vec<Column>>>().unwrap_or_default();
         let want = |found: Option<Column>, name: &str| found.ok_or_else(|| missing(name));
-        // A file of a machine with more drives is of another machine.
+        // A file with more drives belongs to another machine.
         let number = |cell: &str| {
             cell.to_lowercase().strip_prefix('q').and_then(|rest| rest.trim_start_matches('_').parse::<usize>().ok())
         };
@@ -216,13 +220,13 @@ impl Columns {
         })
     }
 
-    /// Every column of numbers, in the order of the numbers of a row.
+    /// Returns every column of numbers, in the order of the numbers of a row.
     fn all(&self) -> Vec<&Column> {
         let angles = self.q.iter().chain(&self.qd).chain(&self.qdd);
         [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
     }
 
-    /// A column in which the base moves, and the line where it is seen.
+    /// Returns the name of a column in which the base moves, and the line of the first motion.
     fn moving(&self, parts: &[Part]) -> Option<(String, u64)> {
         let from = self.all().len() - self.base.len();
         let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));
@@ -251,7 +255,8 @@ impl Columns {
     }
 }
 
-/// `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone; of units without brackets only those that fit.
+/// Splits a header cell into name and unit: `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone. Without
+/// brackets only one of `units` counts as a unit.
 fn name_and_unit(cell: &str, units: Units) -> (String, Option<String>) {
     let cell = cell.trim().to_lowercase();
     if let Some(both) = unit_in_brackets(&cell) {
@@ -261,6 +266,6 @@ fn name_and_unit(cell: &str, units: Units) -> (String, Option<String>) {
         let name = cell.strip_suffix(unit)?.strip_suffix([' ', '_', '/'])?;
         Some((name.trim().to_owned(), (*unit).to_owned()))
     });
-    // The longest unit: `n m` is no `m`.
+    // The longest unit counts, so that `n m` is not read as `m`.
     ends.max_by_key(|(_, unit)| unit.len()).map_or((cell.clone(), None), |(name, unit)| (name, Some(unit)))
 }

@@ -1,11 +1,11 @@
-//! Tables of numbers from other programs, as CSV: text in, motions out. Columns are found by name and unit, and whatever
-//! is wrong is named with its file, line and column.
+//! Reads motions from CSV tables of other programs. Columns are found by name and unit, and errors name file, line and
+//! column.
 //!
 //! | what | where |
 //! |---|---|
 //! | a motion given by samples of the drive angles or of the end effector | [`samples()`] |
-//! | motions of a built machine, with what its base felt | [`motions`] |
-//! | either, told apart by the columns | [`Table`] |
+//! | measured motions of a built machine, with forces and moments on its base | [`motions`] |
+//! | either, distinguished by the columns | [`Table`] |
 
 mod angle;
 mod column;

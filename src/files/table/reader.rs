@@ -1,17 +1,17 @@
-//! [`Reader`]: a header, and rows of numbers with their lines.
+//! [`Reader`]: reads a header, and rows of numbers with their lines.
 
 use super::column::Column;
 use super::error::TableError;
 use crate::settings::range::clipped;
 
-/// The largest number, in SI units.
+/// Largest magnitude of a number, in SI units.
 const MAX_NUMBER: f64 = 1e11;
-/// The most columns of a table.
+/// Maximum number of columns of a table.
 const MAX_COLUMNS: usize = 1000;
 
 /// Reads the rows of a table, one after the other.
 pub(super) struct Reader<'a> {
-    /// What errors call it.
+    /// Name used in errors.
     file: &'a str,
     head: csv::StringRecord,
     records: csv::StringRecordsIntoIter<&'a [u8]>,
@@ -25,11 +25,11 @@ pub(super) struct Row<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Reads the header; `want` says which one is wanted. By the first line that tells, cells are parted by semicolons,
-    /// tabs or commas.
+    /// Reads the header; errors describe the expected one by `want`. The delimiter is the semicolon or the tab if the
+    /// first line that is not a comment has one, otherwise the comma.
     ///
     /// # Errors
-    /// If there is none, or a row has too many columns, before any of them takes memory.
+    /// If there is no header. If a row has too many columns, which is checked before memory is taken.
     pub fn new(text: &'a str, file: &'a str, want: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -57,20 +57,20 @@ impl<'a> Reader<'a> {
         Ok(reader)
     }
 
-    /// Cells of the header.
+    /// Returns the cells of the header.
     pub fn head(&self) -> &csv::StringRecord {
         &self.head
     }
 
-    /// That the header is wrong.
+    /// Makes an error of the header.
     pub fn head_error(&self, why: impl std::fmt::Display) -> TableError {
         TableError::at(self.file, line_of(&self.head), why)
     }
 
-    /// The next row; none after the last.
+    /// Returns the next row; `None` after the last.
     ///
     /// # Errors
-    /// If it is no CSV.
+    /// If the text is not CSV.
     pub fn row(&mut self) -> Result<Option<Row<'a>>, TableError> {
         let Some(cells) = self.records.next() else { return Ok(None) };
         let cells = cells.map_err(|e| TableError::whole(self.file, format!("{e}: want a CSV file")))?;
@@ -79,15 +79,15 @@ impl<'a> Reader<'a> {
 }
 
 impl Row<'_> {
-    /// What stands in a column, as text.
+    /// Returns the text of a column.
     pub fn cell(&self, place: usize) -> Option<&str> {
         self.cells.get(place)
     }
 
-    /// The numbers of columns, in SI units.
+    /// Returns the numbers of columns, in SI units.
     ///
     /// # Errors
-    /// If one is missing, or no number within ±1e11.
+    /// If one is missing, or is not a number within ±1e11.
     pub fn numbers<'c>(&self, columns: impl IntoIterator<Item = &'c Column>) -> Result<Vec<f64>, TableError> {
         columns.into_iter().map(|column| self.number(column)).collect()
     }
@@ -103,7 +103,7 @@ impl Row<'_> {
         })
     }
 
-    /// That this row is wrong.
+    /// Makes an error of this row.
     pub fn error(&self, why: impl std::fmt::Display) -> TableError {
         TableError::at(self.file, self.line, why)
     }
@@ -113,21 +113,21 @@ fn line_of(record: &csv::StringRecord) -> u64 {
     record.position().map_or(0, csv::Position::line)
 }
 
-/// Where a cell is while it is read.
+/// State of the scanner within a cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Cell {
-    /// At its first byte, that of a row too or not.
+    /// Before its first byte; `of_row`: whether the cell begins a row.
     Fresh {
         of_row: bool,
     },
     Bare,
     Quoted,
-    /// After a quote in quotes: two are one, one ends them.
+    /// After a quote within quotes: a second one is an escaped quote, anything else ends the quotes.
     Closed,
     Comment,
 }
 
-/// The line in which a row ends that has too many columns, by the rules of the reader.
+/// Returns the line of the first row with too many columns, by the rules of the CSV reader.
 fn too_wide(text: &str, delimiter: u8) -> Option<u64> {
     let (mut cell, mut columns, mut line) = (Cell::Fresh { of_row: true }, 1, 1);
     for byte in text.bytes() {

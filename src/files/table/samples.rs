@@ -1,4 +1,4 @@
-//! A motion given by samples over time: of the drive angles, or of the end effector.
+//! A motion given by samples of the drive angles or of the end effector over time.
 
 use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
 use super::column::{ANGLE, Column, TIME, Units, angles, named, no_column, unit_in_brackets};
@@ -16,22 +16,22 @@ const LENGTH: Units = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 /// Samples that were read.
 #[derive(Debug)]
 pub struct SampleTable {
-    /// What they are of.
+    /// Whether they are drive angles or positions of the end effector.
     pub coordinates: Coordinates,
     /// Times, s, and angles, rad, or coordinates, m.
     pub samples: Samples,
-    /// Names of the columns beside the time.
+    /// Names of the columns other than the time.
     pub names: Vec<String>,
-    /// For each of these, at how many places a whole turn was taken out.
+    /// For each of these columns, the number of steps from which whole turns were removed.
     pub unwrapped: Vec<usize>,
 }
 
-/// Reads samples from CSV with a header: `t,q1,q2 …` or `t,x,y`, in any order, with units if wanted, as `q1 (deg)`; other
-/// columns are left alone. `file` is what errors call the text; where it has both, `wanted` says which are taken, by
-/// default the drives; `gaps` lets gaps in time pass.
+/// Reads samples from CSV with a header: `t,q1,q2 …` or `t,x,y`, in any order, optionally with units, as `q1 (deg)`.
+/// Other columns are ignored. `file` is the name used in errors. If the table has both, `wanted` selects the
+/// coordinates, by default the drives. `gaps` allows gaps in time.
 ///
 /// # Errors
-/// Where what is wrong, and what was expected.
+/// If the text is not such a table; the error has its place and what was expected.
 pub fn samples(
     text: &str,
     file: &str,
@@ -42,7 +42,7 @@ pub fn samples(
     samples_or(text, file, machine, (wanted, gaps), &head_wanted(machine))
 }
 
-/// The same, where `want` is the header that is wanted.
+/// As [`samples`]; errors describe the expected header by `want`.
 ///
 /// # Errors
 /// As [`samples`].
@@ -100,7 +100,7 @@ fn head_wanted(machine: &Machine) -> String {
 
 struct Columns {
     coordinates: Coordinates,
-    /// The time first.
+    /// All columns, the time first.
     all: Vec<Column>,
 }
 
@@ -141,7 +141,7 @@ impl Columns {
     }
 }
 
-/// `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
+/// Splits a header cell into name and unit: `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
 fn name_and_unit(cell: &str) -> (String, Option<String>) {
     let cell = cell.trim().to_lowercase();
     if let Some(both) = unit_in_brackets(&cell) {
@@ -156,7 +156,7 @@ fn name_and_unit(cell: &str) -> (String, Option<String>) {
     (cell, None)
 }
 
-/// The first time between samples that is far longer than the usual one: at which row, how long, and the usual one, s.
+/// Finds the first gap: the row after it, its duration, s, and the median time step, s.
 fn gap(rows: &[Vec<f64>]) -> Option<(usize, f64, f64)> {
     let steps: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
     let mut sorted = steps.clone();

@@ -1,33 +1,33 @@
-//! Orthonormal vectors that span others, and what solves equations in them: by Gram and Schmidt with pivots, which finds the
-//! rank of small matrices to rounding however many of their rows are alike.
+//! Orthonormal bases by the Gram–Schmidt method with pivots, and least squares. The pivots reveal the rank of a small
+//! matrix to rounding, even if many of its rows are equal.
 
 use nalgebra::{DMatrix, DVector};
 
-/// The given orthonormal vectors and as many more, each from the longest of what they lack of others, as are longer than
-/// `cut`.
-pub(super) fn extended(mut basis: Vec<DVector<f64>>, others: Vec<DVector<f64>>, cut: f64) -> Vec<DVector<f64>> {
-    let mut left = others;
-    let rid = |v: &mut DVector<f64>, of: &DVector<f64>| {
-        let along = v.dot(of);
-        v.axpy(-along, of, 1.0);
+/// Extends an orthonormal basis by the components of `others` orthogonal to it, the longest first, as long as these are
+/// longer than `tolerance`.
+pub(super) fn extended(mut basis: Vec<DVector<f64>>, others: Vec<DVector<f64>>, tolerance: f64) -> Vec<DVector<f64>> {
+    let mut rest = others;
+    let orthogonalise = |v: &mut DVector<f64>, unit: &DVector<f64>| {
+        let along = v.dot(unit);
+        v.axpy(-along, unit, 1.0);
     };
-    left.iter_mut().for_each(|v| basis.iter().for_each(|of| rid(v, of)));
-    while let Some(longest) = (0..left.len()).max_by(|a, b| left[*a].norm().total_cmp(&left[*b].norm())) {
-        let mut next = left.swap_remove(longest);
-        // Again, for what rounding has left.
-        basis.iter().for_each(|of| rid(&mut next, of));
+    rest.iter_mut().for_each(|v| basis.iter().for_each(|unit| orthogonalise(v, unit)));
+    while let Some(longest) = (0..rest.len()).max_by(|a, b| rest[*a].norm().total_cmp(&rest[*b].norm())) {
+        let mut next = rest.swap_remove(longest);
+        // Orthogonalised once more against rounding errors.
+        basis.iter().for_each(|unit| orthogonalise(&mut next, unit));
         let size = next.norm();
-        if size <= cut {
+        if size <= tolerance {
             break;
         }
         next /= size;
-        left.iter_mut().for_each(|v| rid(v, &next));
+        rest.iter_mut().for_each(|v| orthogonalise(v, &next));
         basis.push(next);
     }
     basis
 }
 
-/// The x with the least |A x − right|, of a matrix with independent columns; `None` if they are not.
+/// Returns the x that minimises |A x − right|; `None` if the columns of A are linearly dependent.
 pub(super) fn least_squares(a: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     if a.ncols() == 0 || a.nrows() < a.ncols() {
         return (a.ncols() == 0).then(|| DVector::zeros(0));
@@ -40,7 +40,7 @@ pub(super) fn least_squares(a: &DMatrix<f64>, right: &DVector<f64>) -> Option<DV
         return None;
     }
     let mut x = solve(right)?;
-    // A step of refinement brings the residual to rounding.
+    // One step of iterative refinement reduces the residual to rounding error.
     x += solve(&(right - a * &x))?;
     Some(x)
 }

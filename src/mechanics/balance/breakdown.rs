@@ -1,4 +1,4 @@
-//! [`Breakdown`]: every term of (7) and (8), and what each part of a machine brings to it.
+//! [`Breakdown`]: every condition of (7) and (8), with the contribution of each body of a machine.
 
 use super::condition::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
@@ -7,15 +7,15 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 /// A part of a machine that has a mass of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Body {
-    /// A link without what it carries, counted from 0.
+    /// A link without the counterweights that it carries, counted from 0.
     Link(usize),
-    /// An entry of the machine's counterweights, counted from 0.
+    /// A counterweight of the machine, counted from 0.
     Counterweight(usize),
-    /// What the end effector holds.
+    /// The payload at the end effector.
     Payload,
 }
 
-/// A body, and what it rides on.
+/// A body, and the link that carries it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
     /// The body.
@@ -24,38 +24,38 @@ pub struct Source {
     pub link: usize,
 }
 
-/// One line of (7) or (8).
+/// One condition of (7) or (8), with its residual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// Which.
+    /// The condition.
     pub condition: Condition,
-    /// What is left of it, as [`Inertia`] has it: kg m of (7), kg m² of (8).
+    /// Its residual, computed from [`Inertia`]: kg m for (7), kg m² for (8).
     pub left: Vector,
-    /// What each source brings; the sum is what is left.
+    /// Contribution of each source; their sum is the residual.
     pub parts: Vec<Vector>,
-    /// Whether what is left is nothing but rounding.
+    /// Whether the residual is within the tolerance, that is, only rounding error.
     pub balanced: bool,
 }
 
 impl Term {
-    /// Σ of the sizes of what the sources bring: what would be left if they all pulled one way.
+    /// Returns the sum of the magnitudes of all contributions: the residual if all had the same direction.
     pub fn gross(&self) -> f64 {
         self.parts.iter().map(|part| part.norm()).sum()
     }
 }
 
-/// What of its balance a machine lacks, and where that comes from. Rotors are not in it: they are balanced about their
-/// axes, and their masses are in the links that carry them.
+/// Residuals of the balance conditions of a machine, and the bodies that contribute to them. Rotors do not appear: they
+/// are balanced about their axes, and the masses of the links that carry them include theirs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakdown {
     /// The links, the counterweights, and the payload if there is one.
     pub sources: Vec<Source>,
-    /// First (7) by drives, then (8) by pairs of them.
+    /// The conditions: first (7) by drives, then (8) by pairs of drives.
     pub terms: Vec<Term>,
 }
 
 impl Breakdown {
-    /// Of a machine.
+    /// Computes the breakdown of a machine.
     pub fn of(machine: &Machine) -> Self {
         let masses = masses(machine);
         let inertia = Inertia::of(machine);
@@ -68,7 +68,7 @@ impl Breakdown {
         Self { terms: terms.collect(), sources: masses.iter().map(|(source, ..)| *source).collect() }
     }
 
-    /// What a link brings to a term with all that it carries.
+    /// Returns the contribution of a link to a term, with all bodies that it carries.
     pub fn of_link(&self, term: &Term, link: usize) -> Vector {
         let both = self.sources.iter().zip(&term.parts);
         both.filter(|(source, _)| source.link == link).map(|(_, part)| *part).sum()
@@ -77,7 +77,7 @@ impl Breakdown {
 
 type Mass = (Source, f64, [Vector; MAX_DRIVES]);
 
-/// Each body, its mass, and where that sits as a sum of unit vectors.
+/// Returns each body, its mass, kg, and its CM as a sum of unit vectors, m.
 fn masses(machine: &Machine) -> Vec<Mass> {
     let (spec, parts) = (machine.spec(), machine.resolved_links());
     let on = |link: usize, along: f64, across: f64| {

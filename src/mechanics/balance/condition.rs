@@ -1,17 +1,17 @@
-//! [`Condition`]: one line of (7) or (8), and how a mass on a link enters it.
+//! [`Condition`]: one condition of (7) or (8), and the contribution of a mass on a link to it.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | a_k | the mass sits at Σ_k a_k e(q_k) | complex, m |
-//! | m a_k | what it brings to g_k | complex, kg m |
-//! | m conj(a_k) a_l | what it brings to C_kl | complex, kg m² |
+//! | m a_k | contribution of the mass to g_k | complex, kg m |
+//! | m conj(a_k) a_l | contribution of the mass to C_kl | complex, kg m² |
 
 use crate::mechanics::machine::{Inertia, Machine, ResolvedLink};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 use crate::settings::number::subscript;
 
-/// What has to vanish for a machine to be balanced and invariant. Drives are counted from 0.
+/// A quantity that must vanish for a machine to be balanced and invariant. Drives are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Condition {
     /// Force balance (7): the first moment g_k.
@@ -21,12 +21,12 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Those of n drives: first all of (7), then (8) by pairs.
+    /// Returns the conditions of n drives: first all of (7), then (8) by pairs.
     pub fn all(n: usize) -> impl Iterator<Item = Self> {
         (0..n).map(Self::Force).chain(Inertia::pairs(n).map(|(k, l)| Self::Coupling(k, l)))
     }
 
-    /// Its letter with the numbers of its drives, from 1.
+    /// Returns its symbol, with the numbers of its drives, from 1, as subscripts.
     pub fn symbol(self) -> String {
         match self {
             Self::Force(k) => format!("g{}", subscript(k + 1)),
@@ -34,7 +34,7 @@ impl Condition {
         }
     }
 
-    /// In words, with its drives by name.
+    /// Returns its name in words, with the names of its drives.
     pub fn name(self, machine: &Machine) -> String {
         let drive = |k: usize| &machine.spec().drives[k].name;
         match self {
@@ -43,7 +43,7 @@ impl Condition {
         }
     }
 
-    /// Of its numbers.
+    /// Returns the unit of its residual.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Force(_) => "kg m",
@@ -51,7 +51,7 @@ impl Condition {
         }
     }
 
-    /// What a machine leaves of it.
+    /// Returns the residual of the condition: g_k, kg m, or C_kl, kg m².
     pub fn left(self, inertia: &Inertia) -> Vector {
         match self {
             Self::Force(k) => inertia.first_moment(k),
@@ -59,7 +59,7 @@ impl Condition {
         }
     }
 
-    /// What is left of it counts as none up to this.
+    /// Returns the tolerance of the residual: up to this it is treated as zero.
     pub(crate) fn nothing(self, inertia: &Inertia) -> f64 {
         match self {
             Self::Force(_) => inertia.least_first_moment(),
@@ -67,7 +67,7 @@ impl Condition {
         }
     }
 
-    /// What a mass at Σ_k a_k e(q_k) brings to it.
+    /// Returns the contribution of a mass, kg, at Σ_k a_k e(q_k), m.
     pub fn of(self, mass: f64, a: &[Vector; MAX_DRIVES]) -> Vector {
         match self {
             Self::Force(k) => mass * a[k],
@@ -75,7 +75,7 @@ impl Condition {
         }
     }
 
-    /// What each kilogram in the root of a link brings to it.
+    /// Returns the contribution of each kilogram at the root of a link.
     pub fn by_mass(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) => part.root[k],
@@ -83,7 +83,7 @@ impl Condition {
         }
     }
 
-    /// What each kg m along a link brings to it.
+    /// Returns the contribution of each kg m of first moment along a link.
     pub fn by_moment(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) if k == part.drive => part.sign,
@@ -93,7 +93,7 @@ impl Condition {
         }
     }
 
-    /// What each kg m across a link, to the left of its axis, brings to its imaginary part.
+    /// Returns the contribution of each kg m of first moment to the left of a link's axis, to the imaginary part.
     pub fn by_cross_moment(self, part: &ResolvedLink) -> f64 {
         match self {
             // conj(a_k)

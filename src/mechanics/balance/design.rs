@@ -1,11 +1,12 @@
 //! Balance as a linear problem: where the links' centres of mass must lie, (7)–(10).
 //!
-//! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`] finds the solution that minimises Σ (p_j l_cj)².
+//! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`]
+//! finds the solution that minimises Σ (p_j l_cj)².
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
 //! |---|---|---|
-//! | l_c | CM of each link along itself | links, m |
+//! | l_c | position of each link's CM along the link | links, m |
 //! | A, k | A l_c = k; rows g_1..g_n, then C_kl by pairs | (n + n(n−1)/2) × links |
 //! | p | penalty on each l_cj | links |
 //!
@@ -41,10 +42,10 @@ impl Preset {
         self.words().file
     }
 
-    /// The penalty on each of `links` links.
+    /// Returns the penalty on each of `links` links.
     ///
     /// # Errors
-    /// If the preset is about nine links and there are not nine.
+    /// If the preset is for nine links and there are not nine.
     pub fn penalty(self, links: usize) -> Result<Vec<f64>, DesignError> {
         match self {
             Self::MinimumNorm => Ok(vec![1.0; links]),
@@ -61,51 +62,51 @@ pub enum DesignError {
     /// The number of penalties is not the number of links.
     #[error("{count} penalties for {}: want one a link", counted(links, "link"))]
     Penalties {
-        /// Penalties that were given.
+        /// Number of penalties that were given.
         count: usize,
-        /// Links of the machine.
+        /// Number of links of the machine.
         links: usize,
     },
     /// A penalty that is not positive.
     #[error("penalty {value} of link {link}: want a number above 0")]
     Penalty {
-        /// What was given.
+        /// The penalty.
         value: f64,
         /// The link.
         link: String,
     },
-    /// The conditions contradict each other, or no l_c appears in one that is not met.
+    /// The conditions contradict each other, or one that is not met does not depend on any l_c.
     #[error(
         "no centres of mass along the links balance this machine: {left} remain at best in {condition}; \
              counterweights need a link that follows that drive and hangs on the base"
     )]
     Inconsistent {
-        /// The condition that stays furthest from zero.
+        /// The condition with the largest residual.
         condition: String,
-        /// What remains, with unit.
+        /// Its residual, with unit.
         left: String,
     },
-    /// The result is not a machine.
+    /// The result is not a valid machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
 }
 
-/// A and k of (9).
+/// Returns A and k of (9).
 pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
     let (all, links) = (Condition::all(machine.drives()).collect::<Vec<_>>(), machine.links());
     let parts = machine.resolved_links();
     let a = DMatrix::from_fn(all.len(), links.len(), |row, j| links[j].mass * all[row].by_moment(&parts[j]));
-    // What the present l_c leave is A l_c − k.
+    // The residual at the present l_c is A l_c − k.
     let inertia = Inertia::of(machine);
     let com = DVector::from_iterator(links.len(), links.iter().map(|l| l.com));
     let k = &a * com - DVector::from_iterator(all.len(), all.iter().map(|condition| condition.left(&inertia).re));
     (a, k)
 }
 
-/// The balanced, invariant machine with the least Σ (p_j l_cj)², (10).
+/// Returns the balanced, invariant machine with the least Σ (p_j l_cj)², (10).
 ///
 /// # Errors
-/// If the penalties do not fit, or no l_c fulfils (7) and (8) together.
+/// If the penalties are not positive or not one a link, or if no l_c satisfies (7) and (8) together.
 pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError> {
     let links = machine.links();
     if penalty.len() != links.len() {
@@ -115,7 +116,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
         return Err(DesignError::Penalty { value: penalty[j], link: links[j].name.clone() });
     }
     let (a, k) = conditions(machine);
-    // Whether what comes closest is close enough, the machine that is made of it says.
+    // The residual is checked on the finished machine.
     let equation = |row: usize| Equation {
         a: penalty.iter().enumerate().map(|(j, p)| a[(row, j)] / p).collect(),
         right: k[row],
@@ -124,11 +125,11 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     let x = Plane::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).start;
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
-        let (body, wanted) = (&links[j], x[j] / penalty[j]);
-        // Where a link carries counterweights it is the link alone that is shifted.
+        let (body, com) = (&links[j], x[j] / penalty[j]);
+        // If a link carries counterweights, only the link's own centre of mass is shifted.
         link.com = match body.mass > link.mass {
-            true => link.com + body.mass * (wanted - body.com) / link.mass,
-            false => wanted,
+            true => link.com + body.mass * (com - body.com) / link.mass,
+            false => com,
         };
     }
     let designed = Machine::new(spec)?;
@@ -136,16 +137,18 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     if inertia.is_balanced() {
         return Ok(designed);
     }
-    let (condition, left) = furthest_off(&designed);
+    let (condition, left) = largest_residual(&designed);
     Err(DesignError::Inconsistent { condition, left })
 }
 
-/// The condition that is furthest from met, and what is left of it with its unit: one of (7) as long as there is one.
-fn furthest_off(machine: &Machine) -> (String, String) {
+/// Returns the condition with the largest residual, and the residual with its unit: a condition of (7), unless all of
+/// these are met.
+fn largest_residual(machine: &Machine) -> (String, String) {
     let inertia = Inertia::of(machine);
     let force = !inertia.is_force_balanced();
-    let asked = Condition::all(machine.drives()).filter(|condition| matches!(condition, Condition::Force(_)) == force);
+    let of_kind =
+        Condition::all(machine.drives()).filter(|condition| matches!(condition, Condition::Force(_)) == force);
     let size = |condition: &Condition| condition.left(&inertia).norm();
-    let worst = asked.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(Condition::Force(0));
+    let worst = of_kind.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(Condition::Force(0));
     (worst.name(machine), format!("{:.3e} {}", size(&worst), worst.unit()))
 }

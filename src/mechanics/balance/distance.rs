@@ -1,73 +1,80 @@
-//! [`nearest`]: the point nearest to 0 within half spaces, exact but for rounding and in microseconds where there are few.
+//! [`nearest`]: the point nearest to 0 in an intersection of half spaces, exact to rounding, and in microseconds for
+//! few half spaces.
 //!
 //! # Symbols
 //! | letter | meaning |
 //! |---|---|
-//! | M z ≤ c | the half spaces, rows of one size |
-//! | u | how much each holds z back, not below 0 |
-//! | E, f | E u − f = (z, −1) times a number above 0; E has a column (−M_i, −c_i) for each, f = (0, 1) |
+//! | M z ≤ c | the half spaces, rows of equal norm |
+//! | u | multiplier of each half space, u ≥ 0 |
+//! | E, f | E u − f = (z, −1) times a positive number; E has a column (−M_i, −c_i) for each half space, f = (0, 1) |
 //!
 //! # Source
 //! Lawson and Hanson, *Solving Least Squares Problems*, chapter 23: least distance programming by least squares with
-//! u ≥ 0. Where E u = f there is no z: u proves it.
+//! u ≥ 0. If E u = f, the half spaces do not intersect, and u is the certificate of that.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::basis;
 
-/// Part of the scale of c by which a half space may be missed.
-const MISSED: f64 = 1e-11;
-/// Rows shorter than this part of the longest leave z free.
-const FLAT: f64 = 1e-10;
-/// |E u − f| below this is none: z would be further away than its inverse, in the scale of c.
-const NONE: f64 = 1e-7;
+/// Feasibility tolerance, as a fraction of the scale of c.
+const FEASIBILITY_TOLERANCE: f64 = 1e-11;
+/// Rows shorter than this fraction of the longest do not constrain z.
+const MIN_ROW_FRACTION: f64 = 1e-10;
+/// |E u − f| up to this is treated as zero, and the half spaces as disjoint: z would be further from 0 than the
+/// reciprocal of this, in the scale of c.
+const INFEASIBLE_UP_TO: f64 = 1e-7;
 
-/// The z nearest to 0 with M z ≤ c.
+/// Returns the z nearest to 0 with M z ≤ c.
 ///
 /// # Errors
-/// If there is none: how much each row has to do with that.
+/// If there is no such z; returns the weight of each row in the certificate of infeasibility.
 pub(super) fn nearest(m: &DMatrix<f64>, c: &DVector<f64>) -> Result<DVector<f64>, Vec<f64>> {
     let (rows, k) = m.shape();
     let longest = m.row_iter().fold(0.0_f64, |most, row| most.max(row.norm()));
-    let size = |i: usize| Some(m.row(i).norm()).filter(|size| *size > FLAT * longest);
-    // What is missed at 0, of rows of one size.
-    let missed = DVector::from_fn(rows, |i, _| -c[i] / size(i).unwrap_or(1.0));
-    let scale = missed.amax();
-    if rows == 0 || missed.max() <= MISSED * scale {
+    let size = |i: usize| Some(m.row(i).norm()).filter(|size| *size > MIN_ROW_FRACTION * longest);
+    // Violation at z = 0, of rows of unit norm.
+    let violation = DVector::from_fn(rows, |i, _| -c[i] / size(i).unwrap_or(1.0));
+    let scale = violation.amax();
+    if rows == 0 || violation.max() <= FEASIBILITY_TOLERANCE * scale {
         return Ok(DVector::zeros(k));
     }
     let of = |i: usize, j: usize| size(i).map_or(0.0, |size| m[(i, j)] / size);
-    let e = DMatrix::from_fn(k + 1, rows, |j, i| if j < k { -of(i, j) } else { missed[i] / scale - MISSED });
-    let u = held_back(&e);
-    let mut left = &e * &u;
-    left[k] -= 1.0;
-    if left.norm() <= NONE {
+    let e = DMatrix::from_fn(
+        k + 1,
+        rows,
+        |j, i| if j < k { -of(i, j) } else { violation[i] / scale - FEASIBILITY_TOLERANCE },
+    );
+    let u = nonnegative_least_squares(&e);
+    let mut residual = &e * &u;
+    residual[k] -= 1.0;
+    if residual.norm() <= INFEASIBLE_UP_TO {
         return Err((0..rows).map(|i| u[i] / size(i).unwrap_or(1.0)).collect());
     }
-    let found = DVector::from_fn(k, |j, _| -left[j] / left[k]) * scale;
-    let held: Vec<usize> = (0..rows).filter(|i| u[*i] > 0.0).collect();
-    Ok(settled(m, c, &held, scale * longest).unwrap_or(found))
+    let found = DVector::from_fn(k, |j, _| -residual[j] / residual[k]) * scale;
+    let active: Vec<usize> = (0..rows).filter(|i| u[*i] > 0.0).collect();
+    Ok(refined(m, c, &active, scale * longest).unwrap_or(found))
 }
 
-/// The u ≥ 0 with the least |E u − (0, …, 0, 1)|.
-fn held_back(e: &DMatrix<f64>) -> DVector<f64> {
+/// Returns the u ≥ 0 that minimises |E u − (0, …, 0, 1)|.
+fn nonnegative_least_squares(e: &DMatrix<f64>) -> DVector<f64> {
     let (k, rows) = (e.nrows() - 1, e.ncols());
     let mut f = DVector::zeros(k + 1);
     f[k] = 1.0;
     let mut u = DVector::zeros(rows);
+    // Indices of positive components, and of components that may not become positive for now.
     let (mut used, mut barred): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
     for _ in 0..10 * (rows + 1) {
-        let wanted = e.tr_mul(&(&f - e * &u));
-        let others = (0..rows).filter(|i| !used.contains(i) && !barred.contains(i) && wanted[*i] > 1e-14);
-        let Some(next) = others.max_by(|a, b| wanted[*a].total_cmp(&wanted[*b])) else { break };
+        let descent = e.tr_mul(&(&f - e * &u));
+        let others = (0..rows).filter(|i| !used.contains(i) && !barred.contains(i) && descent[*i] > 1e-14);
+        let Some(next) = others.max_by(|a, b| descent[*a].total_cmp(&descent[*b])) else { break };
         used.push(next);
-        // As far towards the least of those in use as none of them turns below 0.
+        // Steps towards the least squares solution of the components in use, until the first of them becomes 0.
         while !used.is_empty() {
             let some = e.select_columns(&used);
             let best = basis::least_squares(&some, &f);
             let fresh = used.last() == Some(&next) && u[next] == 0.0;
             let Some(best) = best.filter(|best| !(fresh && best[used.len() - 1] <= 0.0)) else {
-                // Rounding alone asked for it.
+                // Only rounding errors made this component seem to help.
                 let last = used.pop().unwrap_or(next);
                 u[last] = 0.0;
                 barred.push(last);
@@ -88,15 +95,15 @@ fn held_back(e: &DMatrix<f64>) -> DVector<f64> {
     u
 }
 
-/// To rounding: the least z on the half spaces that hold it back, if it is in all others.
-fn settled(m: &DMatrix<f64>, c: &DVector<f64>, held: &[usize], scale: f64) -> Option<DVector<f64>> {
-    if held.is_empty() {
+/// Returns the shortest z on the boundaries of the active half spaces, exact to rounding; `None` if it violates others.
+fn refined(m: &DMatrix<f64>, c: &DVector<f64>, active: &[usize], scale: f64) -> Option<DVector<f64>> {
+    if active.is_empty() {
         return None;
     }
-    let (a, right) = (m.select_rows(held), c.select_rows(held));
-    // z = aᵀ x, which is the shortest of all with a z = right.
+    let (a, right) = (m.select_rows(active), c.select_rows(active));
+    // z = aᵀ x is the minimum-norm solution of a z = right.
     let z = a.tr_mul(&basis::least_squares(&(&a * a.transpose()), &right)?);
     let more = basis::least_squares(&(&a * a.transpose()), &(&right - &a * &z))?;
     let z = z + a.tr_mul(&more);
-    ((m * &z - c).max() <= 10.0 * MISSED * scale).then_some(z)
+    ((m * &z - c).max() <= 10.0 * FEASIBILITY_TOLERANCE * scale).then_some(z)
 }

@@ -1,9 +1,9 @@
-//! Balance: what of it a machine lacks, and where its masses must lie for it to have it, (7)–(10).
+//! Balance of a machine: residuals of the conditions, and masses and centres of mass that satisfy them, (7)–(10).
 //!
-//! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are n + n(n−1)/2 conditions, each a sum over what the machine
-//! is made of: [`Breakdown`] says who brings what. They are linear in the mass m of a body and its first moment m l_c,
-//! so [`design`](design()) solves them in one step for all centres of mass, and [`keep`](keep()) for whatever may change,
-//! as little as it can and within bounds.
+//! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are n + n(n−1)/2 conditions, each a sum over the bodies of the
+//! machine: [`Breakdown`] lists the contributions. The conditions are linear in the mass m of a body and its first
+//! moment m l_c. So [`design`](design()) solves them in one step for all centres of mass. [`keep`](keep()) solves them
+//! with the least change of chosen parameters within bounds.
 
 mod basis;
 mod breakdown;

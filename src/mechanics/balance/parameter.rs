@@ -1,41 +1,42 @@
-//! [`Parameter`]: a number of a machine that its balance depends on, and that may be changed for its sake.
+//! [`Parameter`]: a number of a machine on which its balance depends and that may be changed to balance it.
 
 use super::breakdown::Body;
 use crate::mechanics::machine::{Machine, MachineSpec, ranges};
 use crate::settings::range::Range;
 
-/// What of a body.
+/// A quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Quantity {
     /// Its mass, kg.
     Mass,
-    /// Where its centre of mass is along the link, m from the root.
+    /// Position of its centre of mass along the link, from the root, m.
     Along,
-    /// Where that is across the link, m to the left of its axis.
+    /// Distance of its centre of mass to the left of the link's axis, m.
     Across,
 }
 
 /// One number of a link or a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameter {
-    /// Whose.
+    /// The body.
     pub body: Body,
-    /// What of it.
+    /// The quantity of the body.
     pub quantity: Quantity,
 }
 
 impl Parameter {
-    /// Of a body.
+    /// Makes the parameter of a body.
     pub const fn new(body: Body, quantity: Quantity) -> Self {
         Self { body, quantity }
     }
 
-    /// Where a link's centre of mass is along the link.
+    /// Returns the parameter for the position of a link's centre of mass along the link.
     pub const fn com(link: usize) -> Self {
         Self::new(Body::Link(link), Quantity::Along)
     }
 
-    /// Every one of a machine: of the links mass and both places, of the counterweights mass and place.
+    /// Returns all parameters of a machine: mass and both positions of each link, mass and position of each
+    /// counterweight.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let links = (0..machine.links().len()).flat_map(|j| {
             [Quantity::Mass, Quantity::Along, Quantity::Across].map(|quantity| Self::new(Body::Link(j), quantity))
@@ -46,7 +47,7 @@ impl Parameter {
         links.chain(weights).collect()
     }
 
-    /// Its key, as `--set` names it.
+    /// Returns its key, as `--set` names it.
     pub fn key(self, machine: &Machine) -> String {
         let what = match (self.quantity, self.body) {
             (Quantity::Mass, _) => "mass",
@@ -61,8 +62,7 @@ impl Parameter {
         }
     }
 
-    /// What it holds; `None` if the machine has no such number, or none that may be changed: what the end effector holds
-    /// is given.
+    /// Returns its value, kg or m. `None` if the machine has no such parameter, and for the payload, which is given.
     pub fn value(self, spec: &MachineSpec) -> Option<f64> {
         match self.body {
             Body::Link(j) => {
@@ -85,7 +85,7 @@ impl Parameter {
         }
     }
 
-    /// Where it may lie.
+    /// Returns its range.
     pub const fn range(self) -> Range {
         match self.quantity {
             Quantity::Mass => ranges::MASS,
@@ -93,8 +93,8 @@ impl Parameter {
         }
     }
 
-    /// Changes it. The disc of a counterweight keeps its thickness: its radius follows its mass. The inertia of a link
-    /// about its own centre of mass stays.
+    /// Sets its value, kg or m. The disc of a counterweight keeps its thickness, so its radius follows its mass. The
+    /// inertia of a link about its own centre of mass stays.
     pub(crate) fn set(self, spec: &mut MachineSpec, value: f64) {
         match (self.body, self.quantity) {
             (Body::Link(j), Quantity::Mass) => spec.links[j].mass = value,

@@ -1,4 +1,4 @@
-//! [`Weighing`]: what is asked of counterweights.
+//! [`Weighing`]: a request for counterweights.
 
 use std::f64::consts::PI;
 
@@ -6,152 +6,152 @@ use super::refusal::NoWeights;
 use crate::mechanics::machine::{Machine, ranges};
 use crate::settings::range::Range;
 
-/// Where a link may carry a counterweight.
+/// Bounds of position and mass of a counterweight on a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sites {
     /// The link, counted from 0.
     pub link: usize,
-    /// Furthest back: m from the root along the axis, towards the tip above 0.
+    /// Lower bound of its position along the axis, m from the root, positive towards the tip.
     pub from: f64,
-    /// Furthest towards the tip, m.
+    /// Upper bound of its position, m.
     pub to: f64,
-    /// The most it may weigh, kg; infinite for no bound.
+    /// Upper bound of its mass, kg; infinite for no bound.
     pub most: f64,
 }
 
 impl Sites {
-    /// Every link, from its length behind the root to the tip, at any mass.
+    /// Allows a counterweight of any mass on every link, from its length behind the root to its tip.
     pub fn anywhere(machine: &Machine) -> Vec<Self> {
         let parts = machine.resolved_links().iter().enumerate();
         parts.map(|(link, part)| Self { link, from: -part.length, to: part.length, most: f64::INFINITY }).collect()
     }
 }
 
-/// What the counterweights are made of: discs of one plate.
+/// Material of the counterweights: discs cut from one plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// ρ, kg/m³.
+    /// Density ρ, kg/m³.
     pub density: f64,
-    /// t, m.
+    /// Thickness t, m.
     pub thickness: f64,
 }
 
-/// Densities of what discs are usually made of, kg/m³.
+/// Densities of common materials, kg/m³.
 pub const MATERIALS: [(&str, f64); 5] =
     [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
 
-/// What a plate may be: no gas, and no foil from which a gram would be as wide as a room.
+/// Range of the density of a plate.
 pub const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
-/// The same of its thickness.
+/// Range of the thickness of a plate.
 pub const THICKNESS: Range = Range::new(1e-4, 1.0, "m");
 
 impl Disc {
     /// Steel, 30 mm thick.
     pub const STEEL: Self = Self { density: 7850.0, thickness: 0.03 };
 
-    /// Radius of a disc of a mass, m.
+    /// Returns the radius, m, of a disc of a mass, kg.
     pub fn radius(&self, mass: f64) -> f64 {
         self.spread() * mass.sqrt()
     }
 
-    /// Mass of a disc of a radius, kg.
+    /// Returns the mass, kg, of a disc of a radius, m.
     pub fn mass(&self, radius: f64) -> f64 {
         (radius / self.spread()).powi(2)
     }
 
-    /// Its radius for the root of its mass, 1/√(π ρ t), m/√kg.
+    /// Returns the ratio of a disc's radius to the square root of its mass, 1/√(π ρ t), m/√kg.
     pub(super) fn spread(&self) -> f64 {
         1.0 / (PI * self.density * self.thickness).sqrt()
     }
 
-    /// Its inertia for its mass squared, 1/(2 π ρ t), m²/kg.
+    /// Returns the ratio of a disc's own inertia to its squared mass, 1/(2 π ρ t), m²/kg.
     pub(super) fn own(&self) -> f64 {
         0.5 * self.spread().powi(2)
     }
 }
 
-/// What is to be least: a sum of these.
+/// The objective that is minimised: a weighted sum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Objective {
-    /// For each kilogram added.
+    /// Weight of the added mass, 1/kg.
     pub mass: f64,
-    /// For each kg m² that the drives turn, Σ H_kk: but for gears and rotors the same as Σ D_k.
+    /// Weight of Σ H_kk, 1/(kg m²): without gears and rotors the same as Σ D_k.
     pub inertia: f64,
-    /// For each kg m² of Σ |D_k|: what turning drives give to the base. Rotors that turn the other way make it less.
+    /// Weight of Σ |D_k|, 1/(kg m²), which measures the moment on the base. Rotors that turn the other way reduce it.
     pub momentum: f64,
-    /// For each N m of the greatest torque.
+    /// Weight of the greatest torque, 1/(N m).
     pub torque: f64,
-    /// Greatest |q̈_k| of the motion whose torque counts, rad/s².
+    /// Greatest |q̈_k| of the motion, rad/s², from which the torque follows.
     pub accelerations: Vec<f64>,
 }
 
 impl Objective {
-    /// The least added mass.
+    /// Minimises the added mass.
     pub fn mass() -> Self {
         Self { mass: 1.0, inertia: 0.0, momentum: 0.0, torque: 0.0, accelerations: Vec::new() }
     }
 
-    /// The least Σ D_k.
+    /// Minimises Σ H_kk.
     pub fn inertia() -> Self {
         Self { inertia: 1.0, mass: 0.0, ..Self::mass() }
     }
 
-    /// Whether more than mass counts.
+    /// Returns whether it depends on more than mass.
     pub(super) fn turns(&self) -> bool {
         self.inertia > 0.0 || self.momentum > 0.0 || self.torque > 0.0
     }
 }
 
-/// What may be chosen of the rotor of a motor. The other of the two is as the machine has it.
+/// The free parameter of a motor's rotor. The other of the two keeps its value in the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Free {
-    /// Its inertia, kg m², from one to the other.
+    /// Inertia, kg m², with lower and upper bound.
     Inertia([f64; 2]),
-    /// How often it turns for one turn of its drive, from one to the other; below 0 the other way round.
+    /// Gear ratio, with lower and upper bound: turns for one turn of its drive, negative if it reverses.
     Ratio([f64; 2]),
 }
 
-/// A rotor of which something may be chosen.
+/// A rotor with a free parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeRotor {
-    /// Of the motor of this drive, counted from 0.
+    /// The drive to whose motor it belongs, counted from 0.
     pub drive: usize,
-    /// What.
+    /// The free parameter.
     pub free: Free,
 }
 
-/// What is asked for.
+/// A request for counterweights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weighing {
     /// Links that may carry a counterweight.
     pub sites: Vec<Sites>,
-    /// What these are made of.
+    /// Material of the counterweights.
     pub disc: Disc,
-    /// What is to be least.
+    /// The objective that is minimised.
     pub objective: Objective,
-    /// The most that may be added, kg.
+    /// Upper bound of the added mass, kg.
     pub most_mass: Option<f64>,
-    /// The most that Σ D_k may be, kg m².
+    /// Upper bound of Σ D_k, kg m².
     pub most_inertia: Option<f64>,
-    /// How far the edge of a disc stays from the middle of every pin of its link, m; none: discs may cover pins.
+    /// Clearance between the edge of a disc and the centre of every pin of its link, m; `None`: discs may cover pins.
     pub clearance: Option<f64>,
-    /// Rotors that may be chosen with them.
+    /// Rotors with a free parameter, which is optimised with the counterweights.
     pub rotors: Vec<FreeRotor>,
-    /// The least and the greatest mass that the end effector holds, kg: the worst residual of (7) and (8) over all
-    /// between comes before everything else; none: it holds what it holds.
+    /// Smallest and largest mass of the payload, kg. The largest residual of (7) and (8) over this range is minimised
+    /// before the objective. `None`: the payload of the machine.
     pub payload: Option<[f64; 2]>,
 }
 
 const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl Weighing {
-    /// The least of an objective, with no other bounds.
+    /// Minimises an objective, without other bounds.
     pub fn least(objective: Objective, sites: Vec<Sites>, disc: Disc) -> Self {
         let (most_mass, most_inertia, clearance, payload) = (None, None, None, None);
         Self { sites, disc, objective, most_mass, most_inertia, clearance, rotors: Vec::new(), payload }
     }
 
-    /// Whether it can be asked of a machine.
+    /// Checks that the request is valid for a machine.
     pub(super) fn check(&self, machine: &Machine) -> Result<(), NoWeights> {
         let within = |what: &str, value: f64, range: Range| match range.contains(value) {
             true => Ok(()),
@@ -223,7 +223,7 @@ impl Weighing {
     }
 }
 
-/// Two ends in a range, the first not above the second.
+/// Checks that two bounds are in a range, the first not above the second.
 fn rising(what: &str, [low, high]: [f64; 2], range: Range) -> Result<(), NoWeights> {
     if let Some(end) = [low, high].into_iter().find(|end| !range.contains(*end)) {
         return Err(NoWeights::out(what, end, range));

@@ -1,4 +1,4 @@
-//! [`front`]: what less inertia costs in mass.
+//! [`front`]: the Pareto front of added mass and inertia.
 
 use super::asked::{Objective, Weighing};
 use super::place::{Placed, place};
@@ -6,15 +6,16 @@ use super::refusal::NoWeights;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::query::{Portion, Query, Watch, answered};
 
-/// Machines from the least added mass to the least inertia: none is better than another in both.
+/// Points of the Pareto front, from the least added mass to the least inertia: no machine is better than another in
+/// both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// From light to quick.
+    /// The points, by increasing mass and decreasing inertia.
     pub points: Vec<Placed>,
 }
 
 impl Front {
-    /// Added mass, kg, and Σ D_k, kg m², of each point.
+    /// Returns added mass, kg, and Σ D_k, kg m², of each point.
     pub fn measures(&self) -> Vec<[f64; 2]> {
         self.points.iter().map(measures).collect()
     }
@@ -24,11 +25,12 @@ fn measures(placed: &Placed) -> [f64; 2] {
     [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
-/// Measures that differ by less than this share are alike.
-const ROUNDING: f64 = 1e-9;
+/// Relative tolerance within which two measures are equal.
+const RELATIVE_TOLERANCE: f64 = 1e-9;
 
-/// `count` machines, at least two, or one where that is best in both: those of least mass and of least inertia, and
-/// between them always one more where two lie furthest apart, halfway in what they differ in most.
+/// Returns `count` points of the Pareto front, at least two, or one if a single machine is best in both measures. The
+/// first two have the least inertia and the least mass. Each further point bisects the widest gap, in the measure in
+/// which its neighbours differ most.
 ///
 /// # Errors
 /// As [`place`].
@@ -36,14 +38,14 @@ pub fn front(machine: &Machine, asked: &Weighing, count: usize) -> Result<Front,
     answered::<FrontSearch>((machine.clone(), asked.clone(), count))
 }
 
-/// The search for a [`front`] of a machine, of as many machines as asked for: one machine in a portion.
+/// The search for the Pareto front of a machine, as [`front`] returns it: one machine a portion.
 #[derive(Clone, Debug)]
 pub struct FrontSearch {
     machine: Machine,
     mass: Weighing,
     inertia: Weighing,
     count: usize,
-    /// From light to quick, with their measures.
+    /// The points found so far, by increasing mass, with their measures.
     points: Vec<([f64; 2], Placed)>,
 }
 
@@ -69,21 +71,21 @@ impl Query for FrontSearch {
     }
 }
 
-/// Whether two measures differ by rounding alone.
+/// Returns whether two measures are equal to rounding.
 fn alike(a: f64, b: f64) -> bool {
-    (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+    (a - b).abs() <= RELATIVE_TOLERANCE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
 }
 
 impl FrontSearch {
-    /// Finds another machine; whether there was one to be found.
+    /// Adds one more point; returns whether there was one to add.
     fn one_more(&mut self) -> Result<bool, NoWeights> {
         let Self { machine, mass, inertia, count, points } = self;
         let (i, asked) = match points.len() {
-            // The quick one first: what is asked of both is refused in its words.
+            // The point of least inertia first: errors in requirements of both are reported by it.
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
             known if known >= *count => return Ok(false),
-            // Where one machine is the lightest and the quickest it is all of the front.
+            // If one machine is best in both measures, it is the whole Pareto front.
             last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => {
                 points.truncate(1);
                 return Ok(false);

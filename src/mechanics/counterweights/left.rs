@@ -1,4 +1,4 @@
-//! [`Left`]: what is left of each line of (7) and (8), and what counterweights add to it.
+//! [`Left`]: residual of each condition of (7) and (8), and its change with counterweights.
 
 use super::asked::{Sites, Weighing};
 use super::refusal::NoWeights;
@@ -6,25 +6,25 @@ use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 
-/// One line of (7) or (8).
+/// The residual of one condition of (7) or (8).
 pub(super) struct Left {
     pub of: Condition,
-    /// What the bare machine leaves along and across the axes, kg m or kg m²; with the middle of what it may hold.
+    /// Residual of the bare machine along and across the axes, kg m or kg m², with the mean payload.
     pub left: Vector,
-    /// Along them, with the least and with the most that it may hold.
+    /// Residual along the axes with the smallest and with the largest payload.
     pub ends: [f64; 2],
-    /// What w and s of each site add.
+    /// Derivatives of the residual by w and s of each site.
     pub changes: Vec<[f64; 2]>,
 }
 
 impl Left {
-    /// Whether any site changes it.
+    /// Returns whether a counterweight at any site changes it.
     pub fn is_touched(&self) -> bool {
         self.changes.iter().flatten().any(|by| *by != 0.0)
     }
 }
 
-/// What is left of each condition, and how a counterweight of w and s at each site changes it.
+/// Returns the residual of each condition, and its derivatives by w and s at each site.
 pub(super) fn conditions(
     bare: &Machine,
     inertia: &Inertia,

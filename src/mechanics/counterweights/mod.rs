@@ -1,8 +1,8 @@
-//! Counterweights as hardware: the lightest, or those of least inertia, that balance a machine, with a certificate.
+//! Counterweights as discs: those of least mass or least inertia that balance a machine, with a certificate.
 //!
-//! A disc of mass w on link j at x along its axis enters balance (7), (8) by w and s = w x, linearly; where it may sit
-//! is lo w ≤ s ≤ hi w. To the inertia it adds s²/w, and of its own w²/(2 π ρ t): both convex. So the best is a cone
-//! program with one optimum, which the solver proves, and not a search that stops somewhere.
+//! A disc of mass w on link j at x along its axis enters balance (7), (8) linearly through w and s = w x; bounds on its
+//! position are lo w ≤ s ≤ hi w. It adds s²/w to the inertia about the root, and w²/(2 π ρ t) of its own: both are
+//! convex. So the problem is a cone program with one optimum, which the solver certifies.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

@@ -1,25 +1,25 @@
-//! [`over_payloads`]: what is left of balance over a range of what the end effector holds.
+//! [`over_payloads`]: residuals of balance over a range of payloads.
 
 use serde::Serialize;
 
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 
-/// What is left of (7) and of (8) with one payload.
+/// Largest residuals of (7) and of (8) with one payload.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Residual {
-    /// What the end effector holds, kg.
+    /// Mass of the payload, kg.
     pub payload: f64,
-    /// Of (7): the greatest |g_k|, kg m.
+    /// Largest residual of (7), |g_k|, kg m.
     pub force: f64,
-    /// Of (8): the greatest |C_kl|, kg m².
+    /// Largest residual of (8), |C_kl|, kg m².
     pub coupling: f64,
 }
 
-/// What is left at `count` payloads, at least two, at equal steps from the least to the greatest, kg.
+/// Returns the residuals at `count` payloads, at least two, in equal steps from `low` to `high`, kg.
 ///
 /// # Errors
-/// If the machine cannot hold one of them.
+/// If the machine is not valid with one of the payloads.
 pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> Result<Vec<Residual>, MachineError> {
     let steps = count.max(2) - 1;
     let at = |i: usize| {

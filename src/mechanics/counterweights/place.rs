@@ -1,11 +1,11 @@
-//! [`place`]: counterweights that balance a machine at the least cost.
+//! [`place`]: counterweights that balance a machine and minimise an objective.
 
 use super::asked::{Objective, Sites, Weighing};
 use super::problem::Problem;
 use super::program::SOLVER_ROUNDING;
 use super::question::One;
 use super::refusal::NoWeights;
-use super::relief::would_do;
+use super::relief::sufficient_reliefs;
 use super::way::Balance;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::{Inertia, Machine};
@@ -14,46 +14,48 @@ use crate::mechanics::planar::Vector;
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// It is balanced to rounding; over a range of payloads as nearly as can be, holding its middle.
+    /// The machine, balanced to rounding. Over a range of payloads it is balanced as nearly as possible, and holds the
+    /// mean payload.
     pub machine: Machine,
-    /// What they weigh, kg.
+    /// Total mass of the counterweights, kg.
     pub added_mass: f64,
-    /// What was least.
+    /// Value of the objective.
     pub value: f64,
-    /// The most by which the best may lie below that.
+    /// Upper bound of the difference between this value and the optimum.
     pub gap: f64,
 }
 
 impl Placed {
-    /// Whether nothing better can be, but for rounding. A search may end before that is proved.
+    /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved that.
     pub fn is_certified(&self) -> bool {
-        self.gap <= 2.0 * CERTIFIED * self.value.abs().max(1.0)
+        self.gap <= 2.0 * MAX_GAP * self.value.abs().max(1.0)
     }
 }
 
-/// What a kg m² counts beside a kilogram where only mass is to be least: enough to choose among equals.
-const TIE: f64 = 1e-7;
+/// Weight of inertia, 1/(kg m²), against that of mass, 1/kg, if only mass is minimised: breaks ties between equal
+/// masses.
+const TIE_BREAK_WEIGHT: f64 = 1e-7;
 
-/// A counterweight that is lighter than this part of all together is done without, if that can be.
-const LIGHT: f64 = 1e-4;
+/// A counterweight lighter than this fraction of their total mass is omitted if balance is possible without it.
+const NEGLIGIBLE_MASS_FRACTION: f64 = 1e-4;
 
-/// As far from the best as this an answer may be for the sake of simplicity, in what is least.
-const CERTIFIED: f64 = 5e-7;
+/// Largest gap to the optimum, in units of the objective, that is accepted for a simpler answer.
+const MAX_GAP: f64 = 5e-7;
 
-/// The counterweights that make a machine balanced and invariant, (7) and (8), and an objective least. Those that the
-/// machine has already are taken off first, but for fixed ones.
+/// Finds the counterweights that make a machine balanced and invariant, (7) and (8), and minimise an objective.
+/// Existing counterweights are removed first, except fixed ones.
 ///
-/// Over a range of payloads the worst residual, |g_k| or |C_kl| divided by the reach, is made as small as it can be, and then
-/// the objective. Balance in the middle has the least worst residual, but is not alone in that.
+/// Over a range of payloads the largest residual, |g_k| or |C_kl| divided by the reach, is minimised first, then the
+/// objective. Balance with the mean payload has the least largest residual, but other solutions may share it.
 ///
 /// # Errors
-/// If what is asked for cannot be, or cannot be together.
+/// If the request is not valid, or if its requirements contradict each other.
 pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
     place_with(machine, asked, &[])
 }
 
-/// The same for a machine that is known to have more of each line of (7) and (8), in their order, than its numbers say:
-/// balance is where both together are nothing. What a counterweight that it has already adds is not in it.
+/// As [`place`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
+/// the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
 ///
 /// # Errors
 /// As [`place`].
@@ -69,11 +71,12 @@ pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Res
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
-/// What is left of each line of (7) and (8), whatever counterweights of any sign sit on the links that may carry one:
-/// as little as can be, with all lines of one size. What lies across the axes is always left.
+/// Returns the residual of each condition of (7) and (8), kg m or kg m², that no counterweights on the listed links
+/// remove, even of negative mass: the least squares residual, with all equations scaled to unit norm. Residuals across
+/// the axes of the links always remain.
 ///
 /// # Errors
-/// If what is asked for cannot be.
+/// If the request is not valid.
 pub fn unreachable_by_weights(
     machine: &Machine,
     asked: &Weighing,
@@ -83,7 +86,8 @@ pub fn unreachable_by_weights(
 }
 
 impl One<'_> {
-    /// The answer, or the weights of the proof that there is none past all pins, empty if it is the pins.
+    /// Finds the counterweights. If there are none, returns the weights of the bounds in the certificate of
+    /// infeasibility without clearance, empty if only the clearance of pins makes it infeasible.
     fn found(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
         if self.balance() == Balance::Nearest {
             return self.nearest();
@@ -91,7 +95,7 @@ impl One<'_> {
         match self.least(Balance::Exact)? {
             Ok(least) => {
                 let best = self.placed(&least, Balance::Exact)?;
-                Ok(Ok(self.simpler(self.quicker(best, &least))))
+                Ok(Ok(self.simpler(self.least_inertia(best, &least))))
             }
             Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
             Err(NoX::Contradiction(_)) if self.asked.payload.is_some() => self.nearest(),
@@ -99,13 +103,13 @@ impl One<'_> {
         }
     }
 
-    /// Of all that weigh the same the one that turns least.
-    fn quicker(&self, best: Placed, least: &Least) -> Placed {
+    /// Returns the solution of least inertia among those of the same mass, if mass alone is minimised.
+    fn least_inertia(&self, best: Placed, least: &Least) -> Placed {
         let Weighing { objective, most_inertia, .. } = self.asked;
         if objective.turns() || objective.mass == 0.0 || most_inertia.is_some() {
             return best;
         }
-        let objective = Objective { inertia: TIE * objective.mass, ..objective.clone() };
+        let objective = Objective { inertia: TIE_BREAK_WEIGHT * objective.mass, ..objective.clone() };
         let tied = Weighing { objective, ..self.asked.clone() };
         let one = One { asked: &tied, ..*self };
         let found = one.least(Balance::Exact).ok().and_then(Result::ok);
@@ -113,10 +117,10 @@ impl One<'_> {
         found.and_then(|found| self.as_good(found, least.value - least.gap)).unwrap_or(best)
     }
 
-    /// The same without counterweights that weigh next to nothing, if it does without them.
+    /// Returns a solution without the counterweights of negligible mass, if there is one as good.
     fn simpler(&self, best: Placed) -> Placed {
         let weights = || best.machine.spec().counterweights.iter().filter(|weight| !weight.fixed);
-        let is_light = |mass: f64| mass < LIGHT * best.added_mass;
+        let is_light = |mass: f64| mass < NEGLIGIBLE_MASS_FRACTION * best.added_mass;
         if !weights().any(|weight| is_light(weight.mass)) {
             return best;
         }
@@ -129,25 +133,25 @@ impl One<'_> {
         self.exact(&fewer).and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
     }
 
-    /// What balances the machine and nothing less, if there is any.
+    /// Returns the optimum of another request with exact balance, if there is one.
     fn exact(&self, asked: &Weighing) -> Option<Placed> {
         let problem = Problem::new(self.machine, asked, self.beyond).ok()?;
         problem.check().ok()?;
         let one = One { problem: &problem, asked, ..*self };
         let least = one.least(Balance::Exact).ok()?.ok()?;
         let best = one.placed(&least, Balance::Exact).ok()?;
-        Some(one.quicker(best, &least))
+        Some(one.least_inertia(best, &least))
     }
 
-    /// A machine that is certified as well: nothing has less than `bound`.
+    /// Returns a solution with its gap to `bound`, a lower bound of the objective; `None` if the gap is too large.
     fn as_good(&self, found: Placed, bound: f64) -> Option<Placed> {
         let value = self.asked.objective.of(found.added_mass, &Inertia::of(&found.machine));
         let gap = (value - bound).max(found.gap);
-        (gap < CERTIFIED).then_some(Placed { value, gap, ..found })
+        (gap < MAX_GAP).then_some(Placed { value, gap, ..found })
     }
 
-    /// As near to balance as the bounds allow over all payloads, and of those the least. Where the middle can be balanced
-    /// as cheaply, it is.
+    /// Minimises the largest residual over all payloads, then the objective. If exact balance with the mean payload has
+    /// the same objective, returns that.
     fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
@@ -164,7 +168,7 @@ impl One<'_> {
             Err(weights) => return Ok(Err(weights)),
         };
         if let Ok(Ok(exact)) = self.least(Balance::Exact)
-            && exact.value <= least.value + CERTIFIED
+            && exact.value <= least.value + MAX_GAP
         {
             return Ok(Ok(self.placed(&exact, Balance::Exact)?));
         }
@@ -174,14 +178,14 @@ impl One<'_> {
     fn placed(&self, least: &Least, balance: Balance) -> Result<Placed, NoWeights> {
         let (added_mass, machine) = self.problem.machine(self.machine, self.asked, &least.x, balance)?;
         let value = self.asked.objective.of(added_mass, &Inertia::of(&machine));
-        // Of what was made of it, and not only of what the solver has: the dual says what nothing goes below.
+        // The gap is that of the finished machine: the dual value is a lower bound of the objective.
         Ok(Placed { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
     }
 
-    /// Why there is none; weights are of the proof past all pins, empty if it is the pins.
+    /// Returns the reason why there are no counterweights; `weights` as [`found`](Self::found) returns them.
     fn refusal(&self, weights: &[f64]) -> NoWeights {
-        let does = |asked: &Weighing| One { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
-        let would = || would_do(self, &does);
+        let is_feasible = |asked: &Weighing| One { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
+        let would = || sufficient_reliefs(self, &is_feasible);
         match self.asked.clearance {
             Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: would() },
             _ => {
@@ -196,7 +200,7 @@ impl One<'_> {
 }
 
 impl Objective {
-    /// What it comes to.
+    /// Returns its value for an added mass, kg, and the inertia of the finished machine.
     fn of(&self, added_mass: f64, inertia: &Inertia) -> f64 {
         let diagonal = inertia.diagonals();
         let torques = diagonal.iter().zip(&self.accelerations).map(|(h, acceleration)| h * acceleration);

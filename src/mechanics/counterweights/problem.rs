@@ -1,4 +1,4 @@
-//! [`Problem`]: a machine without counterweights but for fixed ones, and what they change in it.
+//! [`Problem`]: a machine without counterweights, except fixed ones, and the conditions that counterweights must meet.
 
 use super::asked::Weighing;
 use super::left::{Left, conditions};
@@ -7,17 +7,21 @@ use crate::mechanics::balance::{Equation, Plane};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 
-/// A machine without counterweights, but for fixed ones, and without what is free of its rotors.
+/// A machine without counterweights, except fixed ones, and without the rotors that have a free parameter.
 pub(super) struct Problem {
     pub bare: Machine,
     pub inertia: Inertia,
     pub conditions: Vec<Left>,
-    /// The furthest that the end effector can be from B, m.
+    /// Upper bound of the end effector's distance from B, m.
     pub reach: f64,
 }
 
 impl Problem {
-    /// `beyond` is what the machine has of each line of (7) and (8), in their order, beyond what its numbers say.
+    /// Derives the problem of a request. `beyond`: known additional residuals of the conditions (7) and (8), in their
+    /// order.
+    ///
+    /// # Errors
+    /// If the request is not valid.
     pub fn new(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Self, NoWeights> {
         asked.check(machine)?;
         let mut spec = machine.without_counterweights()?.spec().clone();
@@ -36,10 +40,10 @@ impl Problem {
         Ok(Self { bare, inertia, conditions, reach })
     }
 
-    /// Whether counterweights on the axes of these links can do anything about every condition that is not met.
+    /// Checks that counterweights on the axes of these links can change every condition that is not met.
     ///
     /// # Errors
-    /// If not.
+    /// If they cannot.
     pub fn check(&self) -> Result<(), NoWeights> {
         for Left { of, left, .. } in &self.conditions {
             if left.im.abs() > 1e-9 {
@@ -60,8 +64,8 @@ impl Problem {
         Ok(())
     }
 
-    /// What is left of each condition, whatever stands at the sites, of any sign: as little as can be, with all of them of
-    /// one size.
+    /// Returns the residual of each condition that no masses at the sites remove, even negative ones: the least squares
+    /// residual, with all equations scaled to unit norm.
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
         let equation = |condition: &Left| Equation {
             a: condition.changes.iter().flatten().copied().collect(),
@@ -73,7 +77,8 @@ impl Problem {
         along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.left.im)).collect()
     }
 
-    /// Counterweights of no mass, if nothing has to be added: whatever is added makes mass and inertia more.
+    /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so none are then
+    /// optimal.
     pub fn needs_nothing(&self, asked: &Weighing) -> bool {
         let total: f64 = self.inertia.total_momentum();
         asked.rotors.is_empty()

@@ -1,4 +1,4 @@
-//! The cone program of a [`Problem`]: its rows, and its best solution.
+//! The cone program of a [`Problem`]: its rows, and its optimum.
 
 use super::asked::{Free, Objective, Weighing};
 use super::left::Left;
@@ -10,27 +10,27 @@ use crate::convex::{Least, NoX, Program, Row, conflict};
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::Machine;
 
-/// How much worse than the least the first of two wishes may be for the sake of the second, of itself and in its unit:
-/// the solver's rounding.
+/// Relative and absolute amount by which the first of two objectives may exceed its minimum while the second is
+/// minimised: the solver's rounding.
 pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
 impl Problem {
-    /// The least of what is asked for on one way.
+    /// Solves the cone program of one subproblem.
     pub fn least(&self, machine: &Machine, asked: &Weighing, way: &Way) -> Result<Least, NoX> {
         let solve = |way: &Way| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
         let first = solve(way)?;
         if asked.objective.momentum == 0.0 || way.balance == Balance::Nearest || way.least.is_some() {
             return Ok(first);
         }
-        // A rotor may take more from the base than there is, if what there is counts as more: so of all that are as good
-        // the one that turns least is taken, which counts everything as what it is where that can be.
+        // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is. So the
+        // solution of least mass and Σ H_kk among the optima is taken: its inertias are exact where that is possible.
         let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
         let second = solve(&Way { most: Some(most), ..way.clone() });
         Ok(second.map_or(first.clone(), |second| Least { x: second.x, ..first }))
     }
 
-    /// Why there is none past all pins: the bounds without any of which there would be a way, which are those that the
-    /// solver's proof uses, less all that it can do without. Empty if there is none without bounds either.
+    /// Returns a minimal set of bounds that contradict each other without clearance: those in the solver's certificate
+    /// of infeasibility, less all that are not necessary. Empty if there is no solution without bounds either.
     pub fn conflict(&self, machine: &Machine, asked: &Weighing, balance: Balance, weights: &[f64]) -> Vec<Bound> {
         let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, balance));
         let any = Weighing { objective: Objective::mass(), ..asked.clone() };
@@ -41,7 +41,7 @@ impl Problem {
         conflict(bounds, of_bounds, contradicts)
     }
 
-    /// The cone program: its unknowns, what is to be least, and its rows.
+    /// Returns the cone program of a subproblem: its unknowns, its objective, and its rows.
     pub fn program(&self, machine: &Machine, asked: &Weighing, bounds: &[(Bound, Row)], way: &Way) -> Program {
         let unknowns = Unknowns::of(asked, self.drives());
         let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
@@ -78,7 +78,7 @@ impl Problem {
         let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| way.loose.contains(&kind)));
         program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
         if let Some(kind) = way.least {
-            // Instead of its own value the bound has one that is unknown.
+            // The value of the bound becomes an unknown, which is minimised.
             program.linear.fill(0.0);
             let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
             program.linear.push(1.0);
@@ -90,7 +90,7 @@ impl Problem {
         program
     }
 
-    /// (7) and (8).
+    /// Adds the conditions (7) and (8).
     fn enter_balance(&self, unknowns: &Unknowns, balance: Balance, program: &mut Program) {
         let terms = |condition: &Left, sign: f64| {
             let each = condition.changes.iter().enumerate();
@@ -139,7 +139,7 @@ impl Problem {
         }
     }
 
-    /// The diagonal of H but for free rotors.
+    /// Adds the diagonal of H without free rotors.
     fn enter_inertia(&self, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
         let parts = self.bare.resolved_links();
         for j in 0..asked.sites.len() {
@@ -161,7 +161,7 @@ impl Problem {
         }
     }
 
-    /// What it costs to turn the drives.
+    /// Adds the weight of Σ H_kk to the objective.
     fn cost(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
         for k in 0..self.drives() {
             let [_, turned] = self.of_rotors(asked, machine, k);
@@ -171,7 +171,7 @@ impl Problem {
         }
     }
 
-    /// What the drives give to the base, the greatest torque, and what these cost.
+    /// Adds |D_k| and the greatest torque, with their weights in the objective.
     fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, way: &Way, program: &mut Program) {
         let objective = &asked.objective;
         for k in 0..self.drives() {
@@ -206,7 +206,7 @@ impl Problem {
         }
     }
 
-    /// The bounds that a person has set, with their rows.
+    /// Returns the bounds of the request, with their rows.
     fn bounds(&self, machine: &Machine, asked: &Weighing) -> Vec<(Bound, Row)> {
         let (mut all, unknowns) = (Vec::new(), Unknowns::of(asked, self.drives()));
         for (j, site) in asked.sites.iter().enumerate() {
@@ -236,7 +236,7 @@ impl Problem {
 }
 
 impl Bound {
-    /// What of its kind may give way; places may not.
+    /// Returns its kind if it may be relaxed; bounds of positions may not.
     fn kind(&self) -> Option<Kind> {
         match self {
             Self::From(_) | Self::To(_) => None,
@@ -248,7 +248,7 @@ impl Bound {
 }
 
 impl Weighing {
-    /// What a bound is that may give way.
+    /// Returns the value of a bound that may be relaxed.
     fn value_of(&self, bound: &Bound, machine: &Machine) -> f64 {
         match bound {
             Bound::Most(link) => {

@@ -1,4 +1,4 @@
-//! [`One`]: a question about counterweights, and the problem that follows from it.
+//! [`One`]: one request for counterweights, with the problem derived from it.
 
 use super::asked::Weighing;
 use super::problem::Problem;
@@ -9,7 +9,7 @@ use crate::convex::{Least, NoX};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 
-/// One question.
+/// One request for counterweights on a machine, with the problem derived from it.
 #[derive(Clone, Copy)]
 pub(super) struct One<'a> {
     pub problem: &'a Problem,
@@ -19,7 +19,7 @@ pub(super) struct One<'a> {
 }
 
 impl One<'_> {
-    /// Whether balance is to be exact, or as near as can be over a range of payloads.
+    /// Returns whether balance is to be exact, or as near as possible over a range of payloads.
     pub fn balance(&self) -> Balance {
         match self.asked.payload {
             Some([low, high]) if low < high => Balance::Nearest,
@@ -27,17 +27,17 @@ impl One<'_> {
         }
     }
 
-    /// Whether there are such counterweights.
+    /// Returns whether there are such counterweights.
     pub fn is_possible(&self) -> bool {
         matches!(self.on(&Way::free(self.asked, self.balance())), Ok(Ok(_)))
     }
 
-    /// The best with balance as exact as that.
+    /// Finds the optimum with a given form of the balance conditions.
     pub fn least(&self, balance: Balance) -> Result<Result<Least, NoX>, NoWeights> {
         self.on(&Way::free(self.asked, balance))
     }
 
-    /// The best on one way.
+    /// Finds the optimum of one subproblem.
     pub fn on(&self, way: &Way) -> Result<Result<Least, NoX>, NoWeights> {
         let is_convex = self.asked.clearance.is_none() && self.asked.objective.momentum == 0.0;
         match is_convex {

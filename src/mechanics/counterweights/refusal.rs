@@ -1,4 +1,4 @@
-//! [`NoWeights`]: why there are no counterweights, and what would have to give.
+//! [`NoWeights`]: the reason why there are no counterweights, and the relaxed bounds with which there are.
 
 use std::fmt;
 
@@ -6,18 +6,18 @@ use thiserror::Error;
 
 use crate::mechanics::machine::MachineError;
 
-/// A bound that may stand in the way.
+/// A bound that may contradict others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// How far back a link may carry its counterweight.
+    /// Lower bound of the position of a link's counterweight.
     From(String),
-    /// How far towards its tip.
+    /// Upper bound of the position of a link's counterweight.
     To(String),
-    /// How much it may weigh.
+    /// Upper bound of the mass of a link's counterweight.
     Most(String),
-    /// How much all may weigh together.
+    /// Upper bound of the total mass of the counterweights.
     Mass,
-    /// Σ D_k.
+    /// Upper bound of Σ D_k.
     Inertia,
 }
 
@@ -37,29 +37,30 @@ fn listed(bounds: &[Bound]) -> String {
     bounds.iter().map(Bound::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// A kind of bound that may give way.
+/// A kind of bound that may be relaxed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// On the mass of each counterweight that has one.
+    /// The bounds of the masses of single counterweights.
     Most,
-    /// On what all weigh together.
+    /// The bound of their total mass.
     Mass,
-    /// On Σ D_k.
+    /// The bound of Σ D_k.
     Inertia,
-    /// How far discs stay from pins.
+    /// The clearance of discs from pins.
     Clearance,
 }
 
-/// What would do instead of the bounds of one kind: the least bound, or the greatest clearance, rounded so that it does.
+/// Relaxed value of the bounds of one kind: the least feasible bound, or the greatest feasible clearance, rounded to
+/// the feasible side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relief {
-    /// On the masses that have a bound, kg.
+    /// Bound of each mass that has a bound, kg.
     Most(f64),
-    /// On what all weigh together, kg.
+    /// Bound of the total mass, kg.
     Mass(f64),
-    /// On Σ D_k, kg m².
+    /// Bound of Σ D_k, kg m².
     Inertia(f64),
-    /// How far discs stay from pins, m.
+    /// Clearance of discs from pins, m.
     Clearance(f64),
 }
 
@@ -74,8 +75,8 @@ impl fmt::Display for Relief {
     }
 }
 
-/// Each that would do, or what would do together.
-fn would_do(would: &[Vec<Relief>]) -> String {
+/// Returns the sets of relaxed bounds in words, each of which is sufficient.
+fn sufficient_relief(would: &[Vec<Relief>]) -> String {
     let one = |together: &Vec<Relief>| {
         let all: Vec<String> = together.iter().map(Relief::to_string).collect();
         format!("; {} would do{}", all.join(" and "), if all.len() > 1 { " together" } else { "" })
@@ -86,14 +87,14 @@ fn would_do(would: &[Vec<Relief>]) -> String {
 /// Why there are no counterweights.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoWeights {
-    /// A number that cannot be.
+    /// A number that is out of range.
     #[error("{what} {value}: want {want}")]
     OutOfRange {
-        /// What it is of.
+        /// Meaning of the number.
         what: String,
-        /// What was given.
+        /// The number.
         value: f64,
-        /// What would be right.
+        /// The range that would be right.
         want: String,
     },
     /// One link is named twice.
@@ -102,15 +103,15 @@ pub enum NoWeights {
     /// One rotor is named twice.
     #[error("the rotor of drive {0} is free in two ways: want its inertia or its ratio")]
     RotorTwice(String),
-    /// There is nothing to turn.
+    /// A free gear ratio of a drive without a rotor.
     #[error("drive {0} has no rotor whose ratio could be chosen: want drive.{0}.rotor.inertia above 0")]
     NoRotor(String),
-    /// The masses of the links lie off their axes, where nothing on an axis balances them.
+    /// The masses of the links lie off their axes, where no counterweight on an axis balances them.
     #[error("{condition}, has {left} that no counterweight on an axis takes away: want com_normal 0")]
     OffAxis {
         /// The condition.
         condition: String,
-        /// What remains, with unit.
+        /// Its residual, with unit.
         left: String,
     },
     /// No counterweight on these links changes a condition that is not met.
@@ -118,46 +119,55 @@ pub enum NoWeights {
     Untouched {
         /// The condition.
         condition: String,
-        /// What remains, with unit.
+        /// Its residual, with unit.
         left: String,
-        /// Links on which one would change it.
+        /// Links on which a counterweight would change it.
         want: String,
     },
-    /// These bounds, and no fewer of them, leave no way.
-    #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), would_do(.would))]
+    /// These bounds contradict each other: a minimal set.
+    #[error(
+        "no counterweights balance this machine within these bounds: {}{}",
+        listed(.bounds),
+        sufficient_relief(.would)
+    )]
     Conflict {
-        /// The bounds that contradict each other: with any of them away there is a way.
+        /// The bounds; without any one of them the others do not contradict each other.
         bounds: Vec<Bound>,
-        /// What would do with all other bounds as they are; where nothing does alone, what does together.
+        /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
+        /// single one is sufficient.
         would: Vec<Vec<Relief>>,
     },
-    /// Whatever they weigh and wherever they sit.
+    /// No masses and positions on these links balance the machine.
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
-    /// They would reach a pin.
-    #[error("no counterweights balance this machine and stay {asked} m clear of every pin{}", would_do(.would))]
+    /// Every solution would violate the clearance of a pin.
+    #[error(
+        "no counterweights balance this machine and stay {asked} m clear of every pin{}",
+        sufficient_relief(.would)
+    )]
     Reaches {
-        /// How far they were to stay away, m.
+        /// The clearance requested, m.
         asked: f64,
-        /// What would do with all other bounds as they are; where nothing does alone, what does together.
+        /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
+        /// single one is sufficient.
         would: Vec<Vec<Relief>>,
     },
-    /// Too many ways round the pins to look at all.
+    /// Too many choices between pins to search all.
     #[error(
         "after {0} ways round the pins it is still not known whether there are counterweights: want fewer links that may carry one"
     )]
     TooMany(usize),
-    /// Torque is D_k q̈_k only where each motor turns its drive alone.
+    /// The torque is D_k q̈_k only if each motor turns its drive alone.
     #[error(
         "the torque of a motor in a joint or behind a gear depends on more than its drive: want mass or inertia to be least"
     )]
     Coupled,
-    /// The solver gave up.
+    /// The solver failed.
     #[error(
         "whether there are such counterweights is closer than the solver can tell ({0}): want bounds a little wider, or tighter"
     )]
     Failed(String),
-    /// The result is no machine.
+    /// The result is not a valid machine.
     #[error("the machine with them: {0}")]
     Machine(String),
 }

@@ -1,41 +1,42 @@
-//! [`would_do`]: with which bounds there would be counterweights, all others as they are.
+//! [`sufficient_reliefs`]: relaxed bounds with which there would be counterweights, all others unchanged.
 
 use super::asked::Weighing;
 use super::question::One;
 use super::refusal::{Kind, Relief};
 use super::way::Way;
 
-/// How much further than it has to the first of two bounds gives way, so that the second need not go to its end.
-const AMPLE: f64 = 1.1;
+/// Factor by which the first of several bounds is relaxed beyond its minimum, so that the others need less relaxation.
+const FIRST_BOUND_FACTOR: f64 = 1.1;
 
-/// A bound gives way so much further, as a fraction, until there is a way: the solver's rounding.
-const NUDGES: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+/// Fractions by which a relaxed bound is relaxed further until there is a solution: the solver's rounding.
+const EXTRA_FRACTIONS: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// Steps in which a clearance is halved.
-const HALVINGS: usize = 20;
+/// Number of bisection steps for a clearance.
+const BISECTIONS: usize = 20;
 
-/// Steps in a metre in which clearances are said, and in a kilogram or kg m² in which the other bounds are.
-const CLEARANCE_STEPS: f64 = 1e4;
-const STEPS: f64 = 1e6;
+/// Relaxed clearances are multiples of 1/this, m.
+const CLEARANCE_STEPS_PER_M: f64 = 1e4;
+/// Other relaxed bounds are multiples of 1/this, kg or kg m².
+const STEPS_PER_UNIT: f64 = 1e6;
 
-/// Each kind of bound that alone would have to give way, and how far; or where none does, two that do together, or more.
-/// `does` says whether there is an answer to another question.
-pub(super) fn would_do(one: &One, does: &dyn Fn(&Weighing) -> bool) -> Vec<Vec<Relief>> {
+/// Returns each kind of bound that it is enough to relax alone, with its relaxed value; if no single kind is enough,
+/// the sets of two that are, or more. `is_feasible` returns whether another request has a solution.
+pub(super) fn sufficient_reliefs(one: &One, is_feasible: &dyn Fn(&Weighing) -> bool) -> Vec<Vec<Relief>> {
     let kinds = Kind::of(one.asked);
     let some = |bits: usize| (0..kinds.len()).filter(move |i| bits >> i & 1 == 1).map(|i| kinds[i]).collect::<Vec<_>>();
     let of_size = |size: usize| {
         let sets = (1..1_usize << kinds.len()).map(some).filter(move |set| set.len() == size);
-        sets.filter_map(|set| together(one, &set, does)).collect::<Vec<_>>()
+        sets.filter_map(|set| together(one, &set, is_feasible)).collect::<Vec<_>>()
     };
     (1..=kinds.len()).map(of_size).find(|found| !found.is_empty()).unwrap_or_default()
 }
 
-/// What each of these bounds would have to be; none if that is not enough.
-fn together(one: &One, kinds: &[Kind], does: &dyn Fn(&Weighing) -> bool) -> Option<Vec<Relief>> {
+/// Returns the values to which these kinds of bounds have to be relaxed together; `None` if that is not enough.
+fn together(one: &One, kinds: &[Kind], is_feasible: &dyn Fn(&Weighing) -> bool) -> Option<Vec<Relief>> {
     let (last, first) = kinds.split_last()?;
     let (mut asked, mut reliefs) = (one.asked.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
-        let relief = kind.rounded(AMPLE * least_bound(one, &asked, *kind, &kinds[i + 1..])?);
+        let relief = kind.rounded(FIRST_BOUND_FACTOR * least_bound(one, &asked, *kind, &kinds[i + 1..])?);
         relief.set(&mut asked);
         reliefs.push(relief);
     }
@@ -43,26 +44,27 @@ fn together(one: &One, kinds: &[Kind], does: &dyn Fn(&Weighing) -> bool) -> Opti
         Kind::Clearance => greatest_clearance(one, &asked)?,
         _ => least_bound(one, &asked, *last, &[])?,
     };
-    let nudged =
-        NUDGES.map(|by| last.rounded(if *last == Kind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
+    let nudged = EXTRA_FRACTIONS
+        .map(|by| last.rounded(if *last == Kind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
     let enough = |relief: &Relief| {
         relief.set(&mut asked);
-        does(&asked)
+        is_feasible(&asked)
     };
     reliefs.push(nudged.into_iter().find(enough)?);
     Some(reliefs)
 }
 
-/// The least that a bound may be where those of some other kinds are not there.
+/// Returns the smallest feasible value of a kind of bound without the bounds of the kinds `loose`; `None` if there is
+/// none.
 fn least_bound(one: &One, asked: &Weighing, kind: Kind, loose: &[Kind]) -> Option<f64> {
-    let touching = Weighing { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
-    let asked = if loose.contains(&Kind::Clearance) { &touching } else { asked };
+    let without_clearance = Weighing { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
+    let asked = if loose.contains(&Kind::Clearance) { &without_clearance } else { asked };
     let one = One { asked, ..*one };
     let way = Way { loose: loose.to_vec(), least: Some(kind), ..Way::free(asked, one.balance()) };
     one.on(&way).ok()?.ok().map(|least| least.value.max(0.0))
 }
 
-/// The furthest that discs can stay from pins, m.
+/// Returns the greatest feasible clearance of discs from pins, m, by bisection; `None` if even 0 is infeasible.
 fn greatest_clearance(one: &One, asked: &Weighing) -> Option<f64> {
     let is_clear = |clearance: f64| {
         let asked = Weighing { clearance: Some(clearance), ..asked.clone() };
@@ -71,20 +73,20 @@ fn greatest_clearance(one: &One, asked: &Weighing) -> Option<f64> {
     if !is_clear(0.0) {
         return None;
     }
-    let halved = |[low, high]: [f64; 2], _| {
+    let bisected = |[low, high]: [f64; 2], _| {
         let middle = 0.5 * (low + high);
         if is_clear(middle) { [middle, high] } else { [low, middle] }
     };
-    Some((0..HALVINGS).fold([0.0, asked.clearance?], halved)[0])
+    Some((0..BISECTIONS).fold([0.0, asked.clearance?], bisected)[0])
 }
 
-/// A number as it is read again where it was printed with so many decimals.
-fn printed(x: f64, decimals: usize) -> f64 {
+/// Rounds a number as printing it with `decimals` decimals does.
+fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x)
 }
 
 impl Kind {
-    /// Those of the bounds that are set.
+    /// Returns the kinds of bounds that are set.
     fn of(asked: &Weighing) -> Vec<Self> {
         let set = [
             (Self::Most, asked.sites.iter().any(|site| site.most.is_finite())),
@@ -95,14 +97,17 @@ impl Kind {
         set.into_iter().filter(|(_, set)| *set).map(|(kind, _)| kind).collect()
     }
 
-    /// As a person types it, away from where it would not do.
+    /// Rounds a relaxed bound to few digits, away from the infeasible side.
     fn rounded(self, bound: f64) -> Relief {
-        let up = printed((bound * STEPS).ceil().max(1.0) / STEPS, 6);
+        let up = rounded_as_printed((bound * STEPS_PER_UNIT).ceil().max(1.0) / STEPS_PER_UNIT, 6);
         match self {
             Self::Most => Relief::Most(up),
             Self::Mass => Relief::Mass(up),
             Self::Inertia => Relief::Inertia(up),
-            Self::Clearance => Relief::Clearance(printed((bound * CLEARANCE_STEPS).floor() / CLEARANCE_STEPS, 4)),
+            Self::Clearance => Relief::Clearance(rounded_as_printed(
+                (bound * CLEARANCE_STEPS_PER_M).floor() / CLEARANCE_STEPS_PER_M,
+                4,
+            )),
         }
     }
 }

@@ -1,12 +1,12 @@
-//! [`Room`]: where a disc is clear of the pins of its link.
+//! [`Room`]: an interval between pins of a link in which a disc is clear of them.
 //!
-//! A disc of mass w at x has radius κ √w. Between pins at a and b it has to keep x ≥ a + c + κ √w and x ≤ b − c − κ √w,
-//! with s = w x: s ≥ (a + c) w + κ w^1.5 and s ≤ (b − c) w − κ w^1.5, both convex.
+//! A disc of mass w at x has radius κ √w. Between pins at a and b, with clearance c, it must keep x ≥ a + c + κ √w and
+//! x ≤ b − c − κ √w. With s = w x these are s ≥ (a + c) w + κ w^1.5 and s ≤ (b − c) w − κ w^1.5, both convex.
 
 use super::asked::Weighing;
 use crate::convex::{Program, Row};
 
-/// Between two pins that follow each other, or beyond the last: m from the root, infinite where there is none.
+/// Interval between neighbouring pins, or beyond the outermost, m from the root; infinite where there is no pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Room {
     from: f64,
@@ -14,18 +14,18 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Those of a link with pins in rising order, m from the root.
+    /// Returns the intervals of a link with pins in ascending order, m from the root.
     pub fn all(pins: &[f64]) -> Vec<Self> {
-        let mut ends = vec![f64::NEG_INFINITY];
-        ends.extend(pins);
-        ends.push(f64::INFINITY);
-        ends.windows(2).map(|pair| Self { from: pair[0], to: pair[1] }).collect()
+        let mut bounds = vec![f64::NEG_INFINITY];
+        bounds.extend(pins);
+        bounds.push(f64::INFINITY);
+        bounds.windows(2).map(|pair| Self { from: pair[0], to: pair[1] }).collect()
     }
 
-    /// Keeps the disc of w and s in it.
+    /// Adds constraints that keep the disc with unknowns w and s in the interval.
     pub fn enter(&self, asked: &Weighing, [w, s]: [usize; 2], program: &mut Program) {
         let (clearance, spread) = (asked.clearance.unwrap_or_default(), asked.disc.spread());
-        // y ≤ √w and z ≥ w²/y.
+        // y ≤ √w and z ≥ w²/y, so z ≥ w^1.5.
         let (y, z) = (program.linear.len(), program.linear.len() + 1);
         program.linear.extend([0.0, 0.0]);
         program.above_square(w, 1.0, y);
@@ -38,7 +38,7 @@ impl Room {
         }
     }
 
-    /// How far a disc reaches into what it has to keep clear, m; not above 0 for none.
+    /// Returns how far a disc violates the clearance, m; at most 0 if it does not.
     pub fn missed(&self, clearance: f64, radius: f64, at: f64) -> f64 {
         (self.from + clearance + radius - at).max(at + radius + clearance - self.to)
     }

@@ -1,6 +1,7 @@
-//! [`search`]: what is not one cone program but the best of many, by branch and bound: discs that stay clear of the pins of
-//! their links, where it is a choice between which pins each sits; and momenta below zero, of which more inertia takes
-//! away. Choices are made one by one, the most promising first, so the first answer that is what it counts as is the best.
+//! [`search`]: branch and bound over cone programs, for two kinds of problems that are not convex. Discs that stay
+//! clear of the pins of their links have to choose between which pins they sit. Momenta D_k below zero become smaller
+//! in magnitude with more inertia. The subproblem with the lowest bound is split first, so the first solution whose
+//! relaxation is exact is the optimum.
 
 use super::asked::Weighing;
 use super::cell::Cell;
@@ -12,26 +13,26 @@ use super::way::Way;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::Machine;
 
-/// The most choices of rooms that are looked at.
-const CHOICES: usize = 4000;
+/// Maximum number of subproblems from choices between pins.
+const MAX_CHOICES: usize = 4000;
 
-/// The most cells that are looked at.
-const CELLS: usize = 300;
+/// Maximum number of cells.
+const MAX_CELLS: usize = 300;
 
-/// A disc may be so much nearer, m: the solver's rounding.
-const ROUNDING: f64 = 1e-7;
+/// Tolerance of the clearance, m: the solver's rounding.
+const CLEARANCE_TOLERANCE_M: f64 = 1e-7;
 
-/// An answer this much worse than the best is as good.
-const AS_GOOD: f64 = 2e-7;
+/// Tolerance of the objective: a solution worse by this is treated as equally good.
+const VALUE_TOLERANCE: f64 = 2e-7;
 
-/// Linear programs on the way down from one answer.
-const MAX_STEPS: usize = 25;
+/// Maximum number of linearisations in one descent.
+const MAX_LINEARISATIONS: usize = 25;
 
-/// The best of all ways round the pins and of all cells. Where cells are too many, the best that was found, with the gap
-/// that is left.
+/// Finds the optimum over all choices between pins and over all cells. If the number of cells exceeds its limit,
+/// returns the best solution found, with the remaining gap.
 ///
 /// # Errors
-/// If there is none, or if it is not known.
+/// If there are too many choices, or if the solver fails; the inner error says that there is no solution.
 pub(super) fn search(
     problem: &Problem,
     machine: &Machine,
@@ -41,6 +42,7 @@ pub(super) fn search(
     let search = Search { problem, machine, asked };
     let rooms: Vec<Vec<Room>> =
         asked.sites.iter().map(|site| Room::all(&problem.bare.resolved_links()[site.link].pins)).collect();
+    // Open subproblems, each with the optimum of its relaxation.
     let mut open = match problem.least(machine, asked, way) {
         Ok(least) => vec![(least, way.clone())],
         Err(why) => return Ok(Err(why)),
@@ -49,14 +51,16 @@ pub(super) fn search(
     while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
         let (least, way) = open.swap_remove(next);
         let bound = least.value - least.gap;
-        if let Some(best) = best.as_ref().filter(|best| best.value <= least.value + AS_GOOD || cells > CELLS) {
+        if let Some(best) =
+            best.as_ref().filter(|best| best.value <= least.value + VALUE_TOLERANCE || cells > MAX_CELLS)
+        {
             return Ok(Ok(Least { gap: best.value - bound, ..best.clone() }));
         }
-        let ways = match search.furthest_in(&least, &rooms, &way) {
+        let ways = match search.worst_site(&least, &rooms, &way) {
             Some(j) => {
                 choices += rooms[j].len();
-                if choices > CHOICES {
-                    return Err(NoWeights::TooMany(CHOICES));
+                if choices > MAX_CHOICES {
+                    return Err(NoWeights::TooMany(MAX_CHOICES));
                 }
                 let enter = |room: &Room| {
                     let mut next = way.clone();
@@ -67,11 +71,11 @@ pub(super) fn search(
             }
             None if asked.objective.momentum == 0.0 || way.least.is_some() => return Ok(Ok(least)),
             None => {
-                let found = search.as_it_is(&least);
-                if found.value <= least.value + AS_GOOD {
+                let found = search.with_exact_inertia(&least);
+                if found.value <= least.value + VALUE_TOLERANCE {
                     return Ok(Ok(least));
                 }
-                for found in search.downhill(&found, &way, cells == 1) {
+                for found in search.descend(&found, &way, cells == 1) {
                     if best.as_ref().is_none_or(|best| found.value < best.value) {
                         best = Some(found);
                     }
@@ -79,7 +83,7 @@ pub(super) fn search(
                 let halves = search.halves(&least, &way, best.as_ref());
                 cells += halves.len();
                 if halves.is_empty() {
-                    // Too narrow to be split: what it is counts.
+                    // Too narrow to be split: its exact value counts.
                     open.push((Least { value: found.value, ..found }, way));
                 }
                 halves
@@ -90,7 +94,7 @@ pub(super) fn search(
                 Ok(least) => open.push((least, next)),
                 Err(NoX::Contradiction(_)) => {}
                 Err(NoX::Failed(why)) if asked.objective.momentum == 0.0 => return Err(NoWeights::Failed(why)),
-                // A bound that is not known is that of the whole.
+                // If the solver fails, the parent's bound holds.
                 Err(NoX::Failed(_)) => open.push((least.clone(), next)),
             }
         }
@@ -105,9 +109,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The site whose disc reaches furthest over a pin; none if all are clear, or may cover them. One that has its room
-    /// is.
-    fn furthest_in(&self, least: &Least, rooms: &[Vec<Room>], way: &Way) -> Option<usize> {
+    /// Returns the site whose disc violates the clearance of a pin most; `None` if all discs are clear or may cover
+    /// pins. Sites whose room is chosen are clear.
+    fn worst_site(&self, least: &Least, rooms: &[Vec<Room>], way: &Way) -> Option<usize> {
         let clearance = self.asked.clearance?;
         let missed = |j: usize| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
@@ -117,18 +121,18 @@ impl Search<'_> {
         };
         let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());
         let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.filter(|(_, missed)| *missed > ROUNDING).map(|(j, _)| j)
+        worst.filter(|(_, missed)| *missed > CLEARANCE_TOLERANCE_M).map(|(j, _)| j)
     }
 
-    /// The same with every inertia what it is.
-    fn as_it_is(&self, least: &Least) -> Least {
+    /// Returns a solution with every inertia at its exact value.
+    fn with_exact_inertia(&self, least: &Least) -> Least {
         let x = self.problem.settled(self.machine, self.asked, &least.x);
         Least { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
     }
 
-    /// Answers that are no worse than one, each the least where inertias take from momenta as if they were linear about
-    /// the one before; from that one, and from all at one end of their ranges if asked for.
-    fn downhill(&self, from: &Least, way: &Way, from_ends: bool) -> Vec<Least> {
+    /// Descends from a solution, and also from the bounds of all cells if `from_bounds`: each iteration solves the cone
+    /// program with the inertias linearised about the previous solution. Returns the results and the solution itself.
+    fn descend(&self, from: &Least, way: &Way, from_bounds: bool) -> Vec<Least> {
         let about = |least: &Least| {
             let one = |j: usize| {
                 let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), way.cells[j].at);
@@ -140,23 +144,23 @@ impl Search<'_> {
         let mean = |all: &[[f64; 2]]| all.iter().map(|[w, _]| w).sum::<f64>() / all.len().max(1) as f64;
         let here = about(from);
         let mut starts = vec![here.clone()];
-        if from_ends {
+        if from_bounds {
             let heavy = 3.0 * mean(&here) + 1.0;
             let end = |i: usize, mass: f64| way.cells.iter().map(|cell| [mass, cell.at[i]]).collect::<Vec<_>>();
             starts.extend([end(0, 0.0), end(1, 0.0), end(0, heavy), end(1, heavy)]);
         }
         let down = |mut tangents: Vec<[f64; 2]>| {
             let mut best: Option<Least> = None;
-            for _ in 0..MAX_STEPS {
+            for _ in 0..MAX_LINEARISATIONS {
                 let way = Way { tangents: Some(tangents), ..way.clone() };
                 let Ok(next) = self.problem.least(self.machine, self.asked, &way) else { break };
-                let next = self.as_it_is(&next);
+                let next = self.with_exact_inertia(&next);
                 tangents = about(&next);
                 let gain = best.as_ref().map_or(f64::INFINITY, |best| best.value - next.value);
                 if gain > 0.0 {
                     best = Some(next);
                 }
-                if gain < 0.1 * AS_GOOD {
+                if gain < 0.1 * VALUE_TOLERANCE {
                     break;
                 }
             }
@@ -165,13 +169,13 @@ impl Search<'_> {
         starts.into_iter().filter_map(down).chain([from.clone()]).collect()
     }
 
-    /// The cell in which an inertia is furthest from what it is, in halves.
+    /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
     fn halves(&self, least: &Least, way: &Way, best: Option<&Least>) -> Vec<Way> {
         let excess = self.problem.excess(self.machine, self.asked, &least.x);
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
-        // No counterweight weighs more than what is least can be.
+        // No counterweight is heavier than the best objective over the weight of mass.
         let heaviest = best.map(|best| best.value / self.asked.objective.mass).filter(|mass| mass.is_finite());
         let halved = order.into_iter().find_map(|(j, by_place, _)| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);

@@ -1,4 +1,4 @@
-//! What a solution of the cone program stands for: its values, and the machine with its counterweights and rotors.
+//! Evaluates a solution of the cone program: its objective, and the machine with counterweights and rotors.
 
 use super::asked::{Free, Sites, Weighing};
 use super::left::Left;
@@ -9,17 +9,17 @@ use super::way::{Balance, Way};
 use crate::mechanics::balance::{Equation, Plane};
 use crate::mechanics::machine::{Counterweight, Machine, Rotor};
 
-/// What is found at every site, or at those that are left.
+/// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
 type Found = Vec<(Sites, [f64; 2])>;
 
-/// Counterweights lighter than this are left out.
+/// Smallest mass of a counterweight; lighter ones are omitted.
 pub(super) const MIN_MASS_KG: f64 = 1e-7;
 
-/// The smallest |gear ratio|: a gear of ratio zero would hold its rotor still.
+/// Smallest |gear ratio|: a ratio of zero is not valid.
 const MIN_RATIO: f64 = 1e-9;
 
 impl Problem {
-    /// What was found with every inertia what it is, and not more.
+    /// Returns a solution with every inertia, momentum and torque at its exact value instead of a bound.
     pub fn settled(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<f64> {
         let unknowns = Unknowns::of(asked, self.drives());
         let mut x = x.to_vec();
@@ -60,26 +60,30 @@ impl Problem {
         x
     }
 
-    /// What the objective comes to.
+    /// Returns the value of the objective.
     pub fn value(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> f64 {
         let costs = self.program(machine, asked, &[], &Way::free(asked, Balance::Exact)).linear;
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
-    /// How far the inertias that were found are from what they are: of the place and of the disc itself of each site.
+    /// Returns for each site how much u and v of a solution exceed the exact inertias, kg m².
     pub fn excess(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<[f64; 2]> {
         let (unknowns, settled) = (Unknowns::of(asked, self.drives()), self.settled(machine, asked, x));
         let excess = |i: usize| x[i] - settled[i];
         (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
-    /// What stands at a site: its mass, kg, and mass times place, kg m.
+    /// Returns the mass w, kg, and the first moment s, kg m, at site j.
     pub fn at(&self, asked: &Weighing, x: &[f64], j: usize) -> [f64; 2] {
         let unknowns = Unknowns::of(asked, self.drives());
         [x[unknowns.w(j)], x[unknowns.s(j)]]
     }
 
-    /// The mass that is added, kg, and the machine with what was found: balanced to rounding, if that is asked for.
+    /// Returns the added mass, kg, and the machine with the counterweights and rotors of a solution. With exact balance
+    /// the machine is balanced to rounding.
+    ///
+    /// # Errors
+    /// If the machine is not valid.
     pub fn machine(
         &self,
         machine: &Machine,
@@ -91,7 +95,8 @@ impl Problem {
         let sites = asked.sites.iter().enumerate();
         let all = sites.map(|(j, site)| (*site, self.at(asked, x, j)));
         let mut found: Found = all.filter(|(_, [w, _])| *w > MIN_MASS_KG).collect();
-        // The solver's rounding, and what was too light to count, are made up for by the least change of the others.
+        // The residual from the solver's rounding and from omitted counterweights is removed by the least change of the
+        // others.
         for _ in 0..if balance == Balance::Exact { 3 } else { 0 } {
             self.refine(asked, &mut found);
         }
@@ -115,8 +120,9 @@ impl Problem {
         Ok((found.iter().map(|(_, [w, _])| w).sum(), Machine::new(spec)?))
     }
 
+    /// Removes the residual of the conditions by the least change of the counterweights.
     fn refine(&self, asked: &Weighing, found: &mut Found) {
-        // The links balance each other.
+        // Without counterweights the links balance each other.
         if found.is_empty() {
             return;
         }
@@ -129,7 +135,7 @@ impl Problem {
             });
             condition.left.re + changed.sum::<f64>()
         });
-        // In proportion to what is there, so that light ones stay where they may sit.
+        // Changes are measured relative to each mass, so that light counterweights keep their positions.
         let equation = |(condition, right): (&Left, f64)| Equation {
             a: (0..2 * sites.len()).map(|j| condition.changes[sites[j / 2]][j % 2] * found[j / 2].1[0]).collect(),
             right,
@@ -144,7 +150,7 @@ impl Problem {
     }
 }
 
-/// A gear ratio of at least the smallest size, with the same sign.
+/// Returns a gear ratio of at least [`MIN_RATIO`] in magnitude, with the same sign.
 fn other_than_zero(ratio: f64) -> f64 {
     if ratio.abs() < MIN_RATIO { MIN_RATIO.copysign(ratio) } else { ratio }
 }

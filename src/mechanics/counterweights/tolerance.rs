@@ -1,35 +1,35 @@
-//! [`off_by`]: what counterweights leave of balance when they are made and fixed only so well.
+//! [`off_by`]: residuals of balance from tolerances of mass and position of counterweights.
 
 use serde::Serialize;
 
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::Machine;
 
-/// How far a counterweight may be from what is asked for.
+/// Tolerances of a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Its mass, of itself: 0.01 is one in a hundred.
+    /// Relative tolerance of its mass: 0.01 is one per cent.
     pub mass: f64,
-    /// Its place, m.
+    /// Tolerance of its position, m.
     pub place: f64,
 }
 
 impl Tolerance {
-    /// One in a hundred, and half a millimetre.
+    /// One per cent, and half a millimetre.
     pub const USUAL: Self = Self { mass: 0.01, place: 5e-4 };
 }
 
-/// The worst that is left of (7) and (8).
+/// Largest residuals of (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OffBy {
-    /// The greatest |g_k|, kg m.
+    /// Largest |g_k|, kg m.
     pub force: f64,
-    /// The greatest |C_kl|, kg m².
+    /// Largest |C_kl|, kg m².
     pub coupling: f64,
 }
 
-/// What is left at worst of a balanced machine whose counterweights are all as far off as they may be, each the way that
-/// adds up. To first order: products of what is off are left out.
+/// Returns the largest residuals of a balanced machine if all counterweights deviate by their tolerances with the worst
+/// signs. To first order: products of deviations are neglected.
 pub fn off_by(machine: &Machine, tolerance: &Tolerance) -> OffBy {
     let mut worst = OffBy { force: 0.0, coupling: 0.0 };
     for condition in Condition::all(machine.drives()) {

@@ -1,11 +1,12 @@
-//! [`Unknowns`]: where the unknowns of the cone program stand, and what D_k and H_kk are as sums of them.
+//! [`Unknowns`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
 
 use super::asked::{Free, Weighing};
 use super::problem::Problem;
 use crate::mechanics::machine::Machine;
 
-/// Where the unknowns stand: w and s of each site, what its inertia needs if that counts, H_kk of each drive but for
-/// free rotors, two of each free rotor, |D_k| of each drive if it counts, and the greatest torque.
+/// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
+/// free rotors, if the inertia counts; two for each free rotor; |D_k| of each drive, if it counts; and the greatest
+/// torque.
 #[derive(Clone, Copy)]
 pub(super) struct Unknowns {
     sites: usize,
@@ -32,12 +33,12 @@ impl Unknowns {
         2 * j + 1
     }
 
-    /// At least s²/w.
+    /// Index of u ≥ s²/w, the inertia from the position of the disc, kg m².
     pub fn u(self, j: usize) -> usize {
         2 * (self.sites + j)
     }
 
-    /// At least the disc's own inertia.
+    /// Index of v, an upper bound of the disc's own inertia, kg m².
     pub fn v(self, j: usize) -> usize {
         2 * (self.sites + j) + 1
     }
@@ -46,18 +47,18 @@ impl Unknowns {
         4 * self.sites + k
     }
 
-    /// Inertia or ratio of a free rotor.
+    /// Index of the inertia or ratio of a free rotor.
     pub fn rotor(self, i: usize) -> usize {
         let before = if self.inertia { 4 * self.sites + self.drives } else { 2 * self.sites };
         before + 2 * i
     }
 
-    /// At least J N² of one whose ratio is free.
+    /// Index of an upper bound of J N² of a rotor with free ratio N; 0 for one with free inertia.
     pub fn turned(self, i: usize) -> usize {
         self.rotor(i) + 1
     }
 
-    /// At least |D_k|.
+    /// Index of an upper bound of |D_k|.
     pub fn momentum(self, k: usize) -> usize {
         self.rotor(self.rotors) + k
     }
@@ -67,15 +68,14 @@ impl Unknowns {
     }
 }
 
-/// Linear in the unknowns.
+/// A linear function of the unknowns.
 pub(super) struct Sum {
     pub terms: Vec<(usize, f64)>,
     pub constant: f64,
 }
 
 impl Problem {
-    /// How a free rotor turns with drive k for one turn of the drive that it is of: what its ratio N adds to, and N's
-    /// factor.
+    /// Returns a and b of the rate ratio r_k = a + b N of a rotor on `drive` with gear ratio N.
     fn rates(&self, drive: usize, k: usize) -> [f64; 2] {
         match self.bare.motors().on(drive) {
             _ if k == drive => [0.0, 1.0],
@@ -84,7 +84,7 @@ impl Problem {
         }
     }
 
-    /// What free rotors bring to D_k and to H_kk.
+    /// Returns the contributions of free rotors to D_k and to H_kk.
     pub fn of_rotors(&self, asked: &Weighing, machine: &Machine, k: usize) -> [Sum; 2] {
         let unknowns = Unknowns::of(asked, self.drives());
         let mut sums = [(); 2].map(|()| Sum { terms: Vec::new(), constant: 0.0 });
@@ -109,12 +109,13 @@ impl Problem {
         sums
     }
 
-    /// D_k but for what counterweights add to the diagonal of H, and for free rotors.
+    /// Returns D_k − H_kk without counterweights and free rotors, kg m².
     pub fn constant(&self, k: usize) -> f64 {
         self.inertia.momentum(k) - self.inertia.diagonal(k)
     }
 
-    /// No more than H_kk but for free rotors: that of masses and places near those given, where it is the same.
+    /// Returns a linear lower bound of H_kk without free rotors, tangent at masses, kg, and positions, m, of
+    /// `tangents`.
     pub fn linear_diagonal(&self, asked: &Weighing, unknowns: &Unknowns, k: usize, tangents: &[[f64; 2]]) -> Sum {
         let parts = self.bare.resolved_links();
         let mut sum = Sum { terms: Vec::new(), constant: self.inertia.diagonal(k) };

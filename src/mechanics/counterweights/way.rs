@@ -1,41 +1,42 @@
-//! [`Way`]: one way to look for counterweights.
+//! [`Way`]: one subproblem of the search for counterweights.
 
 use super::asked::Weighing;
 use super::cell::Cell;
 use super::refusal::Kind;
 use super::room::Room;
 
-/// Whether (7) and (8) hold, or how near they come over a range of payloads.
+/// Form of the balance conditions (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Balance {
-    /// They hold.
+    /// They hold exactly.
     Exact,
-    /// Their worst residual is to be least, and nothing else.
+    /// Their largest residual over a range of payloads is the objective.
     Nearest,
-    /// It is no more than this, kg m.
+    /// Their largest residual over a range of payloads is at most this, kg m.
     Within(f64),
 }
 
-/// One way to look for counterweights: the room between pins that each site has to stay in, if known, and how near balance
-/// comes. A bound on the objective is set where the least added mass and Σ H_kk are sought among its optima.
+/// One subproblem of the search for counterweights: the room between pins in which the disc of each site must stay, if
+/// chosen, and the form of the balance conditions. If `most` bounds the objective, added mass and Σ H_kk are minimised
+/// instead, to choose among its optima.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub rooms: Vec<Option<Room>>,
     pub balance: Balance,
     pub most: Option<f64>,
-    /// Bounds that are not there.
+    /// Kinds of bounds that are dropped.
     pub loose: Vec<Kind>,
-    /// A kind of bound that is to be least instead of the objective.
+    /// A kind of bound whose value is minimised instead of the objective.
     pub least: Option<Kind>,
-    /// Within what each counterweight is sought, where momenta below zero count.
+    /// Ranges of mass and position of each counterweight; they apply if |D_k| counts.
     pub cells: Vec<Cell>,
-    /// Masses, kg, and places, m, about which inertias are taken to be linear where they take from momenta below zero:
-    /// then these come out no nearer to zero than they are.
+    /// Masses, kg, and positions, m, about which inertias are linearised where they raise a negative D_k. The
+    /// linearised inertia is a lower bound, so |D_k| is not underestimated.
     pub tangents: Option<Vec<[f64; 2]>>,
 }
 
 impl Way {
-    /// Past all pins.
+    /// Returns the subproblem without choices: no clearance of pins, and cells as wide as the bounds.
     pub fn free(asked: &Weighing, balance: Balance) -> Self {
         Self {
             rooms: vec![None; asked.sites.len()],

@@ -1,16 +1,17 @@
-//! Closures that do not come apart, solved together.
+//! Closures whose equations are coupled, solved together.
 
 use super::pins::{FLAT, MAX_PINS};
 use super::tree::{CutClosure, TreeLink, lever};
 use crate::mechanics::planar::{Units, Vector};
 
-/// The most closures solved together: each holds two links, so 3 pins each beside one at B.
+/// Maximum number of closures solved together: each closure comes with two undriven links, so with three pins.
 pub(super) const MOST: usize = MAX_PINS / 3;
 
-/// Forces of the cut closures of a block, in its order.
+/// Forces of the cut closures of a block, N, in the order of the block.
 pub(super) type Block = [Vector; MOST];
 
-/// Forces of the cut closures of a block by elimination with row pivots, and whether no pivot vanished.
+/// Returns the forces λ of the closures `open`, N, and whether the equations are regular: no pivot below [`FLAT`].
+/// Solves the equations of the links `rows`, two for each closure, by Gaussian elimination with partial pivoting.
 pub(super) fn together(
     links: &[TreeLink],
     closures: &[CutClosure],
@@ -23,7 +24,7 @@ pub(super) fn together(
     let mut a = [[0.0; 2 * MOST + 1]; 2 * MOST];
     for (row, &j) in a.iter_mut().zip(rows) {
         let ej = e[links[j].drive];
-        // Rows of unit size, so that pivots compare with 1.
+        // Rows are scaled to unit size, so that pivots compare with 1.
         let size = open.iter().fold(0.0_f64, |m, &c| m.max(lever(&closures[c], j).abs()));
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         for (i, &c) in open.iter().enumerate() {

@@ -8,13 +8,13 @@ use crate::settings::number::counted;
 /// Why statics does not determine the forces in a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum JointsError {
-    /// More pins than there is room for.
+    /// More than [`MAX_PINS`] pins.
     #[error("{count} pins: want at most {MAX_PINS}")]
     TooMany {
         /// Pins of the machine.
         count: usize,
     },
-    /// A drive without a link at B, and several that follow it.
+    /// A drive has no link at B, and several links follow it.
     #[error(
         "drive {drive} has no link at the base, and links {links} follow it: want one link on \"base\", or one link only, so \
          that it is known which one it turns"
@@ -22,10 +22,10 @@ pub enum JointsError {
     Unattached {
         /// The drive.
         drive: String,
-        /// Who follows it.
+        /// The links that follow it.
         links: String,
     },
-    /// A motor on a link of a loop turns links of a loop.
+    /// A motor on an undriven link of a loop turns links of a loop.
     #[error(
         "the motor of drive {drive} sits on a link of a loop and turns another loop: want it on a link that a drive \
          turns, for forces of pins to be computed one loop after another"
@@ -34,7 +34,7 @@ pub enum JointsError {
         /// The drive.
         drive: String,
     },
-    /// Links whose orientation nothing holds.
+    /// Too few closures to determine the orientation of all links.
     #[error(
         "{} that no drive turns, and {}, which hold the orientation of two each; nothing holds {loose}: want {}",
         counted(links, "link"),
@@ -42,16 +42,16 @@ pub enum JointsError {
         counted(wanted, "closure")
     )]
     Missing {
-        /// How many links no drive turns.
+        /// Number of links that no drive turns.
         links: usize,
-        /// How many closures there are.
+        /// Number of closures.
         closures: usize,
-        /// The links that are in no loop, or among which one too few is.
+        /// The links that are in no loop; if all are in loops, the links among which a closure is missing.
         loose: String,
-        /// How many closures there should be.
+        /// Number of closures that would be right, in words.
         wanted: String,
     },
-    /// More closures than hold links.
+    /// More closures than determine the orientation of the links.
     #[error(
         "{}, which hold the orientation of two links each, and {} that no drive turns: want {}, as redundant ones \
          share their force in a way that only the links' elasticity decides",
@@ -60,22 +60,22 @@ pub enum JointsError {
         counted(wanted, "closure")
     )]
     Redundant {
-        /// How many closures there are.
+        /// Number of closures.
         closures: usize,
-        /// How many links no drive turns.
+        /// Number of links that no drive turns.
         links: usize,
-        /// How many closures there should be.
+        /// Number of closures that would be right, in words.
         wanted: String,
     },
-    /// Closures redundant in one place and missing in another.
+    /// Closures are redundant in one place and missing in another.
     #[error(
         "closures {closures} do not hold the orientation of links {links} in any pose: want one for each parallelogram, \
          where now one has too many and another none"
     )]
     Misplaced {
-        /// Names of the pins.
+        /// Names of the pins that close the loops.
         closures: String,
-        /// Names of links.
+        /// Names of the links.
         links: String,
     },
 }

@@ -7,7 +7,7 @@ use super::tree::{SolveStep, Stator};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, cross};
 
-/// What the pins carry at one instant.
+/// Forces of all pins, and torques of the motors, at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forces {
     len: usize,
@@ -17,30 +17,30 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// Force of pin i, N, base axes: what its first link exerts on its second. `None` while a parallelogram that it
-    /// depends on is flat.
+    /// Returns the force of pin i, N, in base axes, which its first link exerts on its second. `None` while a
+    /// parallelogram that the force depends on is flat.
     #[inline]
     pub fn get(&self, i: usize) -> Option<Vector> {
         (i < self.len && self.undefined & 1 << i == 0).then(|| self.forces[i])
     }
 
-    /// The same, finite always: at a change point what it would be at |sin(q_k − q_l)| = [`FLAT`].
+    /// Returns the forces of all pins, N, always finite: at a change point those at |sin(q_k − q_l)| = [`FLAT`].
     #[inline]
     pub fn bounded(&self) -> &[Vector] {
         &self.forces[..self.len]
     }
 
-    /// Pins whose force is undefined, one bit each.
+    /// Returns the set of pins whose force is undefined, one bit each.
     pub fn undefined(&self) -> u32 {
         self.undefined
     }
 
-    /// The largest force, N, bounded as in [`bounded`](Self::bounded), and its pin.
+    /// Returns the largest force, N, bounded as in [`bounded`](Self::bounded), and its pin.
     pub fn worst(&self) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for (i, force) in self.bounded().iter().enumerate() {
             let square = force.norm_sqr();
-            // Not a number counts as worst: a run that has blown up shows.
+            // NaN counts as the largest, so that a run that has diverged shows.
             if square > worst.0 || square.is_nan() {
                 worst = (square, i);
             }
@@ -48,22 +48,24 @@ impl Forces {
         (worst.0.sqrt(), worst.1)
     }
 
-    /// Torques of the motors less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a
-    /// change point, where [`inverse`](crate::mechanics::dynamics::inverse) knows it for pins without friction.
+    /// Returns the torques of the motors less the friction of the drives' bearings, N m, from the moments that the
+    /// driven links need. `None` at a change point; without pin friction
+    /// [`inverse`](crate::mechanics::dynamics::inverse) gives them there.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }
 }
 
 impl Joints {
-    /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that
-    /// moves, gravity is g − p̈_B.
+    /// Returns the force of every pin and the torques of the drives for a motion, with frictionless pins. On a moving
+    /// base, gravity is g − p̈_B.
     pub fn forces(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Forces {
         self.forces_with(e, qd, qdd, around, |_, _| 0.0)
     }
 
-    /// The same with friction in the pins: `couple` is asked for the friction torque of a pin from a link that follows
-    /// one drive to a link that follows another, N m, against the second turning faster than the first.
+    /// Returns the same as [`forces`](Self::forces) with friction in the pins. `couple(k, l)` is the friction torque,
+    /// N m, of a pin from a link that follows drive k to one that follows drive l. It is positive if it resists drive l
+    /// turning faster than drive k.
     #[inline]
     pub fn forces_with(
         &self,
@@ -79,7 +81,7 @@ impl Joints {
             turn[k] = Vector::new(-qd[k] * qd[k], qdd[k]) * e[k];
         }
         let links = &self.links[..];
-        // From B outwards: acceleration of each root less gravity. What each link asks of its root for itself.
+        // From B outwards: acceleration of each root less gravity, and the force and moment that each link alone needs.
         let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
         for (j, link) in links.iter().enumerate() {
             let (drive, arm) = link.arm;
@@ -94,13 +96,13 @@ impl Joints {
                 moment[j] -= along * cross(e[link.drive], around.force);
             }
         }
-        // What a pin's friction takes from one side it gives to the other.
+        // The friction of a pin acts on both of its links with opposite signs.
         for &(from, to) in &self.rubbing {
             let f = couple(links[from].drive, links[to].drive);
             moment[from] -= f;
             moment[to] += f;
         }
-        // And inwards: with all that hangs on it.
+        // And inwards: each link adds its force and moment to those of its parent.
         for (j, link) in links.iter().enumerate().rev() {
             if let Some(p) = link.parent {
                 let (drive, arm) = link.arm;
@@ -108,16 +110,17 @@ impl Joints {
                 force[p] += force[j];
             }
         }
-        // A motor in a joint leans on the link that carries it; its rotor takes of both what it wants to turn.
-        let lean = |stator: &Stator, moment: &mut [f64]| {
+        // A motor in a joint reacts on the link that carries it: with the moment of the links that it turns, and with
+        // the torque that accelerates its rotor.
+        let react = |stator: &Stator, moment: &mut [f64]| {
             let turned = links.iter().zip(&*moment).filter(|(l, _)| l.driven && l.drive == stator.drive);
             let rotor: f64 = stator.rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
-            let asked = turned.map(|(_, m)| m).sum::<f64>() + stator.rotor.inertia * rotor;
+            let reaction = turned.map(|(_, m)| m).sum::<f64>() + stator.rotor.inertia * rotor;
             if let Some(link) = stator.link {
-                moment[link] += asked;
+                moment[link] += reaction;
             }
         };
-        self.stators.iter().filter(|stator| stator.before).for_each(|stator| lean(stator, &mut moment));
+        self.stators.iter().filter(|stator| stator.before).for_each(|stator| react(stator, &mut moment));
         let mut out = Forces {
             len: self.pins.len(),
             forces: [zero; MAX_PINS],
@@ -157,7 +160,7 @@ impl Joints {
                 }
             }
         }
-        self.stators.iter().filter(|stator| !stator.before).for_each(|stator| lean(stator, &mut moment));
+        self.stators.iter().filter(|stator| !stator.before).for_each(|stator| react(stator, &mut moment));
         for (j, link) in links.iter().enumerate() {
             out.forces[link.link] = force[j];
             if link.driven {
@@ -171,7 +174,7 @@ impl Joints {
         out
     }
 
-    /// f_B, N: what the links at B exert on the base.
+    /// Returns f_B, N, the force that the links at B exert on the base.
     pub fn on_base(&self, forces: &Forces) -> Vector {
         let at_base = self.pins.iter().zip(forces.bounded()).filter(|(pin, _)| pin.from.is_none());
         -at_base.map(|(_, f)| f).sum::<Vector>()

@@ -5,20 +5,20 @@ use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{PerDrive, Units, Vector};
 
-/// How many pins a frame keeps the forces of: a session holds many frames, so there is no room for all that a machine
-/// may have. The worst of all pins is known in any case.
+/// Number of pins whose forces a frame keeps. A session holds many frames, so a frame does not keep every pin; the
+/// largest force over all pins is kept in any case.
 pub const KEPT: usize = 16;
 
-/// The inside of the machine at one instant.
+/// Pin forces and tilting moment at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inside {
     pins: [Vector; KEPT],
     known: u8,
     undefined: u16,
     worst_pin: u8,
-    /// The largest force of a pin, N; 0 where statics does not determine them.
+    /// The largest force of a pin, N; 0 if statics does not determine the forces.
     pub worst: f64,
-    /// What tilts the base.
+    /// The moment that tilts the base.
     pub tilt: Tilt,
 }
 
@@ -31,30 +31,30 @@ impl Inside {
         Self { pins, known: known as u8, undefined: forces.undefined() as u16, worst_pin: worst_pin as u8, worst, tilt }
     }
 
-    /// Force of pin i, N, in the order of [`Joints::pins`]: what its first link exerts on its second. `None` at a
-    /// change point, for pins beyond [`KEPT`], and where statics does not determine it.
+    /// Returns the force of pin i, N, in the order of [`Joints::pins`], which its first link exerts on its second.
+    /// `None` at a change point, for pins beyond [`KEPT`], and if statics does not determine the force.
     pub fn pin(&self, i: usize) -> Option<Vector> {
         (i < usize::from(self.known) && self.undefined & 1 << i == 0).then(|| self.pins[i])
     }
 
-    /// Its size, N, finite always: at a change point what it would be at |sin(q_k − q_l)| = [`FLAT`](super::FLAT); 0
-    /// for pins that are not kept.
+    /// Returns the magnitude of the force of pin i, N, always finite: at a change point its value at
+    /// |sin(q_k − q_l)| = [`FLAT`](super::FLAT); 0 for pins that are not kept.
     pub fn size(&self, i: usize) -> f64 {
         self.pins.get(i).map_or(0.0, |f| f.norm())
     }
 
-    /// How many pins there are forces of.
+    /// Returns the number of pins whose forces are kept.
     pub fn pins(&self) -> usize {
         self.known.into()
     }
 
-    /// The pin of the largest force.
+    /// Returns the pin of the largest force; `None` if statics does not determine the forces.
     pub fn worst_pin(&self) -> Option<usize> {
         (self.known > 0).then_some(self.worst_pin.into())
     }
 }
 
-/// Looks into a machine while it moves.
+/// Computes pin forces and the tilting moment of a machine in motion.
 #[derive(Clone, Debug)]
 pub struct PinLoads {
     joints: Option<Joints>,
@@ -62,18 +62,19 @@ pub struct PinLoads {
 }
 
 impl PinLoads {
-    /// For a machine; where statics does not determine the forces of pins, what tilts the base only.
+    /// Prepares the computation for a machine. If statics does not determine the pin forces, only the tilting moment
+    /// is computed.
     pub fn of(machine: &Machine) -> Self {
         Self { joints: Joints::of(machine).ok(), axial: AxialMoments::of(machine) }
     }
 
-    /// The size of what tilts the base, N m.
+    /// Returns the magnitude of the tilting moment, N m.
     pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> f64 {
         if self.axial.is_flat() { 0.0 } else { self.axial.tilt(e, qd, qdd, around).total().norm() }
     }
 
-    /// The present instant, with the friction of pins as [`Joints::forces_with`] asks for it. On a base that moves,
-    /// gravity is g − p̈_B.
+    /// Returns pin forces and tilting moment at one instant; `couple` is the pin friction of [`Joints::forces_with`].
+    /// On a moving base, gravity is g − p̈_B.
     pub fn at(
         &self,
         e: &Units,
@@ -93,20 +94,20 @@ impl PinLoads {
 /// Peak and mean of the force of one pin over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PinPeak {
-    /// The largest force, N, of the instants at which it is defined.
+    /// Largest magnitude of the force, N, over the instants at which the force is defined.
     pub force: f64,
-    /// When, s.
+    /// Time of the largest force, s.
     pub time: f64,
-    /// Mean of its size over those instants, N.
+    /// Mean magnitude of the force over those instants, N.
     pub mean: f64,
-    /// Instants at which it is defined.
+    /// Number of instants at which the force is defined.
     pub defined: u64,
-    /// Instants at a change point, at which it is not.
+    /// Number of instants at a change point, at which the force is undefined.
     pub undefined: u64,
 }
 
 impl PinPeak {
-    /// Takes in one more instant.
+    /// Includes one more instant.
     pub fn include(&mut self, time: f64, force: Option<Vector>) {
         let Some(force) = force.map(|f| f.norm()) else {
             self.undefined += 1;

@@ -1,4 +1,4 @@
-//! [`Joints`]: what of the pins does not change with the pose.
+//! [`Joints`]: the pose-independent part of the pin force computation.
 
 use super::error::JointsError;
 use super::pins::{MAX_PINS, Pin, pins};
@@ -7,18 +7,18 @@ use super::transmission::{self, Parallelogram};
 use super::tree::{CutClosure, SolveStep, Stator, TreeLink};
 use crate::mechanics::machine::Machine;
 
-/// The pins of a machine, and all of it that their forces depend on.
+/// The pins of a machine, with all constants of the machine that their forces depend on.
 #[derive(Clone, Debug)]
 pub struct Joints {
     pub(super) drives: usize,
     pub(super) pins: Vec<Pin>,
     pub(super) links: Vec<TreeLink>,
     pub(super) closures: Vec<CutClosure>,
-    /// Links on both sides of each pin whose links follow different drives.
+    /// The two links of each pin between links that follow different drives: only such pins have friction.
     pub(super) rubbing: Vec<(usize, usize)>,
     pub(super) steps: Vec<SolveStep>,
     pub(super) parallelograms: Vec<Parallelogram>,
-    /// Motors with rotors or in joints, those before the drives that carry them.
+    /// Motors with rotors or in joints, each before the motor of the drive that carries it.
     pub(super) stators: Vec<Stator>,
 }
 
@@ -26,8 +26,8 @@ impl Joints {
     /// Reads the structure of a machine.
     ///
     /// # Errors
-    /// If statics does not determine the forces: closures too many or too few, or a drive of which the file does not
-    /// tell what link it turns.
+    /// If statics does not determine the forces: too many or too few closures, or a drive that could turn any of
+    /// several links.
     pub fn of(machine: &Machine) -> Result<Self, JointsError> {
         let pins = pins(machine);
         if pins.len() > MAX_PINS {
@@ -45,12 +45,12 @@ impl Joints {
         Ok(Self { drives: machine.drives(), pins, links, closures, rubbing, steps, parallelograms, stators })
     }
 
-    /// The pins: where each link is attached, in the order of links, then the closures.
+    /// Returns the pins: the attachments of the links, in the order of links, then the closures.
     pub fn pins(&self) -> &[Pin] {
         &self.pins
     }
 
-    /// The closures that are parallelograms of two drives.
+    /// Returns the closures that are parallelograms of two drives.
     pub fn parallelograms(&self) -> &[Parallelogram] {
         &self.parallelograms
     }

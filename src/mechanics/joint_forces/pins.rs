@@ -1,29 +1,30 @@
-//! The pins of a machine by name, whether or not statics determines their forces.
+//! The pins of a machine with their names. Statics need not determine their forces.
 
 use crate::mechanics::machine::{Chain, Machine};
 
-/// The most pins of a machine whose forces are computed.
+/// Maximum number of pins of a machine whose forces are computed.
 pub const MAX_PINS: usize = 32;
 
-/// |sin(q_k − q_l)| below which the forces of a parallelogram are undefined: rounding alone changes them by 1e-7 there.
+/// Smallest |sin(q_k − q_l)| at which the forces of a parallelogram are defined. At this value rounding alone changes
+/// them by 1e-7.
 pub const FLAT: f64 = 1e-9;
 
 /// A pin or bearing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pin {
-    /// Its two links: `B-1`, `1-5`, `6-7`.
+    /// Names of its two links: `B-1`, `1-5`, `6-7`.
     pub name: String,
-    /// The link that exerts the force; none: the base.
+    /// The link that exerts the force; `None` for the base.
     pub from: Option<usize>,
     /// The link that the force acts on.
     pub to: usize,
-    /// Where it is.
+    /// Position of the pin, m.
     pub at: Chain,
-    /// Whether it closes a loop, rather than attaching a link.
+    /// Whether it closes a loop; otherwise it attaches a link.
     pub closes: bool,
 }
 
-/// Where each link is attached, in the order of links, then the closures.
+/// Returns the pins: the attachments of the links, in the order of links, then the closures.
 pub(super) fn pins(machine: &Machine) -> Vec<Pin> {
     let name = |link: Option<usize>| link.map_or("B", |j| machine.links()[j].name.as_str());
     let mut pins: Vec<Pin> = Vec::with_capacity(machine.links().len() + machine.loops().len());

@@ -1,4 +1,4 @@
-//! What of the pins does not change with the pose: the tree, the levers of the closures, and in which order to solve.
+//! Pose-independent structure: the tree of links, the levers of the closures, and the order in which to solve them.
 
 use super::block::together;
 use super::error::JointsError;
@@ -7,7 +7,7 @@ use super::tree::{CutClosure, SolveStep, Stator, TreeLink, lever};
 use crate::mechanics::machine::{CLOSURE_TOLERANCE, Inertia, Machine};
 use crate::mechanics::planar::{Units, Vector, unit};
 
-/// The machine's links as a tree, parents first, each with what it holds.
+/// Returns the machine's links as a tree, parents first; the end link includes the payload.
 pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     let driven = driven(machine)?;
     let mut order: Vec<usize> = Vec::with_capacity(driven.len());
@@ -48,7 +48,8 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     Ok(order.iter().map(held_by).collect())
 }
 
-/// Whether a drive turns each link: those at B that follow it, or its only one.
+/// Returns for each link whether a drive turns it. A drive turns the links at B that follow it; without one, the only
+/// link that follows it, or the only one of these that hangs on the drive carrying its motor.
 fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     let parts = machine.resolved_links();
     let mut driven: Vec<bool> = parts.iter().map(|p| p.parent.is_none()).collect();
@@ -70,17 +71,17 @@ fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     Ok(driven)
 }
 
-/// The motors that have rotors, or whose stators sit on links: on the one that what they turn hangs on, or else on the
-/// one that is turned by the drive which carries them.
+/// Returns the motors that have rotors or whose stators sit on links. A stator sits on the parent of the link that its
+/// motor turns, or else on the link that is turned by the drive which carries the motor.
 ///
 /// # Errors
-/// If a motor sits on a link of a loop, and what it turns is in one too.
+/// If a motor on an undriven link turns links whose moments depend on closure forces.
 pub fn stators(machine: &Machine, links: &[TreeLink], closures: &[CutClosure]) -> Result<Vec<Stator>, JointsError> {
     let motors = machine.motors();
     let rotors = Inertia::of(machine).rotors;
     let wanted = (0..machine.drives()).filter(|&k| motors.on(k).is_some() || rotors[k].inertia > 0.0);
     let mut order: Vec<usize> = wanted.collect();
-    // What a drive carries comes before it.
+    // A drive comes after all drives that it carries.
     order.sort_by_key(|&k| std::cmp::Reverse((0..machine.drives()).filter(|&l| motors.carries(l, k)).count()));
     let in_loop = |j: usize| closures.iter().any(|c| lever(c, j) != 0.0);
     let mut stators: Vec<Stator> = Vec::with_capacity(order.len());
@@ -103,14 +104,14 @@ fn names(machine: &Machine, links: impl IntoIterator<Item = usize>) -> String {
     links.into_iter().map(|j| machine.links()[j].name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-/// The closures with their levers.
+/// Returns the closures with their levers.
 pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
     let place = |link: usize| links.iter().position(|b| b.link == link);
     let mut closures = Vec::with_capacity(machine.loops().len());
     for (i, closure) in machine.loops().iter().enumerate() {
         let (mut levers, mut carried) = (vec![0.0; links.len()], vec![0.0; links.len()]);
         for (link, s, sense) in [(closure.a, closure.at_a, -1.0), (closure.b, closure.at_b, 1.0)] {
-            // Along each link down to the base: from where the force comes in to the root.
+            // Along each link down to the base: from the point where the force acts to the root.
             let (mut at, mut along) = (place(link), machine.resolved_links()[link].sign * s);
             while let Some(j) = at {
                 levers[j] += sense * along;
@@ -118,7 +119,7 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
                 (at, along) = (links[j].parent, links[j].arm.1);
             }
         }
-        // What both sides share cancels.
+        // Levers of links that both sides share cancel.
         let kept = |values: Vec<f64>, least: f64| -> Vec<(usize, f64)> {
             values.into_iter().enumerate().filter(|(_, x)| x.abs() > least).collect()
         };
@@ -132,7 +133,10 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
     closures
 }
 
-/// In which order closures are solved, from which links.
+/// Finds the order in which the closures are solved, and the links whose equations each step solves.
+///
+/// # Errors
+/// If there are too few or too many closures, or if some are redundant where others are missing.
 pub fn steps(machine: &Machine, links: &[TreeLink], closures: &[CutClosure]) -> Result<Vec<SolveStep>, JointsError> {
     let mut rows: Vec<usize> = (0..links.len()).filter(|&j| !links[j].driven).collect();
     let wanted = match rows.len() {
@@ -169,7 +173,8 @@ pub fn steps(machine: &Machine, links: &[TreeLink], closures: &[CutClosure]) -> 
     Ok(steps)
 }
 
-/// Two links of different drives that feel, of all closures still open, this one only.
+/// Returns two links of different drives, with their levers, on which closure `c` alone of all `open` ones has a
+/// moment.
 fn pair(
     links: &[TreeLink],
     closures: &[CutClosure],
@@ -184,18 +189,19 @@ fn pair(
     Some([first, second])
 }
 
-/// Whether a block can be solved in poses that have nothing special.
+/// Returns whether a block can be solved in a generic pose.
 fn is_regular(links: &[TreeLink], closures: &[CutClosure], block: &SolveStep) -> bool {
     let SolveStep::Together { closures: open, rows } = block else { return true };
     let moment = vec![0.0; links.len()];
-    // Multiples of the golden angle: no two are near a change point.
+    // Three sample poses. The golden angle between successive drives keeps pairs away from change points.
     [0.7, 1.9, 4.4].into_iter().any(|start| {
         let e: Units = std::array::from_fn(|k| unit(start * (1.0 + k as f64) + 2.399_963 * k as f64));
         together(links, closures, open, rows, &e, &moment).1
     })
 }
 
-/// Marks for each closure which pins depend on it: those that carry it, and through the closures solved after it.
+/// Marks for each closure the pins that depend on it: those that carry its force, and those that depend on closures
+/// solved after it.
 pub fn spread(links: &[TreeLink], closures: &mut [CutClosure], steps: &[SolveStep]) {
     for (at, step) in steps.iter().enumerate().rev() {
         let mut reaches = 0;
@@ -216,7 +222,7 @@ pub fn spread(links: &[TreeLink], closures: &mut [CutClosure], steps: &[SolveSte
     }
 }
 
-/// Each closure of a step with the links it is solved from.
+/// Returns each closure of a step with the links whose equations determine it.
 fn members(step: &SolveStep) -> Vec<(usize, Vec<usize>)> {
     match step {
         SolveStep::Pair { closure, rows } => vec![(*closure, rows.iter().map(|(j, _)| *j).collect())],

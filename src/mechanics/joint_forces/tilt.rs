@@ -1,31 +1,31 @@
-//! Moments out of the plane of motion: what the heights of the links do to the base.
+//! Moments that tilt the base out of the plane of motion, which arise from the heights of the links.
 //!
 //! The motion is plane, but links lie one above the other. A force f in the plane at height z has the moment
-//! (−z f_y, z f_x, …) about B, as complex number x + iy: i z f. So a machine that is force balanced, whose forces
-//! cancel, may transmit a couple all the same.
+//! (−z f_y, z f_x, …) about B; as complex number x + iy it is i z f. So a force balanced machine, whose forces cancel,
+//! may still transmit a couple.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | z_j | height of the CM of link j along the drives' axis; of the payload; 0: the plane of reference through B | m |
+//! | z_j | height of the CM of link j, or of the payload, along the drives' axis from the plane of reference through B | m |
 //! | S | Σ_j m_j z_j | kg m |
 //! | s_k | Σ_j m_j z_j a_jk: first moments weighted with z | complex, kg m² |
 //! | n_t | moment about B that tilts the base, n_x + i n_y | N m |
 //! | z̄ | S / M, height of the centre of mass | m |
 //!
 //! # Closed form
-//! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with F at the payload's height z_e. The couple, the same about
-//! every height, is what is left about z̄: s_k − z̄ g_k in place of s_k.
+//! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with F at the payload's height z_e. The couple of the motion
+//! is the sum over k with s_k − z̄ g_k in place of s_k: the moment about height z̄ instead of 0.
 //!
 //! # What is assumed
-//! Products of inertia I_xz, I_yz of each link about its own CM are zero: each is symmetric about a plane across the
-//! drives' axis. With all z_j = 0, the default, nothing tilts.
+//! Products of inertia I_xz, I_yz of each link about its own CM are zero: each link is symmetric about a plane normal
+//! to the drives' axis. With all z_j = 0, the default, n_t = 0.
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector};
 
-/// Constants of tilting.
+/// Constants of a machine from which its tilting moment follows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxialMoments {
     drives: usize,
@@ -40,17 +40,17 @@ pub struct AxialMoments {
     flat: bool,
 }
 
-/// A moment about B that tilts the base, in its parts; x + iy, N m: what the manipulator exerts on the base.
+/// Moment about B, x + iy, N m, that the manipulator exerts on the base and that tilts it, in two parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tilt {
-    /// From motion.
+    /// Part from motion.
     pub motion: Vector,
-    /// From weight, and from a force held at the end effector.
+    /// Part from weight and from a force held at the end effector.
     pub weight: Vector,
 }
 
 impl Tilt {
-    /// The sum of both parts.
+    /// Returns the sum of both parts.
     pub fn total(&self) -> Vector {
         self.motion + self.weight
     }
@@ -83,17 +83,17 @@ impl AxialMoments {
         }
     }
 
-    /// Whether all heights are zero, so that nothing can tilt: the machine file gives none.
+    /// Returns whether all heights are zero, as without any in the machine file: then n_t = 0.
     pub fn is_flat(&self) -> bool {
         self.flat
     }
 
-    /// Largest |s_k − z̄ g_k|, kg m²: 0 where motion transmits no couple that tilts, force balanced or not.
+    /// Returns the largest |s_k − z̄ g_k|, kg m²: 0 if motion transmits no tilting couple, force balanced or not.
     pub fn residual(&self) -> f64 {
         self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
     }
 
-    /// The moment about B at the plane of reference.
+    /// Returns the tilting moment about B at the plane of reference.
     #[inline]
     pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Tilt {
         let i = Vector::new(0.0, 1.0);
@@ -103,13 +103,13 @@ impl AxialMoments {
         }
     }
 
-    /// The couple of the motion, n_x + i n_y, N m: the tilting moment about the height of the centre of mass. It is
-    /// all there is where the machine is force balanced.
+    /// Returns the couple of the motion, n_x + i n_y, N m: the tilting moment about the height of the centre of mass.
+    /// In a force balanced machine it equals the part of n_t from motion.
     pub fn couple(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         Vector::new(0.0, 1.0) * self.pull(&self.couple, e, qd, qdd)
     }
 
-    /// −Σ_k s_k ä_k.
+    /// Returns −Σ_k s_k ä_k.
     #[inline]
     fn pull(&self, s: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         let mut sum = Vector::default();

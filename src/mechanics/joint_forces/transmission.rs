@@ -1,11 +1,11 @@
-//! How well parallelograms pass force on, and how far the next change point is.
+//! Force transmission of parallelograms, and the distance to the next change point.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | \|sin(q_k − q_l)\| | transmission of a pair of drives: 0 at a change point, where parallelograms lie flat | |
 //! | angle | between neighbouring bars of a parallelogram, 0 to π/2 | rad |
-//! | distance | least \|q_k − q_l − mπ\| over pairs and whole m: how much one drive has to turn | rad |
+//! | distance | least \|q_k − q_l − mπ\| over pairs and integers m: the angle that one drive has to turn | rad |
 
 use std::f64::consts::PI;
 
@@ -19,52 +19,52 @@ use crate::mechanics::planar::{PerDrive, Units, cross};
 pub struct Parallelogram {
     /// Name of the pin that closes it.
     pub name: String,
-    /// Its drives, counted from 0.
+    /// Indices of its drives, from 0.
     pub drives: (usize, usize),
 }
 
 impl Parallelogram {
-    /// Transmission angle between its neighbouring bars, 0 to π/2, rad.
+    /// Returns the transmission angle between its neighbouring bars, 0 to π/2, rad.
     pub fn angle(&self, q: &[f64]) -> f64 {
-        off(q[self.drives.0] - q[self.drives.1]).abs()
+        from_multiple_of_pi(q[self.drives.0] - q[self.drives.1]).abs()
     }
 }
 
-/// How far a pair of drives is from a change point, where the two line up.
+/// Distance of a pair of drives from a change point, where the two arms are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChangePointDistance {
-    /// The drives, counted from 0.
+    /// Indices of the drives, from 0.
     pub drives: (usize, usize),
     /// |q_k − q_l − mπ|, rad.
     pub distance: f64,
-    /// When the present rates get there, s; `None` where they lead away or nowhere.
+    /// Time to the change point at the present rates, s; `None` if they are equal or lead away from it.
     pub time: Option<f64>,
 }
 
-/// |sin(q_k − q_l)|.
+/// Returns |sin(q_k − q_l)|.
 pub fn pair_transmission(e: &Units, k: usize, l: usize) -> f64 {
     cross(e[k], e[l]).abs()
 }
 
-/// How far an angle is past the nearest multiple of π, −π/2 to π/2, rad.
-fn off(angle: f64) -> f64 {
+/// Returns an angle less the nearest multiple of π, −π/2 to π/2, rad.
+fn from_multiple_of_pi(angle: f64) -> f64 {
     angle - PI * (angle / PI).round()
 }
 
-/// The change point that turning one drive least reaches; `None` for one drive.
+/// Returns the change point with the smallest distance over all pairs; `None` for a machine with one drive.
 pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).map(|(k, l)| {
-        let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
+        let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);
         ChangePointDistance { drives: (k, l), distance: past.abs(), time: arrival(-past, rate) }
     });
     all.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// The change point that the present rates reach first, with the distance that the pair has to go; `None` where no two
-/// drives turn against each other.
+/// Returns the change point that the present rates reach first, with the angle that the pair has to turn until then;
+/// `None` if all drives turn at the same rate.
 pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
-        let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
+        let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);
         // Towards the nearest multiple of π, or from it to the next.
         let way = if past * rate <= 0.0 { -past } else { PI.copysign(rate) - past };
         let time = arrival(way, rate)?;
@@ -73,13 +73,13 @@ pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     all.min_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)))
 }
 
-/// When a rate covers a way, s.
+/// Returns the time in which a rate, rad/s, covers an angle `way`, rad, s; `None` if it does not.
 fn arrival(way: f64, rate: f64) -> Option<f64> {
     let time = way / rate;
     (rate != 0.0 && time >= 0.0 && time.is_finite()).then_some(time)
 }
 
-/// Which closures close a loop of two drives.
+/// Returns the closures that close a loop of two drives.
 pub(super) fn parallelograms(pins: &[Pin], links: &[TreeLink], closures: &[CutClosure]) -> Vec<Parallelogram> {
     let of = |(pin, closure): (&Pin, &CutClosure)| {
         let mut drives: Vec<usize> = closure.levers.iter().map(|(j, _)| links[*j].drive).collect();

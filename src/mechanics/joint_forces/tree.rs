@@ -1,18 +1,18 @@
-//! The tree of links that is left when every closure is cut, and what the closures do to it.
+//! The tree of links that remains when every closure is cut, and the action of closure forces on it.
 
 use crate::mechanics::machine::Turning;
 use crate::mechanics::planar::Vector;
 
-/// A link with whatever it holds, parents before children.
+/// A link of the tree with the payload that it holds.
 #[derive(Clone, Debug)]
 pub struct TreeLink {
-    /// Which link of the machine; the pin of the same number attaches it.
+    /// Index of the link in the machine, and of the pin that attaches it.
     pub link: usize,
-    /// Place of its parent among the links; none: the base.
+    /// Index of its parent in the tree; `None` for the base.
     pub parent: Option<usize>,
     /// Drive whose orientation it has.
     pub drive: usize,
-    /// Drive of its parent, and how far along that its root is, signed, m.
+    /// Drive of its parent, and the signed distance of its root along the parent, m.
     pub arm: (usize, f64),
     /// Σ m, kg.
     pub mass: f64,
@@ -20,7 +20,7 @@ pub struct TreeLink {
     pub first: Vector,
     /// Σ I + m |c|² about the root, kg m².
     pub second: f64,
-    /// How far along the link the end effector is, signed, m; none where it is on another.
+    /// Signed distance of the end effector along the link, m; `None` if another link carries it.
     pub end_effector: Option<f64>,
     /// Whether a drive turns it.
     pub driven: bool,
@@ -31,38 +31,38 @@ pub struct TreeLink {
 pub struct Stator {
     /// The drive it turns.
     pub drive: usize,
-    /// The link that carries it; none: the base.
+    /// The link that carries it; `None` for the base.
     pub link: Option<usize>,
-    /// Its rotor: inertia, kg m², and how it turns with the drives.
+    /// Its rotor: inertia, kg m², and the ratios of its rate to those of the drives.
     pub rotor: Turning,
-    /// Whether what its drive asks is known before the closures are.
+    /// Whether the moment of its drive is known before the closures are solved.
     pub before: bool,
 }
 
-/// A closure as forces see it: λ acts on the second link, −λ on the first.
+/// A closure that is cut: its force λ acts on the second link, −λ on the first.
 #[derive(Clone, Debug)]
 pub struct CutClosure {
-    /// The pin it is.
+    /// Index of its pin.
     pub pin: usize,
-    /// Links on whose roots λ has a moment, and its lever w, m.
+    /// Links about whose roots λ has a moment, each with the lever w of λ, m.
     pub levers: Vec<(usize, f64)>,
-    /// Links whose roots carry ±λ.
+    /// Links whose roots carry ±λ, with the sign.
     pub carried: Vec<(usize, f64)>,
-    /// Pins that depend on it, one bit each.
+    /// Pins whose forces depend on λ, one bit each.
     pub reaches: u32,
 }
 
-/// What is solved at once.
+/// One step of the solution: closures that are solved at once.
 #[derive(Clone, Debug)]
 pub enum SolveStep {
-    /// One closure from two links, each with its lever.
+    /// One closure from the equations of two links.
     Pair {
         /// The closure.
         closure: usize,
-        /// The links.
+        /// The links, each with its lever, m.
         rows: [(usize, f64); 2],
     },
-    /// Closures that do not come apart, from twice as many links.
+    /// Coupled closures from the equations of twice as many links.
     Together {
         /// The closures.
         closures: Vec<usize>,
@@ -71,7 +71,7 @@ pub enum SolveStep {
     },
 }
 
-/// Lever of a closure's force about the root of a link, m.
+/// Returns the lever of a closure's force about the root of a link, m.
 pub fn lever(closure: &CutClosure, link: usize) -> f64 {
     closure.levers.iter().find(|(j, _)| *j == link).map_or(0.0, |(_, w)| *w)
 }

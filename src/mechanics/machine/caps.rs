@@ -1,28 +1,28 @@
-//! How much a machine may hold: all work on a machine grows with what it holds, so each list has an end.
+//! Maximum numbers of a machine's parts. All work on a machine grows with the length of its lists, so each is bounded.
 
 use super::error::{MachineError, Place};
 use super::spec::MachineSpec;
 use crate::mechanics::planar::MAX_DRIVES;
 
-/// The most links.
+/// Maximum number of links.
 pub const MAX_LINKS: usize = 200;
-/// The most links in a row from the base to a tip, each on the one before: products of their lengths, which the
-/// equations of balance list one by one, grow with the square of it.
+/// Maximum number of links in a row from the base to a tip, each on the one before. The balance equations list the
+/// products of their lengths, whose number grows with the square of this.
 pub const MAX_IN_A_ROW: usize = 32;
-/// The most counterweights: as many as design puts on links, one on each.
+/// Maximum number of counterweights: one on each link, as design places them.
 pub const MAX_COUNTERWEIGHTS: usize = MAX_LINKS;
-/// The most pins that close loops.
+/// Maximum number of pins that close loops.
 const MAX_CLOSURES: usize = 200;
-/// The most relative angles: two for each pair of drives, with some to spare.
+/// Maximum number of relative angles: two for each pair of drives, and some more.
 const MAX_ANGLES: usize = 64;
-/// The most named lengths: one for each link.
+/// Maximum number of named lengths: one for each link.
 const MAX_LENGTHS: usize = MAX_LINKS;
-/// The most characters of a name.
+/// Maximum number of characters of a name.
 const MAX_NAME: usize = 100;
-/// The most characters of a summary.
+/// Maximum number of characters of a summary.
 const MAX_SUMMARY: usize = 1000;
 
-/// What a machine holds several of: its name, how many there are, and the fewest and most.
+/// Bounds of a list: its name, its length in a specification, and the minimum and maximum length.
 type Cap = (&'static str, fn(&MachineSpec) -> usize, usize, usize);
 
 const CAPS: [Cap; 6] = [
@@ -34,7 +34,7 @@ const CAPS: [Cap; 6] = [
     ("named lengths", |spec| spec.lengths.len(), 0, MAX_LENGTHS),
 ];
 
-/// Refuses a description that holds too much or too little.
+/// Checks that the lists and texts of a specification are neither too short nor too long.
 pub(super) fn check_counts(spec: &MachineSpec) -> Result<(), MachineError> {
     for (what, count, fewest, most) in CAPS {
         let count = count(spec);
@@ -57,7 +57,7 @@ pub(super) fn check_counts(spec: &MachineSpec) -> Result<(), MachineError> {
     spec.lengths.keys().try_for_each(|name| brief(name, MAX_NAME, || Place::new(&[&"lengths", name])))
 }
 
-/// Refuses text that is too long.
+/// Checks that a text has at most `most` characters.
 fn brief(text: &str, most: usize, place: impl Fn() -> Place) -> Result<(), MachineError> {
     let is_brief = text.chars().nth(most).is_none();
     is_brief.then_some(()).ok_or_else(|| MachineError::TooLong { place: place(), text: text.into(), most })

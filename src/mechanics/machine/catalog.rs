@@ -35,15 +35,15 @@ pub fn builtin(name: &str) -> Option<&'static Machine> {
     builtins().iter().find(|m| m.name() == name)
 }
 
-/// A machine by built-in name, where no file is looked for.
+/// Returns a built-in machine by name; looks for no file.
 ///
 /// # Errors
-/// If there is none of that name: which there are.
+/// If there is no machine of that name; the error lists the names.
 pub fn named(name: &str) -> Result<Machine, FileError> {
     builtin(name).cloned().ok_or_else(|| unknown(name))
 }
 
-/// That nothing is called so.
+/// Returns the error for a name that no built-in machine has.
 pub fn unknown(name: &str) -> FileError {
     let known = builtins().iter().map(Machine::name).collect::<Vec<_>>().join(", ");
     let error = MachineError::Syntax(format!("no such machine: want {known}, or a TOML file"));

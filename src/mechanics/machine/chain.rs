@@ -5,7 +5,7 @@ use crate::mechanics::planar::{MAX_DRIVES, Units, Vector};
 /// A point as a sum of unit vectors: weight w_k, m, on e(q_k).
 pub type Chain = [f64; MAX_DRIVES];
 
-/// Where a chain of weights puts its point, m.
+/// Returns the point of a chain, Σ_k w_k e(q_k), m.
 pub fn place_of(chain: &Chain, e: &Units) -> Vector {
     chain.iter().zip(e).map(|(w, e)| e * *w).sum()
 }

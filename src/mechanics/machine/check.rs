@@ -1,4 +1,4 @@
-//! From a description to a [`Machine`]: names looked up, roots and loops resolved, or what is wrong.
+//! Makes a [`Machine`] of a specification: checks it, looks up names, and resolves roots and loops.
 
 use super::Chain;
 use super::caps::{MAX_IN_A_ROW, check_counts};
@@ -14,16 +14,16 @@ use crate::settings::number::Short;
 use crate::settings::range::{clipped, shortened};
 use crate::settings::text::steering;
 
-/// How far, m, the two points of a closure may lie apart.
+/// Tolerance of the distance between the two points of a closure, m.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
 
 impl Machine {
-    /// Checks a description.
+    /// Makes a machine of a specification.
     ///
     /// # Errors
-    /// The first thing that is wrong, and what would be right.
+    /// If the specification is not a valid machine; reports the first error.
     pub fn new(mut spec: MachineSpec) -> Result<Self, MachineError> {
-        // A rotor that is none is written as none.
+        // A rotor with the default values, without inertia, is stored as no rotor.
         for drive in &mut spec.drives {
             drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
         }
@@ -43,7 +43,7 @@ impl Machine {
     }
 }
 
-/// What a description comes to.
+/// The resolved parts of a specification.
 struct Parts {
     links: Vec<ResolvedLink>,
     bodies: Vec<Link>,
@@ -110,7 +110,7 @@ fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Resul
     Ok(seen)
 }
 
-/// Refuses what would steer a terminal, on which names are shown, or turn the order of its letters.
+/// Checks that a text has no character that controls a terminal or reverses the order of letters.
 fn printable(text: &str, place: impl Fn() -> Place) -> Result<(), MachineError> {
     let refused = |character| Err(MachineError::Unprintable { place: place(), character });
     steering(text).map_or(Ok(()), refused)
@@ -125,7 +125,7 @@ fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> P
     })
 }
 
-/// Length of a link, m.
+/// Returns the length of link i, m.
 fn length_of(spec: &MachineSpec, i: usize) -> Result<f64, MachineError> {
     let place = || Place::new(&[&"link", &i, &"length"]);
     match &spec.links[i].length {
@@ -143,7 +143,7 @@ fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> Place) -> Re
     })
 }
 
-/// A point of a link: which link, and how far from its root, m.
+/// Resolves a point of a link: the index of the link, and the distance from its root, m.
 fn locate(
     spec: &MachineSpec,
     names: &Names,
@@ -185,7 +185,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
     }
     let mut parts = Vec::with_capacity(spec.links.len());
     for (i, link) in spec.links.iter().enumerate() {
-        // Walk from the link to the base; a walk longer than the number of links runs in a circle.
+        // Walk from the link to the base; a walk longer than the number of links runs in a cycle.
         let (mut root, mut at, mut chain) = ([0.0; MAX_DRIVES], i, vec![spec.links[i].name.as_str()]);
         while let Some((parent, s)) = parents[at] {
             chain.push(&spec.links[parent].name);
@@ -260,7 +260,7 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
     spec.angles.iter().enumerate().map(angle).collect()
 }
 
-/// Each link with what it carries.
+/// Returns each link combined with the counterweights that it carries.
 fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> {
     let mut bodies = spec.links.clone();
     for (i, weight) in spec.counterweights.iter().enumerate() {
@@ -270,7 +270,7 @@ fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> 
     Ok(bodies)
 }
 
-/// What each motor's stator sits on; a walk longer than the number of drives runs in a circle.
+/// Resolves where each motor's stator sits; refuses a cycle, in which a walk towards the base meets a drive again.
 fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineError> {
     let mut on = Vec::with_capacity(spec.drives.len());
     for (i, drive) in spec.drives.iter().enumerate() {
@@ -295,7 +295,7 @@ fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineEr
     Ok(Motors::new(&on))
 }
 
-/// Collects where other links are pinned to each link, so that it can be drawn as long as it must be.
+/// Collects the pins along each link, so that the link can be drawn long enough to reach all of them.
 fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [ResolvedLink]) -> Result<(), MachineError> {
     let nowhere = || Place::default();
     for part in parts.iter_mut() {

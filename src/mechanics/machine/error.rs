@@ -1,4 +1,4 @@
-//! Everything that can be wrong with a machine: what, where, and what would be right.
+//! Errors of a machine specification: what is wrong, where, and what would be right.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use super::spec::MachineSpec;
 use crate::settings::number::Short;
 use crate::settings::range::{Want, clipped};
 
-/// A place in a machine file: a path of keys and positions. It is shown as one types it, such as `link.5.mass`.
+/// A place in a machine file: a path of keys and positions. It is shown as `--set` takes it, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place(pub Vec<PlaceStep>);
 
@@ -19,7 +19,7 @@ pub enum PlaceStep {
     Key(String),
     /// A position in an array, counted from 0.
     At(usize),
-    /// The same of what has a name, by which keys call it.
+    /// A position in an array, counted from 0, with the name of the element, which keys use.
     Named(usize, String),
 }
 
@@ -39,16 +39,16 @@ impl Place {
         Self(steps.collect())
     }
 
-    /// The same place in a table that holds this one under a key.
+    /// Returns the same place seen from a table that holds this one under a key.
     #[must_use]
     pub fn under(self, key: &str) -> Self {
         Self(std::iter::once(PlaceStep::Key(key.into())).chain(self.0).collect())
     }
 }
 
-/// What can be a step of a place.
+/// Types that can be a step of a place.
 pub trait AsStep {
-    /// The step.
+    /// Returns the step.
     fn step(&self) -> PlaceStep;
 }
 impl AsStep for &str {
@@ -77,7 +77,7 @@ impl fmt::Display for Place {
         }
         for (i, step) in self.0.iter().enumerate() {
             match step {
-                // A file has a table of them, and a key is of one.
+                // The table is `lengths`, the key of one length begins with `length`.
                 PlaceStep::Key(k) if i == 0 && k == "lengths" => f.write_str("length")?,
                 PlaceStep::Key(k) if i == 0 => f.write_str(&clipped(k))?,
                 PlaceStep::Key(name) | PlaceStep::Named(_, name) => write!(f, ".{}", clipped(name))?,
@@ -88,42 +88,42 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a description is not a machine.
+/// Error of a specification that is not a valid machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MachineError {
-    /// Not a number where one is needed.
+    /// A number that is not finite.
     #[error("{place} is {}: want a finite number, {unit}", Short(*value))]
     NotFinite {
         /// Where in the machine file.
         place: Place,
-        /// What stands there.
+        /// The number.
         value: f64,
-        /// In which unit it is wanted.
+        /// Its unit.
         unit: &'static str,
     },
-    /// A number of the wrong sign or size.
+    /// A number that is out of its range.
     #[error("{place} is {}: want {want}", Short(*value))]
     OutOfRange {
         /// Where in the machine file.
         place: Place,
-        /// What stands there.
+        /// The number.
         value: f64,
         /// What would be right.
         want: Want,
     },
-    /// A name that nothing has.
+    /// A name that does not exist.
     #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", clipped(name))]
     Unknown {
         /// Where in the machine file.
         place: Place,
-        /// Drive, link, length …
+        /// Kind of the part: drive, link, length …
         what: &'static str,
         /// The name.
         name: String,
-        /// What there is.
+        /// The names that exist.
         known: String,
     },
-    /// Two of the same name.
+    /// Two parts have the same name.
     #[error("{place} is {:?}, which is taken: want a name of its own", clipped(name))]
     Duplicate {
         /// Where in the machine file.
@@ -131,7 +131,7 @@ pub enum MachineError {
         /// The name.
         name: String,
     },
-    /// A name with a character that steers terminals.
+    /// A name with a control character, which could change a terminal's state.
     #[error("{place} holds the control character U+{:04X}: want a name of printable characters", u32::from(*character))]
     Unprintable {
         /// Where in the machine file.
@@ -139,84 +139,84 @@ pub enum MachineError {
         /// The first such character.
         character: char,
     },
-    /// The number of things.
+    /// Too few or too many parts of a kind.
     #[error("{count} {what}: want {want}")]
     Count {
-        /// Drives, links …
+        /// Kind of the parts: drives, links …
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many would be right.
+        /// The number that would be right, in words.
         want: String,
     },
-    /// A text that goes on and on.
+    /// A text that is too long.
     #[error("{place} is {:?}: want at most {most} characters", clipped(text))]
     TooLong {
         /// Where in the machine file.
         place: Place,
         /// The text.
         text: String,
-        /// The most characters.
+        /// Maximum number of characters.
         most: usize,
     },
-    /// Links that hang on each other in a circle.
+    /// Links that are attached to each other in a cycle.
     #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
     Cycle {
         /// Where in the machine file.
         place: Place,
-        /// A link of the circle.
+        /// A link of the cycle.
         link: String,
-        /// The links of the circle, in order.
+        /// The links of the cycle, in order.
         chain: String,
     },
-    /// A closure whose two points are not one.
+    /// A closure whose two points do not coincide in every pose.
     #[error(
         "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
     )]
     OpenLoop {
         /// Where in the machine file.
         place: Place,
-        /// The point as one link has it.
+        /// The point on the first link.
         a: String,
-        /// The point as the other has it.
+        /// The point on the second link.
         b: String,
         /// The difference, as a sum of the drives' unit vectors.
         gap: String,
     },
-    /// A relative angle with one limit.
+    /// A relative angle with only one limit.
     #[error("angle {:?} has only one limit: want both min and max, or neither to let it turn freely", clipped(angle))]
     HalfLimited {
         /// The angle.
         angle: String,
     },
-    /// Motors whose stators sit on each other in a circle.
+    /// Motors whose stators sit on each other in a cycle.
     #[error(
         "{place}: the motor of drive {drive:?} sits on itself ({chain}): want a chain that ends on the base, without \"on\""
     )]
     StatorCycle {
         /// Where in the machine file.
         place: Place,
-        /// A drive of the circle.
+        /// A drive of the cycle.
         drive: String,
-        /// The drives of the circle, in order.
+        /// The drives of the cycle, in order.
         chain: String,
     },
     /// More than one end effector.
     #[error("{count} end effectors: want one, [end_effector]; machines with several hands are not there yet")]
     SeveralEndEffectors {
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
     /// No end effector.
     #[error("no end effector: want [end_effector] with link = \"…\", at = \"tip\"")]
     NoEndEffector,
-    /// A drive that moves nothing.
+    /// A drive that moves no mass.
     #[error("drive {:?} moves no mass: want a link with inertia on it", clipped(drive))]
     Massless {
         /// The drive.
         drive: String,
     },
-    /// One bar of a shared length.
+    /// A new length for one link of several that share it.
     #[error(
         "link {link} shares its length {length} with {sharers}: changing it alone would break a parallelogram; set length.{length} instead"
     )]
@@ -228,12 +228,12 @@ pub enum MachineError {
         /// The other links that share it.
         sharers: String,
     },
-    /// A key of `--set` or of an edit that nothing answers to.
+    /// A key of `--set` or of an edit that does not exist.
     #[error("no setting {:?}: want one of {known}", clipped(key))]
     UnknownKey {
         /// The key.
         key: String,
-        /// What there is.
+        /// The keys that exist.
         known: String,
     },
     /// A value of `--set` that cannot be read.
@@ -241,7 +241,7 @@ pub enum MachineError {
     BadValue {
         /// The key.
         key: String,
-        /// What was given.
+        /// The value that was given.
         value: String,
         /// What would be right.
         want: &'static str,
@@ -252,7 +252,8 @@ pub enum MachineError {
 }
 
 impl MachineError {
-    /// The same with links, drives and angles by their names, as keys have them; what shares its name keeps its place.
+    /// Returns the error with links, drives and angles named instead of numbered. A part whose name is not unique keeps
+    /// its number.
     pub(super) fn named(mut self, spec: &MachineSpec) -> Self {
         let (Self::NotFinite { place, .. }
         | Self::OutOfRange { place, .. }
@@ -278,7 +279,7 @@ impl MachineError {
         self
     }
 
-    /// Where in the file, if it has a place.
+    /// Returns the place in the file, if the error has one.
     pub fn place(&self) -> Option<&Place> {
         match self {
             Self::NotFinite { place, .. }
@@ -295,7 +296,7 @@ impl MachineError {
     }
 }
 
-/// Names as a message lists them.
+/// Returns names as a message lists them: quoted, at most 20.
 pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", clipped(n))).collect();
     if known.len() > 20 {

@@ -1,4 +1,4 @@
-//! Machine files: TOML in and out, with the file and line of whatever is wrong.
+//! Reading and writing of machine files in TOML; errors name file and line.
 
 use std::path::{Path, PathBuf};
 
@@ -9,38 +9,38 @@ use super::{Machine, MachineError, MachineSpec, Place, PlaceStep};
 use crate::settings::range::shortened;
 use crate::settings::text::MOST_BYTES;
 
-/// What is wrong with a file, and where.
+/// Error of a machine file, with its place.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", named(file))]
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// The system's reason.
+        /// Reason given by the operating system.
         source: std::io::Error,
     },
-    /// It is not a machine.
+    /// The file does not describe a machine.
     #[error("{file}{}: {error}", line.map(|l| format!(":{l}")).unwrap_or_default())]
     Wrong {
         /// The file.
         file: String,
-        /// Line, counted from 1, where it is known.
+        /// Line of the error, counted from 1, if known.
         line: Option<usize>,
-        /// What is wrong.
+        /// The error.
         error: MachineError,
     },
 }
 
-/// A file as a message calls it: whatever stands for a name may be as long as a book.
+/// Returns the path of a file for messages, shortened because a path may be arbitrarily long.
 fn named(file: &Path) -> String {
     shortened(&file.display().to_string(), 300)
 }
 
-/// Reads a machine from text; `file` is what errors call it.
+/// Reads a machine from text; `file` is the name used in errors.
 ///
 /// # Errors
-/// If it is not a machine.
+/// If the text does not describe a machine.
 pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
     let wrong = |line, error| FileError::Wrong { file: file.into(), line, error };
     let spec: MachineSpec = toml::from_str(text).map_err(|e| {
@@ -55,7 +55,7 @@ pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
     Machine::new(spec).map_err(|e| wrong(e.place().and_then(|p| line_of_place(text, p)), e))
 }
 
-/// A machine as TOML, so that [`parse`] gives an equal one.
+/// Writes a machine as TOML, from which [`parse`] returns an equal machine.
 ///
 /// # Panics
 /// Never: every machine can be written.
@@ -63,12 +63,12 @@ pub fn to_toml(machine: &Machine) -> String {
     toml::to_string(machine.spec()).expect("a machine is plain data")
 }
 
-/// The line of a byte, counted from 1.
+/// Returns the line of a byte offset, counted from 1.
 pub(crate) fn line_of(text: &str, byte: usize) -> usize {
     text.as_bytes()[..byte.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
 }
 
-/// The line of the innermost part of a place that the text has.
+/// Returns the line of the innermost step of a place that exists in the text.
 pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut span = None;

@@ -1,4 +1,5 @@
-//! A machine collapsed into a few constants: cost does not grow with the number of links.
+//! [`Inertia`]: a machine reduced to a few constants, so that the cost of dynamics does not grow with the number of
+//! links.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
@@ -22,27 +23,27 @@ pub struct Inertia {
     pub(crate) mass: f64,
     pub(crate) g: [Vector; MAX_DRIVES],
     pub(crate) c: [[Vector; MAX_DRIVES]; MAX_DRIVES],
-    /// J_k with what the rotors add to H_kk.
+    /// J_k and the contribution J r_k² of the rotors to H_kk, kg m².
     pub(crate) spin: [f64; MAX_DRIVES],
-    /// What the rotors add to H_kl, k ≠ l.
+    /// Contribution J r_k r_l of the rotors to H_kl, k ≠ l, kg m².
     pub(crate) gears: [[f64; MAX_DRIVES]; MAX_DRIVES],
-    /// D_k − Σ_l H_lk, which rotors on the base leave: their stators take up what gears make of it.
+    /// D_k − Σ_l H_lk, kg m²: J r_k (1 − Σ_l r_l) of the rotors, from the reaction of gears on stators on the base.
     pub(crate) taken_up: [f64; MAX_DRIVES],
     pub(crate) rotors: [Turning; MAX_DRIVES],
     pub(crate) end_effector: Chain,
 }
 
-/// A rotor: how it turns with the drives, and a base that turns behind them.
+/// A rotor, with the ratios of its rate to those of the drives and, after these, of a base that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turning {
-    /// J, kg m².
+    /// Inertia J about its axis, kg m².
     pub inertia: f64,
-    /// r.
+    /// Ratios r: the rotor turns at r·q̇.
     pub rates: [f64; MAX_DRIVES],
 }
 
 impl Inertia {
-    /// Sums over the links and the payload.
+    /// Computes the constants of a machine: sums over the links, the payload and the rotors.
     pub fn of(machine: &Machine) -> Self {
         let mut sum = Self::nothing(machine.drives(), *machine.motors(), *machine.end_effector());
         for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
@@ -59,7 +60,7 @@ impl Inertia {
         sum
     }
 
-    /// What has no mass.
+    /// Returns the constants of a machine without mass, to which bodies are added.
     pub(crate) fn nothing(drives: usize, motors: Motors, end_effector: Chain) -> Self {
         let zero = Vector::new(0.0, 0.0);
         Self {
@@ -76,7 +77,7 @@ impl Inertia {
         }
     }
 
-    /// A rotor of a ratio behind the gear of drive k.
+    /// Adds the rotor of drive k, with its inertia, kg m², and gear ratio.
     fn add_rotor(&mut self, k: usize, inertia: f64, ratio: f64) {
         let mut rates = [0.0; MAX_DRIVES];
         rates[k] = ratio;
@@ -84,11 +85,11 @@ impl Inertia {
             rates[on] += 1.0 - ratio;
         }
         self.rotors[k] = Turning { inertia, rates };
-        self.gear(inertia, &rates, self.drives);
+        self.add_rotor_inertia(inertia, &rates, self.drives);
     }
 
-    /// Adds J r rᵀ to the mass matrix of the first `n`, and what of J r its rows lack.
-    fn gear(&mut self, inertia: f64, r: &[f64; MAX_DRIVES], n: usize) {
+    /// Adds J r rᵀ to the mass matrix of the first `n` drives, and J r (1 − Σ r) to `taken_up`.
+    fn add_rotor_inertia(&mut self, inertia: f64, r: &[f64; MAX_DRIVES], n: usize) {
         let all: f64 = r[..n].iter().sum();
         for i in 0..n {
             self.spin[i] += inertia * r[i] * r[i];
@@ -99,8 +100,8 @@ impl Inertia {
         }
     }
 
-    /// The same with a base that turns behind the drives, on which every stator sits in the end: rows of the mass
-    /// matrix are the momentum then.
+    /// Adds the rotors' inertia for a base that turns, as one more drive after the others. The ratios of each rotor
+    /// then sum to 1, so that the columns of the mass matrix sum to D.
     pub(crate) fn turn_base(&mut self) {
         let n = self.drives;
         self.taken_up = [0.0; MAX_DRIVES];
@@ -119,6 +120,8 @@ impl Inertia {
         }
     }
 
+    /// Adds a body that follows a drive, with its mass, kg, its inertia about its CM, kg m², and its CM Σ_k a_k e^{i
+    /// q_k}.
     pub(crate) fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
         self.mass += mass;
         self.spin[drive] += inertia;
@@ -140,7 +143,7 @@ impl Inertia {
         self.mass
     }
 
-    /// First moment g_k, kg m; the bracket of (A1).
+    /// First moment g_k, kg m: the bracket of (A1).
     pub fn first_moment(&self, k: usize) -> Vector {
         self.g[k]
     }
@@ -165,12 +168,12 @@ impl Inertia {
         PerDrive::from_fn(self.drives, |k| self.diagonal(k))
     }
 
-    /// D_k where all C_kl vanish, kg m²: what the angular momentum about B has of q̇_k. Of a rotor only its own turning
-    /// counts: a gear makes H_kk greater, not D_k, and a rotor that turns the other way makes D_k smaller.
+    /// Returns D_k where all C_kl vanish, kg m²: the coefficient of q̇_k in the angular momentum about B. A rotor adds
+    /// J r_k² to H_kk but J r_k to D_k, so a rotor that turns the other way reduces D_k.
     pub fn momentum(&self, k: usize) -> f64 {
         let gears: f64 = (0..self.drives).map(|l| self.gears[k][l]).sum();
         let own = self.diagonal(k) + gears + self.taken_up[k];
-        // Of gears that cancel only rounding is left.
+        // Where gears cancel, only rounding error remains.
         if own.abs() <= BALANCED * self.diagonal(k) { 0.0 } else { own }
     }
 
@@ -184,19 +187,21 @@ impl Inertia {
         (0..self.drives).map(|k| self.momentum(k)).sum()
     }
 
-    /// D_1, or of the first drive that has one, kg m²: n_B is −b̈ times it. 0 where every motion is reactionless.
+    /// Returns the first D_k that is not 0, usually D_1, kg m²: n_B is −b̈ times this. 0 if every motion is
+    /// reactionless.
     pub fn pose_inertia(&self) -> f64 {
         (0..self.drives).map(|k| self.momentum(k)).find(|d| *d != 0.0).unwrap_or(0.0)
     }
 
-    /// λ_k = D_k / D_1 of an invariant machine, (12); D_1 is that of the first drive that has one, and where none has,
-    /// every λ_k is 0.
+    /// Returns λ_k = D_k / D_1 of an invariant machine, (12). If D_1 is 0, the first D_k that is not 0 takes its place;
+    /// if all are 0, every λ_k is 0.
     pub fn lambda(&self) -> PerDrive {
         let first = self.pose_inertia();
         PerDrive::from_fn(self.drives, |k| if first == 0.0 { 0.0 } else { self.momentum(k) / first })
     }
 
-    /// Inertia of all that turns if drives and base turn as one, kg m², where all C_kl vanish: gears do not count.
+    /// Returns the inertia if drives and base turn together as one body, kg m², where all C_kl vanish: gear ratios then
+    /// have no effect.
     pub fn locked(&self) -> f64 {
         let gears = |t: &Turning| {
             let turn = t.rates[..self.drives].iter().sum::<f64>();
@@ -206,8 +211,8 @@ impl Inertia {
         self.diagonals().iter().sum::<f64>() + all + self.rotors.iter().map(gears).sum::<f64>()
     }
 
-    /// Angular momentum of the rotors for rates of the drives and a base that turns behind them, less what the mass
-    /// matrix of the drives alone has of it, kg m²/s.
+    /// Returns the angular momentum of the rotors, kg m²/s, less the part in the mass matrix of the drives alone. `qd`
+    /// holds the rates of the drives and, after these, of a base that turns.
     pub(crate) fn of_base(&self, qd: &[f64]) -> f64 {
         let of = |t: &Turning| {
             let turn = |n: usize| t.rates.iter().zip(&qd[..n]).map(|(r, qd)| r * qd).sum::<f64>();
@@ -217,12 +222,13 @@ impl Inertia {
         self.rotors.iter().filter(|t| t.inertia > 0.0).map(of).sum()
     }
 
-    /// Where the motors sit.
+    /// Returns the placement of the motors.
     pub fn motors(&self) -> &Motors {
         &self.motors
     }
 
-    /// What motor k turns alone, kg m², where all C_kl vanish: all that its drive carries, held to it.
+    /// Returns the inertia that motor k turns if it turns alone, kg m², where all C_kl vanish: that of its drive and of
+    /// all drives which this carries.
     pub fn carried(&self, k: usize) -> f64 {
         if !self.motors.in_joints() {
             return self.diagonal(k);
@@ -231,60 +237,63 @@ impl Inertia {
         all().map(|i| all().map(|j| self.constant(i, j)).sum::<f64>()).sum()
     }
 
-    /// Whether H is its diagonal where all C_kl vanish, and every motor turns its drive alone: τ_k = H_kk q̈_k.
+    /// Returns whether H is diagonal where all C_kl vanish, and all motors sit on the base: τ_k = H_kk q̈_k.
     pub fn is_decoupled(&self) -> bool {
         !self.motors.in_joints() && self.gears.iter().flatten().all(|g| *g == 0.0)
     }
 
-    /// The pairs k < l in the paper's order (1,2), (1,3), (2,3) …, counted from 0.
+    /// Returns the pairs k < l, counted from 0, in the order (1,2), (1,3) … (2,3) … of the paper.
     pub fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
         (0..n).flat_map(move |k| (k + 1..n).map(move |l| (k, l)))
     }
 
-    /// Largest |g_k|, kg m: 0 is force balance, (7).
+    /// Returns the largest |g_k|, kg m: 0 for a force balanced machine, (7).
     pub fn force_residual(&self) -> f64 {
         self.g[..self.drives].iter().fold(0.0, |m, g| m.max(g.norm()))
     }
 
-    /// Largest |C_kl|, k ≠ l, kg m²: 0 is an invariant mass matrix, (8).
+    /// Returns the largest |C_kl|, k ≠ l, kg m²: 0 for an invariant mass matrix, (8).
     pub fn invariance_residual(&self) -> f64 {
         Self::pairs(self.drives).fold(0.0, |m, (k, l)| m.max(self.c[k][l].norm()))
     }
 
-    /// How far the mass matrix and D depend on the pose: the largest |C_kl| as a share of Σ H_kk.
+    /// Returns the largest |C_kl|, k ≠ l, as a fraction of Σ H_kk: a measure of how the mass matrix depends on the
+    /// pose.
     pub fn pose_dependence(&self) -> f64 {
         self.invariance_residual() / self.diagonals().iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// Whether no force reaches the base: every |g_k| below 1e-9 of what the mass and size make possible.
+    /// Returns whether motion exerts no force on the base: every |g_k| is at most [`BALANCED`] M √(Σ H_kk / M).
     pub fn is_force_balanced(&self) -> bool {
         self.force_residual() <= self.least_first_moment()
     }
 
-    /// Whether the mass matrix is the same in every pose.
+    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCED`] Σ H_kk.
     pub fn is_invariant(&self) -> bool {
         self.invariance_residual() <= self.least_coupling()
     }
 
-    /// Whether neither force nor coupling is left, (7) and (8).
+    /// Returns whether the machine is force balanced and its mass matrix invariant, (7) and (8).
     pub fn is_balanced(&self) -> bool {
         self.is_force_balanced() && self.is_invariant()
     }
 
-    /// A |g_k| up to this counts as none, kg m.
+    /// Tolerance of |g_k|, kg m: up to this it is treated as zero.
     pub(crate) fn least_first_moment(&self) -> f64 {
         BALANCED * self.mass * self.size()
     }
 
-    /// A |C_kl| up to this counts as none, kg m².
+    /// Tolerance of |C_kl|, kg m²: up to this it is treated as zero.
     pub(crate) fn least_coupling(&self) -> f64 {
         BALANCED * self.mass * self.size().powi(2)
     }
 
+    /// Length scale √(Σ H_kk / M), m.
+    /// Length scale √(Σ H_kk / M), m.
     fn size(&self) -> f64 {
         (0..self.drives).map(|k| self.diagonal(k)).sum::<f64>().max(0.0).sqrt() / self.mass.sqrt()
     }
 }
 
-/// Residuals below this part of the machine's own scale count as zero.
+/// Relative tolerance of balance: residuals up to this fraction of the machine's own scale are treated as zero.
 pub const BALANCED: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! [`ROWS`]: every key of a machine that can be set by itself, with all that is known of it and where it stands.
+//! [`ROWS`]: every key of a machine that can be set on its own, with its description and access to its value.
 
 use toml::Value;
 
@@ -13,27 +13,28 @@ use super::spec::MachineSpec;
 use crate::settings::change::DEFAULT;
 use crate::settings::key::{Holds, Key};
 
-/// A key, and where its value stands.
+/// A key, with access to its value.
 pub(super) struct Row {
     pub key: Key,
     pub at: At,
-    /// Whether it has an effect on a machine, and whether that is pushed at its end effector decides; none: always.
+    /// Returns whether the key has an effect on a machine; the flag: whether a force acts on its end effector. `None`:
+    /// always.
     pub uses: Option<fn(&MachineSpec, bool) -> bool>,
 }
 
-/// Where a value stands: of the i-th body of its kind.
+/// Functions that read and write the value of the i-th body of its kind.
 pub(super) enum At {
     Number(fn(&MachineSpec, usize) -> f64, fn(&mut MachineSpec, usize) -> &mut f64),
     Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
     Pair(fn(&MachineSpec, usize) -> [f64; 2], fn(&mut MachineSpec, usize) -> &mut [f64; 2]),
     Switch(fn(&MachineSpec, usize) -> bool, fn(&mut MachineSpec, usize) -> &mut bool),
-    /// The least and the greatest value of an angle.
-    Ends(fn(&MachineSpec, usize) -> [Option<f64>; 2], fn(&mut MachineSpec, usize) -> [&mut Option<f64>; 2]),
-    /// m: several may share it.
+    /// Lower and upper limit of an angle, rad.
+    Bounds(fn(&MachineSpec, usize) -> [Option<f64>; 2], fn(&mut MachineSpec, usize) -> [&mut Option<f64>; 2]),
+    /// A length, m, which several links may share.
     Metres(fn(&Machine, usize) -> f64, fn(&mut MachineSpec, usize, f64) -> Result<(), MachineError>),
 }
 
-/// What is read and written in one place.
+/// Makes both functions of an [`At`] from one place expression.
 macro_rules! at {
     ($kind:ident, |$spec:ident, $i:tt| $place:expr) => {
         At::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)
@@ -46,7 +47,7 @@ const fn row(key: Key, at: At) -> Row {
 
 const UNLIMITED: &str = "no limit";
 
-/// Every key of a machine that can be set by itself; its links, drives and angles go by their names, its
+/// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights by their numbers, from 1.
 pub(super) const ROWS: [Row; 23] = [
     row(
@@ -162,7 +163,7 @@ pub(super) const ROWS: [Row; 23] = [
             "Least and greatest value of a relative joint angle; without them it turns freely.",
         )
         .instead(UNLIMITED),
-        At::Ends(
+        At::Bounds(
             |spec, i| [spec.angles[i].min, spec.angles[i].max],
             |spec, i| {
                 let angle = &mut spec.angles[i];
@@ -238,12 +239,12 @@ pub const KEYS: [Key; ROWS.len()] = {
 };
 
 impl Row {
-    /// The row of a key.
+    /// Returns the row of a key.
     pub fn of(path: &str) -> Option<&'static Self> {
         ROWS.iter().find(|row| row.key.matches(path))
     }
 
-    /// What stands there in a machine; the word `default` for nothing.
+    /// Returns the value of the i-th body in a machine; the word `default` if it is not given.
     pub fn value(&self, machine: &Machine, i: usize) -> Value {
         let spec = machine.spec();
         let or_default = |value: Option<Value>| value.unwrap_or_else(|| DEFAULT.into());
@@ -252,7 +253,7 @@ impl Row {
             At::Limit(of, _) => or_default(of(spec, i).map(Value::from)),
             At::Pair(of, _) => of(spec, i).to_vec().into(),
             At::Switch(of, _) => of(spec, i).into(),
-            At::Ends(of, _) => {
+            At::Bounds(of, _) => {
                 let [low, high] = of(spec, i);
                 or_default(low.zip(high).map(|(low, high)| vec![low, high].into()))
             }
@@ -260,7 +261,8 @@ impl Row {
         }
     }
 
-    /// Refuses a number that is none, or out of range. Lengths and the ends of angles stand elsewhere in a file.
+    /// Checks that the numbers of the i-th body are finite and within range. Lengths and limits of angles have other
+    /// keys in files and are checked elsewhere.
     pub fn check(&self, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
         let Some(range) = self.key.range() else { return Ok(()) };
         let place = |k: Option<usize>| {
@@ -273,12 +275,12 @@ impl Row {
             At::Pair(of, _) => {
                 of(spec, i).into_iter().enumerate().try_for_each(|(k, value)| within(range, value, || place(Some(k))))
             }
-            At::Switch(..) | At::Ends(..) | At::Metres(..) => Ok(()),
+            At::Switch(..) | At::Bounds(..) | At::Metres(..) => Ok(()),
         }
     }
 }
 
-/// The rows of a kind of body, which is the first word of their keys.
+/// Returns the rows of a kind of body, which is the first word of their keys.
 pub(super) fn rows_of(part: &str) -> Vec<&'static Row> {
     ROWS.iter().filter(|row| row.key.part() == part).collect()
 }

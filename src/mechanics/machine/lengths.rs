@@ -1,4 +1,4 @@
-//! Lengths by key: those with a name, and those of links, which may share one.
+//! Access to lengths by key: named lengths, and lengths of links, which may share a named one.
 
 use super::error::MachineError;
 use super::model::Machine;
@@ -6,7 +6,7 @@ use super::spec::{Length, MachineSpec};
 use crate::settings::range::{clipped, shortened};
 
 impl MachineSpec {
-    /// Every length that a machine has, m: named ones, and under the names of links those of links that share none.
+    /// Returns every length of a machine, m: named lengths, and under the link's name those that links do not share.
     pub fn own_lengths(&self) -> impl Iterator<Item = (&str, f64)> {
         let named = self.lengths.iter().map(|(name, length)| (name.as_str(), *length));
         let alone = self.links.iter().filter_map(|link| match link.length {
@@ -17,23 +17,26 @@ impl MachineSpec {
     }
 }
 
-/// A named length, m.
+/// Returns the i-th named length, m.
 pub(super) fn length_at(machine: &Machine, i: usize) -> f64 {
     machine.spec().lengths.values().nth(i).copied().unwrap_or_default()
 }
 
-/// Sets it for all that share it.
+/// Sets the i-th named length, m, for all links that share it.
 pub(super) fn set_length(spec: &mut MachineSpec, i: usize, metres: f64) -> Result<(), MachineError> {
     spec.lengths.values_mut().skip(i).take(1).for_each(|length| *length = metres);
     Ok(())
 }
 
-/// The length of a link, m, whatever it shares.
+/// Returns the length of a link, m, shared or not.
 pub(super) fn link_length(machine: &Machine, j: usize) -> f64 {
     machine.resolved_links()[j].length
 }
 
-/// A length may be set through its only bar; one that others share, or that a point is named by, may not.
+/// Sets the length of a link, m.
+///
+/// # Errors
+/// If other links share the length.
 pub(super) fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), MachineError> {
     let name = match &mut spec.links[j].length {
         Length::Metres(l) => {

@@ -1,9 +1,9 @@
 //! Machines: drives at B or in joints, links that each keep the orientation of one drive, pins that close
 //! parallelograms.
 //!
-//! A [`MachineSpec`] is what a file says; a [`Machine`] is one that has been checked, so every machine is valid:
-//! finite, positive masses, no cycles, every loop closed in every pose. To change a machine, change its spec
-//! ([`Machine::set`]) and it is checked again.
+//! A [`MachineSpec`] is the content of a file; a [`Machine`] is a specification that has been checked. So every machine
+//! is valid: finite numbers, positive masses, no cycles, every loop closed in every pose. [`Machine::set`] changes the
+//! specification and checks it again.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

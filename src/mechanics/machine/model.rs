@@ -1,4 +1,4 @@
-//! [`Machine`]: a description that has been checked, with what follows from it.
+//! [`Machine`]: a checked specification with the quantities derived from it.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use super::motors::Motors;
 use super::spec::{Link, MachineSpec};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
-/// A valid machine; copies share what they hold, so they are made and told from others at once.
+/// A valid machine. Copies share their data, so that copying is cheap, and so is comparing copies.
 #[derive(Clone, Debug)]
 pub struct Machine(Arc<Model>);
 
-/// What a machine holds.
+/// Data of a machine.
 #[derive(Debug, PartialEq)]
 pub(super) struct Model {
     pub(super) spec: MachineSpec,
@@ -25,22 +25,22 @@ pub(super) struct Model {
     pub(super) motors: Motors,
 }
 
-/// What is derived of a link.
+/// Quantities derived from the specification of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedLink {
     /// The drive whose orientation it has, counted from 0.
     pub drive: usize,
-    /// ±1: along or against e(q).
+    /// Direction of the link: +1 along e(q), −1 against it.
     pub sign: f64,
-    /// Root to tip, m.
+    /// Length from root to tip, m.
     pub length: f64,
-    /// Its root.
+    /// Position of its root, m.
     pub root: Chain,
-    /// The link its root is pinned to; none: the base.
+    /// The link to which its root is pinned; `None` for the base.
     pub parent: Option<usize>,
-    /// How far from the root of that link, m; 0 on the base.
+    /// Position of its root along the parent, from the parent's root, m; 0 on the base.
     pub at: f64,
-    /// Where pins sit along it, m from the root, in rising order and without repetition.
+    /// Positions of pins along it, from the root, m, in ascending order without duplicates.
     pub pins: Vec<f64>,
 }
 
@@ -49,31 +49,31 @@ pub struct ResolvedLink {
 pub struct RelativeAngle {
     /// Its name.
     pub name: String,
-    /// Drive, counted from 0.
+    /// Index of the drive whose angle counts positive, from 0.
     pub to: usize,
-    /// Drive, counted from 0.
+    /// Index of the drive whose angle counts negative, from 0.
     pub from: usize,
-    /// rad.
+    /// Offset, rad.
     pub offset: f64,
-    /// rad.
+    /// Limits, rad; infinite if there are none.
     pub limits: RangeInclusive<f64>,
 }
 
 /// A closure, resolved: a point of link `a` is pinned to a point of link `b`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResolvedClosure {
-    /// A link.
+    /// Index of the first link.
     pub a: usize,
-    /// Where on it, m from its root.
+    /// Position of the pin along link `a`, from its root, m.
     pub at_a: f64,
-    /// Another link.
+    /// Index of the second link.
     pub b: usize,
-    /// Where on that, m from its root.
+    /// Position of the pin along link `b`, from its root, m.
     pub at_b: f64,
 }
 
 impl ResolvedLink {
-    /// The point `s` metres from the root.
+    /// Returns the point at distance `s`, m, from the root.
     pub fn point(&self, s: f64) -> Chain {
         let mut c = self.root;
         c[self.drive] += self.sign * s;
@@ -94,7 +94,7 @@ impl PartialEq for Machine {
 }
 
 impl Machine {
-    /// What it was made of.
+    /// Returns the specification of the machine.
     pub fn spec(&self) -> &MachineSpec {
         &self.0.spec
     }
@@ -109,22 +109,23 @@ impl Machine {
         self.0.spec.drives.len()
     }
 
-    /// Whether a place of the end effector leaves the drives freedoms.
+    /// Returns whether the drives keep degrees of freedom when the end effector is held in place.
     pub fn is_redundant(&self) -> bool {
         self.redundancy() > 0
     }
 
-    /// How many freedoms of the drives a place of the end effector leaves; holding b takes one of them.
+    /// Returns the number of degrees of freedom that the drives keep when the end effector is held in place. Holding b
+    /// takes one of them.
     pub fn redundancy(&self) -> usize {
         self.drives().saturating_sub(2)
     }
 
-    /// Its links, each with the counterweights that it carries as one body; as described where it carries none.
+    /// Returns its links, each combined with the counterweights that it carries.
     pub fn links(&self) -> &[Link] {
         &self.0.bodies
     }
 
-    /// Its links as resolved, in the same order.
+    /// Returns the derived quantities of its links, in the order of [`links`](Self::links).
     pub fn resolved_links(&self) -> &[ResolvedLink] {
         &self.0.parts
     }
@@ -134,12 +135,12 @@ impl Machine {
         &self.0.end_effector
     }
 
-    /// How far the end effector can be from B at most, Σ |L_k|, m.
+    /// Returns the upper bound of the end effector's distance from B, Σ |L_k|, m.
     pub fn reach(&self) -> f64 {
         self.0.end_effector.iter().map(|length| length.abs()).sum()
     }
 
-    /// The link that carries the end effector.
+    /// Returns the index of the link that carries the end effector.
     pub fn end_link(&self) -> usize {
         self.0.end_link
     }
@@ -149,12 +150,12 @@ impl Machine {
         &self.0.angles
     }
 
-    /// Its closures as resolved, in the order of the file.
+    /// Returns its closures, resolved, in the order of the file.
     pub fn loops(&self) -> &[ResolvedClosure] {
         &self.0.loops
     }
 
-    /// Where its motors sit.
+    /// Returns the placement of its motors.
     pub fn motors(&self) -> &Motors {
         &self.0.motors
     }
@@ -177,8 +178,7 @@ impl Machine {
         a
     }
 
-    /// For every pin that closes a loop, how its one description differs from the other: a sum of unit vectors that is
-    /// zero in every pose.
+    /// Returns for every closure the difference of its two points, a sum of unit vectors that is zero in every pose.
     pub fn closure_gaps(&self) -> Vec<Chain> {
         let gap = |l: &ResolvedClosure| {
             let (a, b) = (self.0.parts[l.a].point(l.at_a), self.0.parts[l.b].point(l.at_b));

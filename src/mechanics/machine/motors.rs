@@ -1,4 +1,4 @@
-//! [`Motors`]: where the stators sit, and what follows of angles and torques.
+//! [`Motors`]: placement of the stators, and the resulting relations between angles and torques of drives and motors.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -9,13 +9,13 @@
 
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 
-/// Which motor's stator sits on which drive's links. All on the base: A is the identity, and nothing is computed.
+/// For each motor, the drive on whose links its stator sits. If all sit on the base, A is the identity and is skipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motors {
     drives: usize,
     /// The drive that carries each stator; [`BASE`] for the base.
     on: [usize; MAX_DRIVES],
-    /// Drives in an order in which none comes before the one that carries it.
+    /// Drives, each after the drive that carries its stator.
     order: [usize; MAX_DRIVES],
     in_joints: bool,
 }
@@ -23,7 +23,7 @@ pub struct Motors {
 const BASE: usize = usize::MAX;
 
 impl Motors {
-    /// From the drive that carries each stator, none for the base; they run in no circle.
+    /// Takes the drive that carries each stator, `None` for the base. They must not form a cycle.
     pub(super) fn new(on: &[Option<usize>]) -> Self {
         let mut motors = Self {
             drives: on.len(),
@@ -37,26 +37,26 @@ impl Motors {
         motors
     }
 
-    /// The drive on whose links the stator of drive k sits; none: on the base.
+    /// Returns the drive on whose links the stator of drive k sits; `None` for the base.
     #[inline]
     pub fn on(&self, k: usize) -> Option<usize> {
         (self.on[k] != BASE).then_some(self.on[k])
     }
 
-    /// Whether some stator does not sit on the base.
+    /// Returns whether some stator sits on a link rather than on the base.
     #[inline]
     pub fn in_joints(&self) -> bool {
         self.in_joints
     }
 
-    /// Drives whose stators others carry, each with its carrier, carriers first.
+    /// Returns the drives whose stators sit on links, each with the drive that carries it, carriers first.
     #[inline(always)]
     fn carried(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> {
         let drives = if self.in_joints { self.drives } else { 0 };
         self.order[..drives].iter().filter_map(|&k| Some((k, self.on(k)?)))
     }
 
-    /// A x: angles, rates or accelerations of the motors from those of the drives. What lies beyond the drives stays.
+    /// Returns A x: angles, rates or accelerations of the motors from those of the drives.
     #[inline]
     #[must_use]
     pub fn turns(&self, x: &PerDrive) -> PerDrive {
@@ -65,7 +65,7 @@ impl Motors {
         turns
     }
 
-    /// The same in place.
+    /// Replaces x by A x; elements beyond the drives stay unchanged.
     #[inline(always)]
     pub(crate) fn turn(&self, x: &mut [f64]) {
         for (k, on) in self.carried().rev() {
@@ -73,7 +73,7 @@ impl Motors {
         }
     }
 
-    /// A⁻¹ x in place: of the drives from those of the motors.
+    /// Replaces x by A⁻¹ x: angles, rates or accelerations of the drives from those of the motors.
     #[inline(always)]
     pub(crate) fn drive(&self, x: &mut [f64]) {
         for (k, on) in self.carried() {
@@ -81,7 +81,7 @@ impl Motors {
         }
     }
 
-    /// A⁻ᵀ τ: torques of the motors from generalised ones.
+    /// Returns A⁻ᵀ τ, N m: torques of the motors from generalised ones.
     #[inline]
     #[must_use]
     pub fn torques(&self, generalised: &PerDrive) -> PerDrive {
@@ -90,7 +90,7 @@ impl Motors {
         torques
     }
 
-    /// The same in place.
+    /// Replaces τ by A⁻ᵀ τ.
     #[inline(always)]
     pub(crate) fn give(&self, torque: &mut [f64]) {
         for (k, on) in self.carried().rev() {
@@ -98,7 +98,7 @@ impl Motors {
         }
     }
 
-    /// Aᵀ m: generalised torques from those of the motors, with what comes back to the base left out.
+    /// Returns Aᵀ m, N m: generalised torques from those of the motors, without their reactions on the base.
     #[inline]
     #[must_use]
     pub fn generalised(&self, torques: &PerDrive) -> PerDrive {
@@ -109,7 +109,7 @@ impl Motors {
         generalised
     }
 
-    /// Whether drive l is k or carried by it.
+    /// Returns whether drive l is drive k or is carried by it, directly or through others.
     pub fn carries(&self, k: usize, l: usize) -> bool {
         std::iter::successors(Some(l), |l| self.on(*l)).take(MAX_DRIVES).any(|l| l == k)
     }

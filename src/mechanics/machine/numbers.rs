@@ -1,4 +1,4 @@
-//! [`check_numbers`]: that every number of a description is one, and lies where it may.
+//! [`check_numbers`] checks that every number of a specification is finite and within its range.
 
 use super::error::{MachineError, Place};
 use super::keys::rows_of;
@@ -6,7 +6,7 @@ use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
 use crate::settings::range::Want;
 
-/// Refuses the first number that is none, or out of the range of its key.
+/// Checks every number of a specification; returns an error for the first that is not finite or out of range.
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     let check = |part: &str, bodies: usize| {
         let rows = rows_of(part);

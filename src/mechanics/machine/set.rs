@@ -1,4 +1,4 @@
-//! Settings of a machine by key, as files, edits and `--set` name them.
+//! Reads and changes settings of a machine by the keys of files, edits and `--set`.
 
 use toml::{Table, Value};
 
@@ -11,23 +11,24 @@ use crate::settings::key::{self, Key};
 /// The tables and keys of a scenario that set its machine.
 pub const PARTS: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
 
-/// Whether a setting, such as `link.5.com`, is of the machine.
+/// Returns whether a setting, such as `link.5.com`, belongs to the machine.
 pub fn is_of_machine(path: &str) -> bool {
     PARTS.contains(&path.split('.').next().unwrap_or_default())
 }
 
 impl Machine {
-    /// The same without its counterweights, but for those that are fixed.
+    /// Returns the machine without its counterweights, except fixed ones.
     ///
     /// # Errors
-    /// If only they make it a machine.
+    /// If the machine is not valid without them.
     pub fn without_counterweights(&self) -> Result<Self, MachineError> {
         let mut spec = self.spec().clone();
         spec.counterweights.retain(|weight| weight.fixed);
         Self::new(spec)
     }
 
-    /// A machine with one setting changed; `value` is one number, two parted by a comma, or the word `default`.
+    /// Returns the machine with one setting changed. `value` is a number, two numbers separated by a comma, `true` or
+    /// `false`, or the word `default`.
     ///
     /// # Errors
     /// If there is no such key, the value cannot be read, or the machine would no longer be valid.
@@ -35,7 +36,7 @@ impl Machine {
         self.set_all([(key, value)])
     }
 
-    /// A machine with several settings changed together, checked once at the end.
+    /// Returns the machine with several settings changed together, checked once at the end.
     ///
     /// # Errors
     /// As [`set`](Self::set).
@@ -47,7 +48,7 @@ impl Machine {
         Self::new(spec)
     }
 
-    /// The same with the settings as tables: `{ link = { 5 = { com = -0.02 } } }`.
+    /// Returns the machine with the settings of nested tables changed: `{ link = { 5 = { com = -0.02 } } }`.
     ///
     /// # Errors
     /// As [`set`](Self::set).
@@ -59,19 +60,19 @@ impl Machine {
         Self::new(spec)
     }
 
-    /// Whether a setting has an effect as things are; `pushed` if a force is held at the end effector.
+    /// Returns whether a setting has an effect on this machine; `pushed`: whether a force acts on the end effector.
     pub fn uses(&self, key: &str, pushed: bool) -> bool {
         Row::of(key).and_then(|row| row.uses).is_none_or(|uses| uses(self.spec(), pushed))
     }
 
-    /// The settings that are given and have no effect.
+    /// Returns the settings that differ from their default but have no effect.
     pub fn idle_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
         let is_given = |row: &Row| !change::same(&row.value(self, 0), &change::value(row.key.default));
         let idle = move |row: &&Row| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
         ROWS.iter().filter(idle).map(|row| row.key.path)
     }
 
-    /// What a setting holds; the word `default` for one that is not there, `None` if there is no such key.
+    /// Returns the value of a setting; the word `default` if it is not given, `None` if there is no such key.
     pub fn value(&self, key: &str) -> Option<Value> {
         let weights = &self.spec().counterweights;
         match key {
@@ -86,7 +87,7 @@ impl Machine {
 }
 
 fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), MachineError> {
-    // All of them, as a file lists them.
+    // The key of the whole list, as in a file.
     if key == "counterweight" {
         let want = "a list of { link, mass, at, radius, fixed }, or the word default for none";
         let all = || value.clone().try_into().map_err(|_| bad(key, value, want));
@@ -95,36 +96,37 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     }
     let unknown =
         || MachineError::UnknownKey { key: key.into(), known: key::in_words(KEYS.map(|key| key.path)).join(", ") };
-    if !ROWS.iter().any(|row| is_beside(row.key.path, key)) {
+    if !ROWS.iter().any(|row| shares_head(row.key.path, key)) {
         return Err(unknown());
     }
-    // Who is not there has no keys.
+    // Keys of a body that does not exist are errors.
     let i = body_of(spec, key)?;
     let row = Row::of(key).ok_or_else(unknown)?;
-    // The default of a key that has to be given is no value.
-    let usual = Some(row.key.default).filter(|usual| is_default(value) && *usual != Key::REQUIRED).map(change::value);
-    let value = usual.as_ref().unwrap_or(value);
+    // A required key has no default value.
+    let default =
+        Some(row.key.default).filter(|default| is_default(value) && *default != Key::REQUIRED).map(change::value);
+    let value = default.as_ref().unwrap_or(value);
     match row.at {
         At::Number(_, of) => *of(spec, i) = number(key, value)?,
         At::Limit(_, of) => *of(spec, i) = if is_none(value) { None } else { Some(number(key, value)?) },
         At::Pair(_, of) => *of(spec, i) = pair(key, value)?,
         At::Switch(_, of) => *of(spec, i) = switch(key, value)?,
-        At::Ends(_, of) => {
-            let ends = if is_none(value) { [None; 2] } else { pair(key, value)?.map(Some) };
-            of(spec, i).into_iter().zip(ends).for_each(|(end, to)| *end = to);
+        At::Bounds(_, of) => {
+            let bounds = if is_none(value) { [None; 2] } else { pair(key, value)?.map(Some) };
+            of(spec, i).into_iter().zip(bounds).for_each(|(end, to)| *end = to);
         }
         At::Metres(_, set) => set(spec, i, number(key, value)?)?,
     }
     Ok(())
 }
 
-/// Whether a key is one of those that differ from a pattern in their last part only.
-fn is_beside(pattern: &str, key: &str) -> bool {
+/// Returns whether a key matches a pattern in all parts but the last, in which it may differ.
+fn shares_head(pattern: &str, key: &str) -> bool {
     let (of, head) = (pattern.rsplit_once('.'), key.rsplit_once('.'));
     of.zip(head).map_or(pattern == key, |((pattern, _), (head, _))| key::names(pattern, head))
 }
 
-/// The place of the body that a key is of among those of its kind; the first of what there is one of.
+/// Returns the index of the body that a key belongs to, among those of its kind; 0 for kinds with a single body.
 fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
     let mut parts = key.split('.');
     let (part, name) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
@@ -152,7 +154,7 @@ fn is_default(value: &Value) -> bool {
     value.as_str() == Some(DEFAULT)
 }
 
-/// Whether a value takes out what stands by default for nothing.
+/// Returns whether a value removes an optional setting: the word `default`, or that for none.
 fn is_none(value: &Value) -> bool {
     is_default(value) || value.as_str() == Some(Key::NONE)
 }

@@ -1,4 +1,4 @@
-//! A machine as a file states it: plain data, not yet checked.
+//! [`MachineSpec`]: the content of a machine file as plain data, not yet checked.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct MachineSpec {
     /// Short name, as used on the command line.
     pub name: String,
-    /// One line about it.
+    /// Summary in one line.
     #[serde(default)]
     pub summary: String,
     /// Acceleration of gravity in base axes, m/s².
@@ -32,7 +32,7 @@ pub struct MachineSpec {
     /// Pins that close loops.
     #[serde(default, rename = "closure", skip_serializing_if = "Vec::is_empty")]
     pub closures: Vec<Closure>,
-    /// The point that works.
+    /// The end effector, a point of a link.
     pub end_effector: Option<Point>,
     /// Relative joint angles, which carry the joint limits.
     #[serde(default, rename = "angle", skip_serializing_if = "Vec::is_empty")]
@@ -47,13 +47,13 @@ fn is_zero(v: &[f64; 2]) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Payload {
-    /// kg.
+    /// Mass, kg.
     #[serde(default)]
     pub mass: f64,
-    /// About its own centre of mass, kg m².
+    /// Inertia about its own centre of mass, kg m².
     #[serde(default)]
     pub inertia: f64,
-    /// Its centre of mass seen from the end effector: along the link that holds it, and to its left, m.
+    /// Its centre of mass relative to the end effector: along the link that holds it, and to the left of that, m.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: [f64; 2],
     /// Height of its centre of mass, and of a force on the end effector, along the drives' axis from the plane of
@@ -67,7 +67,7 @@ impl Payload {
         *self == Self::default()
     }
 
-    /// Both held together as one: its mass, its common centre of mass, and its inertia about that.
+    /// Returns both payloads combined to one body: their total mass, common centre of mass, and inertia about that.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let mass = self.mass + other.mass;
@@ -82,39 +82,39 @@ impl Payload {
     }
 }
 
-/// An actuator. Its limits are of the motor's own angle: that between what it turns and what its stator sits on.
+/// An actuator. Its limits apply to the motor's angle: of the links that it turns relative to the stator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
     /// Its name.
     pub name: String,
-    /// The drive on whose links its stator sits; none: on the base.
+    /// The drive on whose links its stator sits; `None` for the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// What turns in the motor, behind its gear; none: nothing that counts.
+    /// The motor's rotor, before the gear; `None` if its inertia is negligible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotor: Option<Rotor>,
-    /// The greatest torque it gives either way, N m; none: unlimited.
+    /// Limit of |torque|, N m; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_limit: Option<f64>,
-    /// The greatest |q̇| it turns at, rad/s; none: unlimited.
+    /// Limit of |q̇|, rad/s; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<f64>,
-    /// The greatest |q̈| asked of it, rad/s²; none: unlimited.
+    /// Limit of the planned |q̈|, rad/s²; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceleration_limit: Option<f64>,
-    /// The greatest |q⃛| asked of it, rad/s³, by laws that keep jerk in bounds; none: unlimited.
+    /// Limit of the planned |q⃛|, rad/s³, for time laws that bound jerk; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jerk_limit: Option<f64>,
 }
 
-/// What turns in a motor. Its mass belongs to the link that carries it.
+/// The rotor of a motor. Its mass belongs to the link that carries it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rotor {
-    /// About its axis, kg m².
+    /// Inertia about its axis, kg m².
     pub inertia: f64,
-    /// How often it turns, seen from its stator, for one turn of the drive; below 0 the other way round.
+    /// Gear ratio: turns of the rotor relative to the stator for one turn of the drive; negative if it reverses.
     #[serde(default = "direct")]
     pub ratio: f64,
 }
@@ -137,20 +137,20 @@ pub struct Link {
     pub name: String,
     /// The drive whose orientation it has.
     pub drive: String,
-    /// Where its root is pinned.
+    /// The point to which its root is pinned.
     pub attach: Attach,
-    /// 1: it runs along e(q); −1: along −e(q).
+    /// Direction of the link: 1 along e(q), −1 along −e(q).
     #[serde(default = "forwards", skip_serializing_if = "is_forwards")]
     pub direction: i8,
-    /// From root to tip, m.
+    /// Length from root to tip, m.
     pub length: Length,
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// About its own centre of mass, kg m².
+    /// Inertia about its own centre of mass, kg m².
     pub inertia: f64,
-    /// l_c: centre of mass along the link, from the root towards the tip, m.
+    /// Position l_c of its centre of mass along the link, from the root towards the tip, m.
     pub com: f64,
-    /// Centre of mass off the link's axis, to the left of the direction root to tip, m.
+    /// Distance of its centre of mass from the link's axis, to the left of the direction root to tip, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub com_normal: f64,
     /// Height of its centre of mass along the drives' axis, from the plane of reference at B, m. The motion stays
@@ -159,22 +159,22 @@ pub struct Link {
     pub axial: f64,
 }
 
-/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link, and its mass is not
-/// in that of the link.
+/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link; the link's mass does
+/// not include it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counterweight {
     /// The link that carries it.
     pub link: String,
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// Its centre along the link, from the root towards the tip, m.
+    /// Position of its centre along the link, from the root towards the tip, m.
     pub at: f64,
-    /// m; 0: a point. Its inertia about its own centre is half of mass times radius squared.
+    /// Radius, m; 0 for a point. Its inertia about its own centre is half of mass times radius squared.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub radius: f64,
-    /// Whether it is part of the machine for other reasons than its balance, as a motor is: then it is neither taken off
-    /// nor changed for the sake of balance.
+    /// Whether it serves another purpose than balance, as a motor does. A fixed counterweight is neither removed nor
+    /// changed to balance the machine.
     #[serde(default, skip_serializing_if = "is_false")]
     pub fixed: bool,
 }
@@ -184,14 +184,14 @@ fn is_false(fixed: &bool) -> bool {
 }
 
 impl Counterweight {
-    /// About its own centre, kg m².
+    /// Returns its inertia about its own centre, kg m².
     pub fn inertia(&self) -> f64 {
         0.5 * self.mass * self.radius * self.radius
     }
 }
 
 impl Link {
-    /// The link and something fixed to its axis as one body: masses together, about their common centre.
+    /// Returns the link and a counterweight combined to one body, with its inertia about the common centre of mass.
     #[must_use]
     pub(super) fn with(&self, weight: &Counterweight) -> Self {
         let mass = self.mass + weight.mass;
@@ -216,13 +216,13 @@ fn is_nought(x: &f64) -> bool {
     *x == 0.0
 }
 
-/// Where a link hangs: at B, or on a point of another link.
+/// Attachment of a link's root: at B, or on a point of another link.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want \"base\", or a point of another link: { link = \"…\", at = \"tip\" }")]
 pub enum Attach {
     /// A point of another link.
     On(Point),
-    /// `"base"`.
+    /// At B: the word `"base"`.
     Base(String),
 }
 
@@ -232,7 +232,7 @@ pub enum Attach {
 pub struct Point {
     /// The link's name.
     pub link: String,
-    /// How far from its root.
+    /// Position along the link, from its root.
     #[serde(default)]
     pub at: PlaceOnLink,
 }
@@ -241,9 +241,9 @@ pub struct Point {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want a place along the link: \"tip\", \"root\", a number in m, or a named length")]
 pub enum PlaceOnLink {
-    /// m.
+    /// Distance from the root, m.
     Metres(f64),
-    /// `"tip"`, `"root"`, a named length, or `"-name"` for backwards.
+    /// `"tip"`, `"root"`, a named length, or `"-name"` for a named length in the opposite direction.
     Named(String),
 }
 
@@ -257,19 +257,19 @@ impl Default for PlaceOnLink {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want a length: a number in m, or a name under [lengths]")]
 pub enum Length {
-    /// m.
+    /// A length, m.
     Metres(f64),
-    /// A shared length.
+    /// The name of a shared length.
     Named(String),
 }
 
-/// Two descriptions of one point: a pin that closes a loop.
+/// A pin that closes a loop: two points that coincide in every pose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Closure {
-    /// The point as one link has it.
+    /// The point on the first link.
     pub a: Point,
-    /// The same point as another has it.
+    /// The point on the second link.
     pub b: Point,
 }
 
@@ -279,17 +279,17 @@ pub struct Closure {
 pub struct Angle {
     /// Its name.
     pub name: String,
-    /// A drive's name.
+    /// Name of the drive whose angle counts positive.
     pub to: String,
-    /// A drive's name.
+    /// Name of the drive whose angle counts negative.
     pub from: String,
-    /// rad.
+    /// Offset, rad.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub offset: f64,
-    /// Least value, rad; none: one turn from a half turn below 0, as without limits.
+    /// Lower limit, rad; `None` for no limits: poses are then sought in one turn, −π to π.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
-    /// Greatest value, rad.
+    /// Upper limit, rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! One number for each drive, and drive angles.
+//! [`PerDrive`], one number for each drive, and [`DriveAngles`].
 
 use std::ops::{Deref, DerefMut};
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::{Vector, unit};
 use crate::settings::number::counted;
 
-/// The most drives a machine can have.
+/// Maximum number of drives of a machine.
 pub const MAX_DRIVES: usize = 8;
 
-/// One number for each drive, without allocation. Reads and writes as a slice of the machine's drives.
+/// One number for each drive, without allocation. It dereferences to a slice with one element a drive.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(into = "Vec<f64>", try_from = "Vec<f64>")]
 pub struct PerDrive {
@@ -52,7 +52,7 @@ impl PerDrive {
     /// Σ_k a_k b_k.
     #[inline]
     pub fn dot(&self, other: &[f64]) -> f64 {
-        // Plain loops are quick in builds that do not optimise, too.
+        // Plain loops are also fast in unoptimised builds.
         let (count, mut sum, mut k) = (self.len.min(other.len()), 0.0, 0);
         while k < count {
             sum += self.values[k] * other[k];
@@ -113,21 +113,21 @@ impl PerDrive {
 }
 
 impl PerDrive {
-    /// The first N of the padded array.
+    /// Returns the first N elements of the padded array.
     #[inline]
     pub(crate) fn array<const N: usize>(&self) -> &[f64; N] {
         const { assert!(N <= MAX_DRIVES) }
         &self.values.as_chunks().0[0]
     }
 
-    /// The same to change.
+    /// Returns the first N elements of the padded array, mutable.
     #[inline]
     pub(crate) fn array_mut<const N: usize>(&mut self) -> &mut [f64; N] {
         const { assert!(N <= MAX_DRIVES) }
         &mut self.values.as_chunks_mut().0[0]
     }
 
-    /// The first `n` of an array that is zero beyond them.
+    /// Makes one from the first `n` elements of an array, whose other elements are zero.
     #[inline]
     pub(crate) fn of_array<const N: usize>(n: usize, values: [f64; N]) -> Self {
         Self { len: n, ..Self::from(values) }

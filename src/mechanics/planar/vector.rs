@@ -1,4 +1,4 @@
-//! Vectors of the plane, and what is made of them.
+//! Vectors of the plane, wrenches and poses.
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a.re * b.re + a.im * b.im
 }
 
-/// |v|, by squares: a third of the time of a length that no square can overflow.
+/// Returns |v| = √(x² + y²). It takes a third of the time of `norm`, but its squares can overflow.
 #[inline]
 pub fn length(v: Vector) -> f64 {
     v.norm_sqr().sqrt()
@@ -25,17 +25,17 @@ pub fn length(v: Vector) -> f64 {
 /// A force at B and a moment about B.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
-    /// N.
+    /// Force, N.
     pub force: Vector,
-    /// N m, out of the plane.
+    /// Moment about the axis normal to the plane, N m.
     pub moment: f64,
 }
 
-/// Where a body is and how it is turned.
+/// Position and orientation of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose2 {
-    /// m.
+    /// Position, m.
     pub at: Vector,
-    /// rad.
+    /// Angle, rad.
     pub angle: f64,
 }

@@ -1,4 +1,4 @@
-//! Actuators: which motors there are, and what they turn.
+//! Actuators: the motors of a model, and the bodies that they turn.
 
 use roxmltree::Node;
 
@@ -12,7 +12,8 @@ use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
 impl<'a> Coupled<'a> {
-    /// Actuators with their names; of several that turn the same the first, with all their torques.
+    /// Returns the actuators as motors. Several that turn the same sum of hinges become one, with the sum of their
+    /// torque limits.
     pub(super) fn actuators(&self) -> Result<Vec<(Element<'a>, Motor)>, ImportError> {
         let all = each(self.bodies.model, "actuator").flat_map(|node| node.children()).filter(Node::is_element);
         let mut found: Vec<(Element, Motor)> = Vec::new();
@@ -41,15 +42,15 @@ impl<'a> Coupled<'a> {
         }
         for (_, motor) in &mut found {
             if let Some(hinge) = motor.hinge.and_then(|i| self.bodies.hinge(i)) {
-                // What the hinge bears at most is a limit, too.
-                let bears = self.largest(hinge, "actuatorfrcrange", "actuatorfrclimited")?;
-                motor.torque_limit = motor.torque_limit.into_iter().chain(bears).reduce(f64::min);
+                // The torque limit of the hinge applies too.
+                let of_hinge = self.largest(hinge, "actuatorfrcrange", "actuatorfrclimited")?;
+                motor.torque_limit = motor.torque_limit.into_iter().chain(of_hinge).reduce(f64::min);
             }
         }
         Ok(found)
     }
 
-    /// The hinges that an actuator turns.
+    /// Returns the sum of hinges that an actuator turns.
     pub(super) fn moved(&self, element: &Element<'a>) -> Result<Sum, ImportError> {
         for attribute in ["joint", "jointinparent"] {
             if element.get(attribute).is_some() {
@@ -62,19 +63,19 @@ impl<'a> Coupled<'a> {
         }
     }
 
-    /// Motors with what they turn, as sets.
+    /// Returns the motors, each with the set that it turns and the set against which it turns it.
     pub(super) fn motors(&self) -> Result<Vec<(Motor, Against)>, ImportError> {
         let mut motors = Vec::new();
         for (element, motor) in self.actuators()? {
             let (to, from) = self.turned(element.node(), &self.moved(&element)?)?;
-            // The base is turned by no motor.
+            // The base comes second, because no motor turns it.
             let (to, from) = if to == self.base { (from, to) } else { (to, from) };
             motors.push((motor, (self.set(to), self.set(from))));
         }
         Ok(if motors.is_empty() { self.usual_motors() } else { motors })
     }
 
-    /// A motor in the first hinge of each set.
+    /// Returns a motor in the first hinge of each set, for models without actuators.
     fn usual_motors(&self) -> Vec<(Motor, Against)> {
         let (mut seen, mut motors) = (vec![self.base], Vec::new());
         for (i, part) in self.bodies.parts.iter().enumerate().filter(|(_, part)| part.hinge.is_some()) {
@@ -90,7 +91,10 @@ impl<'a> Coupled<'a> {
         motors
     }
 
-    /// Motors with the number of the set that carries each.
+    /// Returns the motors, each with the number of the motor whose set carries it.
+    ///
+    /// # Errors
+    /// If two motors turn the same set, or if no motor turns the set that carries one.
     pub(super) fn numbered(&self, motors: &[(Motor, Against)]) -> Result<Vec<Motor>, ImportError> {
         let number_of = |set: usize| motors.iter().position(|(_, (to, _))| *to == set);
         let numbered = |(k, (motor, (to, from))): (usize, &(Motor, Against))| {
@@ -110,7 +114,10 @@ impl<'a> Coupled<'a> {
         motors.iter().enumerate().map(numbered).collect()
     }
 
-    /// What hinges add to the inertia of their angles, kg m²: that of a motor is taken along.
+    /// Adds the armatures of hinges, kg m², to the motors that turn them.
+    ///
+    /// # Errors
+    /// If an armature is negative, or belongs to a hinge without a motor or to a motor with a rotor.
     pub(super) fn armatures(&self, motors: &mut [Motor], rotors: &[(usize, usize, f64)]) -> Result<(), ImportError> {
         for i in 0..self.base {
             let Some(hinge) = self.bodies.hinge(i) else { continue };
@@ -127,7 +134,7 @@ impl<'a> Coupled<'a> {
         Ok(())
     }
 
-    /// A motor by its own name, else by that of what it turns.
+    /// Reads a motor; without a name of its own it has that of the joint or tendon that it turns.
     fn motor(&self, element: &Element<'a>) -> Result<Motor, ImportError> {
         let own = ["name", "joint", "jointinparent", "tendon"].into_iter().find_map(|name| element.get(name));
         let name = own.unwrap_or("motor").to_owned();
@@ -143,7 +150,7 @@ impl<'a> Coupled<'a> {
         Ok(Motor { name, hinge, torque_limit: limit.map(|x| gear * x).filter(|x| *x > 0.0), ..Motor::default() })
     }
 
-    /// The largest number of a range that is a limit, either way.
+    /// Returns the largest magnitude of a range that is a limit.
     fn largest(
         &self,
         element: &Element<'a>,

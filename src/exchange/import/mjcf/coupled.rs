@@ -1,4 +1,4 @@
-//! [`Coupled`]: bodies, with what turns against what.
+//! [`Coupled`]: bodies, with the sets that turn together and the couplings between them.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +12,16 @@ use crate::exchange::import::read::{Source, each, number, word};
 use crate::exchange::import::refusal::{ImportError, wrong};
 use crate::settings::range::clipped;
 
-/// What couplings may do.
+/// The couplings that are supported, for messages.
 pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \
                                           coupling by 1 or -1 keeps two bodies parallel";
 
-/// A set, and one against which it turns.
+/// A set, and another against which it turns.
 pub(super) type Against = (usize, usize);
-/// Hinges, each with how much its angle about the common axis counts.
+/// A weighted sum of hinge angles about the common axis: parts with coefficients.
 pub(super) type Sum = Vec<(usize, f64)>;
 
-/// A part that is coupled to a sum of hinges, and how often it turns for one turn of that.
+/// A part that is coupled to a sum of hinges with a gear ratio.
 pub(super) struct Geared<'a> {
     pub part: usize,
     pub node: Node<'a, 'a>,
@@ -29,14 +29,14 @@ pub(super) struct Geared<'a> {
     pub ratio: f64,
 }
 
-/// Bodies, and what their loops and equalities keep together.
+/// Bodies, with the sets that their loops and equalities keep parallel.
 pub(super) struct Coupled<'a> {
     pub bodies: Bodies<'a>,
     pub signs: Vec<f64>,
-    /// Two axes of the plane.
+    /// Two axes of the plane, and its normal.
     pub plane: [Vector3<f64>; 3],
     pub owners: Vec<Option<usize>>,
-    /// What stands for the base among the parts.
+    /// Index that stands for the base among the parts.
     pub base: usize,
     pub tendons: BTreeMap<&'a str, Sum>,
     pub together: Together,
@@ -45,10 +45,10 @@ pub(super) struct Coupled<'a> {
 }
 
 impl<'a> Coupled<'a> {
-    /// Of bodies, before any equality is read.
+    /// Begins with bodies, before any equality is read.
     ///
     /// # Errors
-    /// If they have no common axis, or tendons are wrong.
+    /// If the hinges have no common axis, or if a tendon is wrong.
     pub fn of(bodies: Bodies<'a>) -> Result<Self, ImportError> {
         let (normal, signs) = common_axis(&bodies.parts)?;
         let (owners, base) = (owners(&bodies.parts), bodies.parts.len());
@@ -66,29 +66,29 @@ impl<'a> Coupled<'a> {
         })
     }
 
-    /// The sum of a fixed tendon that an attribute names.
+    /// Returns the sum of the fixed tendon that an attribute names.
     pub fn tendon(&self, element: impl Source<'a>, attribute: &'static str) -> Result<Sum, ImportError> {
         let name = word(&element, attribute)?;
         let what = || format!("{attribute} \"{}\" is no fixed tendon", clipped(name));
         self.tendons.get(name).cloned().ok_or_else(|| wrong(element.node(), what(), "the name of one"))
     }
 
-    /// What moves with a part: itself or what it is fixed to.
+    /// Returns the turning part with which a part moves, itself or the part to which it is fixed; the base otherwise.
     pub fn owner(&self, part: Option<usize>) -> usize {
         part.and_then(|part| self.owners[part]).unwrap_or(self.base)
     }
 
-    /// What carries a hinge.
+    /// Returns the turning part, or the base, that carries the hinge of a part.
     pub fn on(&self, part: usize) -> usize {
         self.owner(self.bodies.parts[part].parent)
     }
 
-    /// The set that a part is of.
+    /// Returns the set to which a part belongs.
     pub fn set(&self, part: usize) -> usize {
         self.together.root(part)
     }
 
-    /// Which part turns against which by a sum of hinges.
+    /// Returns the two parts whose relative angle a sum of hinges is; `None` if it is not such an angle.
     pub fn against(&self, sum: &[(usize, f64)]) -> Option<Against> {
         let mut turns: BTreeMap<usize, f64> = BTreeMap::new();
         for (part, times) in sum {
@@ -100,14 +100,17 @@ impl<'a> Coupled<'a> {
         (turns.len() == 2).then(|| Some((of(1.0)?, of(-1.0)?))).flatten()
     }
 
-    /// The same, or that a sum turns no part against another.
+    /// Returns the same as [`against`](Self::against).
+    ///
+    /// # Errors
+    /// If the sum is not the angle between two parts.
     pub fn turned(&self, node: Node<'_, '_>, sum: &[(usize, f64)]) -> Result<Against, ImportError> {
         let want = "a sum of hinges from one body to another";
         self.against(sum).ok_or_else(|| wrong(node, "no body turns against another by its tendon", want))
     }
 }
 
-/// Fixed tendons by name.
+/// Reads the fixed tendons by name.
 fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, Sum>, ImportError> {
     let mut all = BTreeMap::new();
     let fixed = each(bodies.model, "tendon").flat_map(|node| each(node, "fixed"));
@@ -125,7 +128,7 @@ fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, S
     Ok(all)
 }
 
-/// A sum whose first hinge counts once or more, in the order of its hinges.
+/// Returns a sum sorted by hinges, with its sign chosen so that the first coefficient is not negative.
 pub(super) fn unsigned(sum: &[(usize, f64)]) -> Sum {
     let mut sum = sum.to_vec();
     sum.sort_by_key(|(part, _)| *part);

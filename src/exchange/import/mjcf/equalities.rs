@@ -1,4 +1,4 @@
-//! Equalities: what they keep parallel, and what they gear.
+//! Equalities: bodies that they keep parallel, and gears.
 
 use roxmltree::Node;
 
@@ -11,12 +11,12 @@ use crate::exchange::import::refusal::{ImportError, wrong};
 use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
-/// A tendon is where an equality wants it if it is off by less, rad.
-const HELD: f64 = 1e-6;
-/// A centre of mass is on an axis if it is off by less than this share of the distance, or of a metre.
-const ON_AXIS: f64 = 1e-9;
+/// Tolerance of an equality of a tendon in the pose of the file, rad.
+const EQUALITY_TOLERANCE_RAD: f64 = 1e-6;
+/// A centre of mass is on an axis up to this distance, relative to its distance from the hinge point, at least 1 m.
+const ON_AXIS_TOLERANCE: f64 = 1e-9;
 
-/// Two sums of hinges, one so many times the other.
+/// An equality of two sums of hinges: `one` is `ratio` times `other`.
 struct Coupling<'a> {
     node: Node<'a, 'a>,
     one: Sum,
@@ -25,7 +25,7 @@ struct Coupling<'a> {
 }
 
 impl<'a> Coupled<'a> {
-    /// Reads the equalities; loops come last, for they are seen better the more is known to be parallel.
+    /// Reads the equalities. Loops come last, because they are easier to resolve if parallel bodies are known.
     pub(super) fn couple(&mut self) -> Result<(), ImportError> {
         let all = each(self.bodies.model, "equality").flat_map(|node| node.children()).filter(Node::is_element);
         let (mut loops, mut couplings) = (Vec::new(), Vec::new());
@@ -66,7 +66,8 @@ impl<'a> Coupled<'a> {
         Ok(())
     }
 
-    /// Joins what couplings keep parallel, and drops these: of A − B = ±(C − D), one side of which is among the other.
+    /// Joins the sets that couplings A − B = ±(C − D) keep parallel, and drops these couplings: if one term of each
+    /// side is known to be equal, the other two are equal as well.
     fn join_parallel(&mut self, couplings: &mut Vec<Coupling<'a>>) {
         let mut count = usize::MAX;
         while couplings.len() < count {
@@ -92,7 +93,8 @@ impl<'a> Coupled<'a> {
         same.is_some()
     }
 
-    /// Whether it is of a rotor: a body that carries nothing, balanced about its hinge, coupled to what a motor turns.
+    /// Returns whether a coupling drives a rotor: a body without children, balanced about its hinge, and coupled to a
+    /// sum that a motor turns.
     fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[Sum]) -> bool {
         let [(part, _)] = coupling.one[..] else { return false };
         let parts = &self.bodies.parts;
@@ -102,10 +104,10 @@ impl<'a> Coupled<'a> {
             let away = parts[part].com - on;
             (away - axis.into_inner() * axis.dot(&away)).norm() / away.norm().max(1.0)
         });
-        !carries && off <= ON_AXIS && driven.contains(&unsigned(&coupling.other))
+        !carries && off <= ON_AXIS_TOLERANCE && driven.contains(&unsigned(&coupling.other))
     }
 
-    /// Sums that motors turn.
+    /// Returns the sums of hinges that motors turn.
     fn driven(&self) -> Result<Vec<Sum>, ImportError> {
         self.actuators()?.into_iter().map(|(element, _)| Ok(unsigned(&self.moved(&element)?))).collect()
     }
@@ -130,8 +132,8 @@ impl<'a> Coupled<'a> {
         let x = other.as_ref().map_or(0.0, |other| self.stretch(other));
         let off = self.stretch(&one) - factors.iter().rev().fold(0.0, |sum, factor| sum * x + factor);
         match other {
-            // A gear may have any angle.
-            None if off.abs() > HELD => {
+            // Only an equality without a second tendon fixes an angle: gears may have any offset.
+            None if off.abs() > EQUALITY_TOLERANCE_RAD => {
                 let what = format!("its tendon is off by {} rad in the pose of the file", Short(off));
                 Err(wrong(node, what, "a keyframe in which every equality holds"))
             }
@@ -144,7 +146,7 @@ impl<'a> Coupled<'a> {
         }
     }
 
-    /// How far a sum of hinges is from where it is drawn, rad.
+    /// Returns the change of a sum of hinges from its value as drawn, rad.
     fn stretch(&self, sum: &[(usize, f64)]) -> f64 {
         sum.iter()
             .map(|(i, times)| times * self.signs[*i] * (self.bodies.angle(*i) - self.bodies.drawn_angle(*i)))
@@ -152,7 +154,7 @@ impl<'a> Coupled<'a> {
     }
 }
 
-/// N of a coupling that is linear.
+/// Returns the ratio N of a linear coupling.
 fn linear(element: &Element<'_>) -> Result<f64, ImportError> {
     match polynomial(element)?[..] {
         [_, ratio, ref rest @ ..] if rest.iter().all(|x| *x == 0.0) => Ok(ratio),

@@ -5,11 +5,11 @@ use crate::exchange::import::linkage::{Limit, Motor};
 use crate::exchange::import::read::{each, several};
 use crate::exchange::import::refusal::ImportError;
 
-/// A sum, what it is in the reference pose, and its least and greatest, rad.
+/// A sum of hinges, its value in the reference pose, and its limits, rad.
 type Limited = (Sum, f64, [f64; 2]);
 
 impl Coupled<'_> {
-    /// Limits of hinges and tendons that are those of a drive against another.
+    /// Returns the limits of hinges and tendons that are angles between two drives, or between a drive and the base.
     pub(super) fn limits(
         &self,
         motors: &[(Motor, Against)],

@@ -1,4 +1,4 @@
-//! Loops: what they keep parallel.
+//! Loops: bodies that they keep parallel.
 
 use nalgebra::Vector3;
 use roxmltree::Node;
@@ -8,17 +8,20 @@ use crate::exchange::import::bodies::End;
 use crate::exchange::import::refusal::{ImportError, wrong};
 use crate::mechanics::planar::Vector;
 
-/// Vectors of a loop whose sum is below this share of the largest cancel.
-const CLOSED: f64 = 1e-9;
-/// The most parts in one loop.
-const MOST_IN_LOOP: usize = 12;
+/// Closure tolerance: vectors of a loop cancel if their sum is at most this fraction of the largest.
+const CLOSURE_TOLERANCE: f64 = 1e-9;
+/// Maximum number of sides of one loop.
+const MAX_SIDES: usize = 12;
 impl Coupled<'_> {
-    /// What a loop keeps parallel: opposite sides of parallelograms.
+    /// Joins the sets that a loop keeps parallel: opposite sides of parallelograms.
+    ///
+    /// # Errors
+    /// If the loop is not closed in the pose of the file, or if its sides do not pair.
     pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[End; 2]) -> Result<(), ImportError> {
         let sides = self.sides(ends);
         let largest = sides.iter().fold(0.0_f64, |most, (_, v)| most.max(v.norm()));
-        let is_none = |v: Vector| v.norm() <= CLOSED * largest;
-        // What turns as one is one side.
+        let is_zero = |v: Vector| v.norm() <= CLOSURE_TOLERANCE * largest;
+        // Parts that turn together form one side.
         let mut merged: Vec<(usize, Vector)> = Vec::new();
         for (i, v) in sides {
             let set = self.together.root(i);
@@ -27,20 +30,21 @@ impl Coupled<'_> {
                 None => merged.push((set, v)),
             }
         }
-        merged.retain(|(_, v)| !is_none(*v));
+        merged.retain(|(_, v)| !is_zero(*v));
         let total: Vector = merged.iter().map(|(_, v)| v).sum();
-        if !is_none(total) || merged.len() > MOST_IN_LOOP {
+        if !is_zero(total) || merged.len() > MAX_SIDES {
             return Err(wrong(
                 node,
                 "its ends are apart in the pose of the file",
                 "a keyframe in which every loop is closed",
             ));
         }
-        // Opposite sides first, which neighbours of equal length must not be taken for.
+        // Pairs furthest apart around the loop come first, so that antiparallel neighbours are not taken for opposite
+        // sides.
         while !merged.is_empty() {
             let count = merged.len();
             let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
-            let pairs = pairs.filter(|(a, b)| is_none(merged[*a].1 + merged[*b].1));
+            let pairs = pairs.filter(|(a, b)| is_zero(merged[*a].1 + merged[*b].1));
             let apart = |(a, b): &(usize, usize)| (b - a).min(count - (b - a));
             let Some((a, b)) = pairs.max_by_key(apart) else {
                 return Err(wrong(node, "a loop that is no parallelogram", "loops whose opposite sides are equal"));
@@ -52,7 +56,7 @@ impl Coupled<'_> {
         Ok(())
     }
 
-    /// Each part from its hinge to the next, around the loop.
+    /// Returns the vector of each part from its hinge to the next, around the loop.
     fn sides(&self, ends: &[End; 2]) -> Vec<(usize, Vector)> {
         let flat = |p: Vector3<f64>| Vector::new(self.plane[0].dot(&p), self.plane[1].dot(&p));
         let mut sides: Vec<(usize, Vector)> = Vec::new();

@@ -1,4 +1,4 @@
-//! MJCF: loops, tendons and equalities say what turns together, actuators what turns it.
+//! MJCF reader: loops, tendons and equalities determine which bodies turn together, actuators determine the motors.
 
 mod actuators;
 mod coupled;
@@ -17,10 +17,10 @@ use super::linkage::Linkage;
 use super::read::{child, numbers, vector};
 use super::refusal::ImportError;
 
-/// Of a `<mujoco>`.
+/// Reads the linkage of a `<mujoco>`.
 ///
 /// # Errors
-/// What is outside of the family.
+/// If the model is outside the family of machines.
 pub fn linkage(model: Node<'_, '_>) -> Result<Linkage, ImportError> {
     let mut coupled = Coupled::of(Bodies::of(model)?)?;
     coupled.couple()?;
@@ -55,7 +55,7 @@ impl Coupled<'_> {
         })
     }
 
-    /// What of a model belongs elsewhere or is left out.
+    /// Returns notes on elements of the model that are omitted or belong to a scenario.
     fn notes(&self) -> Result<Vec<String>, ImportError> {
         let model = self.bodies.model;
         let mut notes = Vec::new();

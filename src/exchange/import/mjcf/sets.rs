@@ -1,11 +1,14 @@
-//! Which motor turns each part in the end, and which parts are rotors.
+//! The motor that turns each part, and the parts that are rotors.
 
 use super::coupled::{Against, Coupled, Geared, PARALLEL_WANTED};
 use crate::exchange::import::linkage::{Motor, Part};
 use crate::exchange::import::refusal::{ImportError, wrong};
 
 impl Coupled<'_> {
-    /// Parts that are rotors, the motor of each, and how often it turns for one turn of that.
+    /// Returns the rotors: the part, its motor, and the gear ratio.
+    ///
+    /// # Errors
+    /// If a coupling is not that of a rotor to its motor.
     pub(super) fn rotors(&self, motors: &[(Motor, Against)]) -> Result<Vec<(usize, usize, f64)>, ImportError> {
         let rotor = |geared: &Geared| {
             let turned = self.against(&geared.to).map(|(to, from)| (self.set(to), self.set(from)));
@@ -19,7 +22,10 @@ impl Coupled<'_> {
         self.geared.iter().map(rotor).collect()
     }
 
-    /// The motor that turns each part in the end.
+    /// Returns the motor that turns each part, directly or through its set.
+    ///
+    /// # Errors
+    /// If no motor turns a part that has a hinge.
     pub(super) fn sets(
         &self,
         motors: &[(Motor, Against)],

@@ -1,12 +1,12 @@
-//! [`Together`]: which sets turn as one.
+//! [`Together`]: the sets of parts that turn together.
 
-/// Which sets turn together; the last is the base.
+/// Disjoint sets of parts that turn together; the last index is the base.
 pub(super) struct Together {
     of: Vec<usize>,
 }
 
 impl Together {
-    /// Each of so many parts by itself.
+    /// Begins with each part in a set of its own.
     pub fn new(parts: usize) -> Self {
         Self { of: (0..=parts).collect() }
     }
@@ -15,7 +15,7 @@ impl Together {
         self.of.len() - 1
     }
 
-    /// What stands for all that turn with one.
+    /// Returns the representative of a part's set.
     pub fn root(&self, mut i: usize) -> usize {
         while self.of[i] != i {
             i = self.of[i];
@@ -23,7 +23,7 @@ impl Together {
         i
     }
 
-    /// Both turn as one; the base, or else the first of them, stands for both.
+    /// Joins two sets; the base, or else the lower index, represents both.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (stands, follows) = if b == self.base() { (b, a) } else { (a.min(b), a.max(b)) };

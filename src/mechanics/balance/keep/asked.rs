@@ -1,4 +1,4 @@
-//! [`Keep`]: what may change for the sake of balance, how far, and how dear that is.
+//! [`Keep`]: the parameters that may change to balance a machine, with bounds and penalties.
 
 use super::super::breakdown::Body;
 use super::super::parameter::{Parameter, Quantity};
@@ -6,73 +6,77 @@ use super::refusal::NotKept;
 use crate::mechanics::machine::Machine;
 use crate::settings::number::Short;
 
-/// How far a parameter may go.
+/// Bounds of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hold {
-    /// It stays what it is in the machine. Unlike one that is not listed, it may be named as what stands in the way.
+    /// The parameter keeps its value in the machine. Unlike one that is not listed, a refusal may name it as a cause.
     Fixed,
-    /// As far as is usual from where its change is measured: a mass from a tenth to ten times, a place ten times as far as
-    /// the machine reaches, or 10 m where that is more.
+    /// Default bounds about the reference value: for a mass a tenth to ten times, for a position ten times the
+    /// machine's reach either way, at least 10 m.
     Free,
-    /// From one value to another. A mass stays above a thousandth of what it is and is measured from.
+    /// Lower and upper bound, kg or m. A mass also stays above a thousandth of both its present and its reference
+    /// value.
     Within([f64; 2]),
 }
 
-/// The least that a mass which may change may become, as a fraction of what it is or is measured from.
+/// Lower bound of a mass that may change, as a fraction of the smaller of its present and its reference value.
 pub(super) const MIN_MASS: f64 = 1e-3;
 
-/// How much lighter and heavier a mass may become unless it is bounded.
-const USUAL_MASS: f64 = 10.0;
+/// Default bounds of a mass: its reference value divided and multiplied by this factor.
+const DEFAULT_MASS_FACTOR: f64 = 10.0;
 
-/// How far a place may move unless it is bounded, in what the machine reaches or in metres.
-const USUAL_WAY: f64 = 10.0;
+/// Default bounds of a position: its reference value plus or minus this many times the machine's reach, at least 1 m.
+const DEFAULT_TRAVEL_FACTOR: f64 = 10.0;
 
-/// A parameter that is listed.
+/// A listed parameter, with its bounds and its penalty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adjusted {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
-    /// How far it may go.
+    /// Its bounds.
     pub hold: Hold,
-    /// p: on each m or kg of change.
+    /// Penalty p on its change, 1/m or 1/kg.
     pub penalty: f64,
-    /// Where its change is measured from, m or kg.
+    /// Reference value from which its change is measured, m or kg.
     pub from: f64,
 }
 
 impl Adjusted {
-    /// From where to where it may go; one that is fixed has no room.
+    /// Returns its lower and upper bound, kg or m; both are its value if it is fixed.
     pub(super) fn ends(&self, machine: &Machine) -> Option<[f64; 2]> {
         let value = self.parameter.value(machine.spec())?;
         Some(match (self.hold, self.parameter.quantity) {
             (Hold::Fixed, _) => [value; 2],
             (Hold::Within(ends), _) => ends,
-            // What it is already it may stay.
-            (Hold::Free, Quantity::Mass) => [value.min(self.from / USUAL_MASS), value.max(self.from * USUAL_MASS)],
+            // The default bounds include the present value.
+            (Hold::Free, Quantity::Mass) => {
+                [value.min(self.from / DEFAULT_MASS_FACTOR), value.max(self.from * DEFAULT_MASS_FACTOR)]
+            }
             (Hold::Free, Quantity::Along | Quantity::Across) => {
-                let way = USUAL_WAY * machine.reach().max(1.0);
+                let way = DEFAULT_TRAVEL_FACTOR * machine.reach().max(1.0);
                 [value.min(self.from - way), value.max(self.from + way)]
             }
         })
     }
 
-    /// How far it may go at most if its own limits give way: as far as is usual, or as they let it.
+    /// Returns the widest bounds to which its limits may be relaxed: the default bounds and its own, whichever are
+    /// wider.
     pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
         let ([low, high], usual) = (self.ends(machine)?, Self { hold: Hold::Free, ..*self }.ends(machine)?);
         Some([low.min(usual[0]), high.max(usual[1])])
     }
 }
 
-/// What may change. All that is not listed stays as it is.
+/// The parameters that may change. All others stay as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keep {
-    /// Each at most once.
+    /// The parameters, each at most once.
     pub parameters: Vec<Adjusted>,
 }
 
 impl Keep {
-    /// All centres of mass along the links are free, from where they are; a penalty for each link, such as those of a
-    /// [`Preset`](super::super::Preset).
+    /// Lists the positions of all links' centres of mass along the links, with default bounds about their present
+    /// values. `penalty` holds one penalty a link, such as those of a [`Preset`](super::super::Preset).
     pub fn coms(machine: &Machine, penalty: &[f64]) -> Self {
         let adjusted = |(j, link): (usize, &crate::mechanics::machine::Link)| Adjusted {
             parameter: Parameter::com(j),
@@ -83,8 +87,8 @@ impl Keep {
         Self { parameters: machine.spec().links.iter().enumerate().map(adjusted).collect() }
     }
 
-    /// The same with changes measured from another machine: one that is kept while a hand goes on changing it is always
-    /// measured from where it started.
+    /// Returns the same list with changes measured from another machine. During a drag, changes are measured from the
+    /// machine at its start.
     #[must_use]
     pub fn measured_from(mut self, machine: &Machine) -> Self {
         for one in &mut self.parameters {
@@ -93,12 +97,13 @@ impl Keep {
         self
     }
 
-    /// The entry of a parameter.
+    /// Returns the entry of a parameter.
     pub fn of(&self, parameter: Parameter) -> Option<&Adjusted> {
         self.parameters.iter().find(|one| one.parameter == parameter)
     }
 
-    /// Says how far a parameter may go; one that is not listed yet is, from where it is, with penalty 1.
+    /// Sets the bounds of a parameter. A parameter that is not listed is added with its present value as reference and
+    /// penalty 1.
     pub fn hold(&mut self, machine: &Machine, parameter: Parameter, hold: Hold) {
         match self.parameters.iter_mut().find(|one| one.parameter == parameter) {
             Some(one) => one.hold = hold,
@@ -109,7 +114,7 @@ impl Keep {
         }
     }
 
-    /// Whether it can be asked of a machine.
+    /// Checks that the parameters exist in a machine and that all numbers are within range.
     pub(super) fn check(&self, machine: &Machine) -> Result<(), NotKept> {
         for (i, one) in self.parameters.iter().enumerate() {
             let bad = |what: &str, value: f64, want: String| {
@@ -129,8 +134,8 @@ impl Keep {
                 return bad("a change measured from", one.from, range.to_string());
             }
             let Hold::Within([low, high]) = one.hold else { continue };
-            let of_nothing = low == 0.0 && one.parameter.quantity == Quantity::Mass;
-            if !(range.contains(low) || of_nothing) {
+            let zero_mass = low == 0.0 && one.parameter.quantity == Quantity::Mass;
+            if !(range.contains(low) || zero_mass) {
                 return bad("bounds from", low, range.to_string());
             }
             if !range.contains(high) {

@@ -1,20 +1,20 @@
-//! Keep balanced: the least change of what may be changed with which (7) and (8) hold.
+//! Keeping a machine balanced: the least change of chosen parameters with which (7) and (8) hold.
 //!
-//! What is least is Σ (p Δ)² over all numbers that may change, Δ in kg or m from where the change is measured,
-//! [`from`](Adjusted::from). For all centres of mass along the links from 0, it is what [`design`](super::design()) has
-//! least. (7) and (8) are linear in m and s = m l_c, and so is a bound on l_c: lo m ≤ s ≤ hi m. Where no body has both
-//! its mass and a place to change, that is a quadratic program with one optimum: what balance leaves free is a plane,
-//! bounds cut it, and the answer is the point of what is left that is nearest to where nothing changes. Where a body has
-//! both, [`search`] looks from several starts, and the answer is not certified.
+//! The objective is Σ (p Δ)² over the parameters that may change, Δ in kg or m from the reference value
+//! [`from`](Adjusted::from). With all l_c as parameters and reference 0 it is the objective of
+//! [`design`](super::design()). (7) and (8) are linear in m and s = m l_c, and so is a bound on l_c: lo m ≤ s ≤ hi m.
+//! If no body may change both its mass and a position, this is a quadratic program with one optimum. The solutions of
+//! (7) and (8) form a plane; the answer is the point of the plane within the bounds that is nearest to no change. If a
+//! body may change both, [`search`] starts from several points, and the answer is not certified.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | m, l_c | mass of a body; its place along or across its link | kg, m |
-//! | m₀, l₀ | where their changes are measured from | kg, m |
+//! | m, l_c | mass of a body; its position along or across its link | kg, m |
+//! | m₀, l₀ | their reference values, from which changes are measured | kg, m |
 //! | p | penalty on a change | 1/kg, 1/m |
-//! | y | p (m − m₀) of a mass, p (m/m₀)(l_c − l₀) of a place: (7) and (8) are linear in them | |
-//! | z | y = y₀ + N z fulfils (7) and (8) for every z; N has orthonormal columns | |
+//! | y | p (m − m₀) of a mass, p (m/m₀)(l_c − l₀) of a position: (7) and (8) are linear in them | |
+//! | z | y = y₀ + N z satisfies (7) and (8) for every z; N has orthonormal columns | |
 
 mod asked;
 mod problem;

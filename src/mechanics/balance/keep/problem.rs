@@ -1,4 +1,4 @@
-//! [`keep`]: the machine with the least change that is balanced.
+//! [`keep`]: the balanced machine with the least change.
 
 use nalgebra::DVector;
 
@@ -13,22 +13,22 @@ use crate::convex::{Program, Row, conflict};
 use crate::mechanics::machine::{BALANCED, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
 
-/// A machine that is kept balanced.
+/// A machine that has been kept balanced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// It is balanced to rounding.
+    /// The machine, balanced to rounding.
     pub machine: Machine,
-    /// What each parameter has become, in the order in which they are listed.
+    /// Value of each parameter, kg or m, in the order of the list.
     pub values: Vec<f64>,
-    /// What was least: Σ (p Δ)² of those that are not fixed.
+    /// Minimum of the objective: Σ (p Δ)² of the parameters that are not fixed.
     pub cost: f64,
-    /// Whether nothing else that is balanced within the limits has less. Where a body may change its mass and its place
-    /// the answer is the best of several searches.
+    /// Whether the cost is certified as the global minimum within the limits. If a body may change both its mass and a
+    /// position, the answer is only the best of several searches.
     pub certified: bool,
 }
 
 impl Kept {
-    /// What it takes to make this machine of the other, by key: what has changed, radii of discs included.
+    /// Returns the settings that turn machine `of` into this machine, by key, including the radii of discs.
     pub fn settings(&self, of: &Machine) -> Vec<(String, f64)> {
         let (now, was) = (self.machine.spec(), of.spec());
         let changed = Parameter::all(&self.machine).into_iter().filter_map(|parameter| {
@@ -41,17 +41,17 @@ impl Kept {
     }
 }
 
-/// The machine with the least change of what may change that is balanced and invariant, (7) and (8).
+/// Returns the balanced, invariant machine, (7) and (8), with the least change of the listed parameters.
 ///
 /// # Errors
-/// If what is asked for cannot be, or there is no such machine: then which limits leave no way, and how far they would
-/// have to give.
+/// If the list is not valid, or if there is no such machine: then with the limits that contradict each other and the
+/// values to which they would have to be relaxed.
 pub fn keep(machine: &Machine, asked: &Keep) -> Result<Kept, NotKept> {
     keep_with(machine, asked, &[])
 }
 
-/// The same for a machine that is known to have more of each condition, in their order, than its numbers say: balance is
-/// where both together are nothing.
+/// As [`keep`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
+/// computed and additional residuals are to vanish.
 ///
 /// # Errors
 /// As [`keep`].
@@ -75,11 +75,11 @@ pub fn keep_with(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<K
     }
 }
 
-/// What is left of each condition, however far all that may change goes, of a machine that has more of them than its
-/// numbers say: as little as can be, with all of them of one size.
+/// Returns the residual of each condition, kg m or kg m², that no values of the listed parameters remove: the least
+/// squares residual, with all equations scaled to unit norm. `beyond`: see [`keep_with`].
 ///
 /// # Errors
-/// If what is asked for cannot be.
+/// If the list is not valid.
 pub fn unreachable_by_changes(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<Vec<Vector>, NotKept> {
     asked.check(machine)?;
     let problem = Problem::of(machine, asked, beyond)?;
@@ -91,14 +91,14 @@ pub fn unreachable_by_changes(machine: &Machine, asked: &Keep, beyond: &[Vector]
     Ok((0..count).map(|i| Vector::new(missed[i], missed[count + i])).collect())
 }
 
-/// The conditions over y, and what limits it.
+/// The conditions as equations in y, and the limits of y.
 struct Problem<'a> {
     machine: &'a Machine,
     asked: &'a Keep,
-    /// The machine with every parameter where its change is measured from.
+    /// The machine with every parameter at its reference value.
     from: MachineSpec,
     conditions: Vec<Condition>,
-    /// What the machine has of each condition beyond what its numbers say.
+    /// Additional residual of each condition.
     beyond: Vec<Vector>,
     /// The real parts of all conditions, then the imaginary ones.
     balance: Vec<Equation>,
@@ -118,17 +118,19 @@ impl<'a> Problem<'a> {
         for across in [false, true] {
             for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
                 let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
-                let left = condition.left(&start) + beyond;
-                // A tenth of what counts as none.
+                let residual = condition.left(&start) + beyond;
+                // A tenth of the tolerance of the finished machine.
                 let tolerance = 0.1 * condition.nothing(&scale).max(condition.nothing(&start));
-                let equation = Equation { a: a.collect(), right: if across { -left.im } else { -left.re }, tolerance };
+                let equation =
+                    Equation { a: a.collect(), right: if across { -residual.im } else { -residual.re }, tolerance };
                 problem.balance.push(equation);
             }
         }
         Ok(problem)
     }
 
-    /// What a change by 1 kg or 1 m brings to a condition.
+    /// Returns the change of a condition with a change of a parameter by 1 kg or 1 m, its real part or, if `across`,
+    /// its imaginary part.
     fn by(&self, condition: Condition, parameter: Parameter, across: bool) -> f64 {
         let mass = self.mass_from(parameter.body);
         let Some(link) = self.carrier(parameter.body) else { return 0.0 };
@@ -154,7 +156,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// m₀ of a body.
+    /// Returns m₀ of a body, kg.
     fn mass_from(&self, body: Body) -> f64 {
         Parameter::new(body, Quantity::Mass).value(&self.from).unwrap_or_default()
     }
@@ -163,7 +165,7 @@ impl<'a> Problem<'a> {
         self.asked.parameters.iter().position(|one| one.parameter == parameter)
     }
 
-    /// What is looked for where masses and places of one body may change.
+    /// Returns the minimisation problem for bodies of which masses and positions may change.
     fn search<'b>(&self, equations: &'b [Equation], bounds: &'b [Row]) -> Search<'b> {
         let all = || self.asked.parameters.iter().enumerate();
         let masses = all().filter(|(_, one)| one.parameter.quantity == Quantity::Mass).map(|(at, one)| {
@@ -179,14 +181,14 @@ impl<'a> Problem<'a> {
         Search { equations, counts, masses: masses.collect(), bounds }
     }
 
-    /// Whether no body may change both its mass and a place: then all is linear but for distances.
+    /// Returns whether no body may change both its mass and a position: then the problem is a convex quadratic program.
     fn is_convex(&self) -> bool {
         let all = || self.asked.parameters.iter().filter(|one| one.hold != Hold::Fixed).map(|one| one.parameter);
         let mut masses = all().filter(|mass| mass.quantity == Quantity::Mass);
         !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
     }
 
-    /// The row that is its right side where a parameter has a value.
+    /// Returns the row a · y = right that holds where parameter i has a value, kg or m.
     fn row(&self, i: usize, value: f64) -> Row {
         let Adjusted { parameter, penalty, from, .. } = self.asked.parameters[i];
         let mut terms = vec![(i, 1.0)];
@@ -198,19 +200,19 @@ impl<'a> Problem<'a> {
         Row::new(terms, penalty * (value - from))
     }
 
-    /// The equation of one that is fixed.
+    /// Returns the equation of parameter i if it is fixed.
     fn fixed(&self, i: usize) -> Option<Equation> {
         let one = &self.asked.parameters[i];
         let value = one.parameter.value(self.machine.spec()).filter(|_| one.hold == Hold::Fixed)?;
         let row = self.row(i, value);
         let mut a = vec![0.0; self.asked.parameters.len()];
         row.terms.iter().for_each(|&(j, by)| a[j] += by);
-        // A picometre is nothing, whatever it is of.
+        // At least 1e-12 m or kg.
         let tolerance = one.penalty * BALANCED * (value.abs() + one.from.abs()).max(1e-3);
         Some(Equation { a, right: row.right, tolerance })
     }
 
-    /// The limits with their rows: a · y ≤ right. Those that are fixed are among them if asked for.
+    /// Returns the limits with their rows a · y ≤ right; with those of fixed parameters if `fixed`.
     fn limits(&self, fixed: bool) -> Vec<(Limit, Row)> {
         let mut all = Vec::new();
         for (i, one) in self.asked.parameters.iter().enumerate() {
@@ -229,7 +231,7 @@ impl<'a> Problem<'a> {
         all
     }
 
-    /// The rows of limits, after those with which every mass stays one.
+    /// Returns the rows of limits, after those that keep every mass positive.
     fn bounds(&self, limits: &[(Limit, Row)]) -> Vec<Row> {
         self.floors().chain(limits.iter().map(|(_, row)| row.clone())).collect()
     }
@@ -251,18 +253,18 @@ impl<'a> Problem<'a> {
         row
     }
 
-    /// What a parameter is at a y.
+    /// Returns the value of parameter i at y, kg or m.
     fn value(&self, i: usize, y: &DVector<f64>) -> f64 {
         let one = &self.asked.parameters[i];
         let change = |i: usize| y[i] / self.asked.parameters[i].penalty;
-        let heavier = match self.listed(Parameter::new(one.parameter.body, Quantity::Mass)) {
+        let ratio = match self.listed(Parameter::new(one.parameter.body, Quantity::Mass)) {
             Some(k) if one.parameter.quantity != Quantity::Mass => {
                 let mass = self.mass_from(one.parameter.body);
                 mass / (mass + change(k))
             }
             _ => 1.0,
         };
-        one.from + change(i) * heavier
+        one.from + change(i) * ratio
     }
 
     fn kept(&self, y: &DVector<f64>) -> Result<Kept, NotKept> {
@@ -280,18 +282,18 @@ impl<'a> Problem<'a> {
         }
         let machine = Machine::new(spec).map_err(of_machine)?;
         let inertia = Inertia::of(&machine);
-        let left = self.conditions.iter().zip(&self.beyond);
-        let nothing = |condition: &Condition| condition.nothing(&inertia);
+        let conditions = self.conditions.iter().zip(&self.beyond);
+        let tolerance = |condition: &Condition| condition.nothing(&inertia);
         let balanced = |(condition, beyond): (&Condition, &Vector)| {
-            (condition.left(&inertia) + beyond).norm() <= nothing(condition)
+            (condition.left(&inertia) + beyond).norm() <= tolerance(condition)
         };
-        match left.into_iter().all(balanced) {
+        match conditions.into_iter().all(balanced) {
             true => Ok(Kept { machine, values, cost, certified: self.is_convex() }),
             false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
         }
     }
 
-    /// Why there is no way.
+    /// Returns the reason why there is no solution.
     fn conflict(&self) -> NotKept {
         let plane = Plane::of(&self.balance, self.asked.parameters.len());
         if !plane.exists {
@@ -312,18 +314,18 @@ impl<'a> Problem<'a> {
 
     fn inconsistent(&self, plane: &Plane) -> NotKept {
         let n = self.conditions.len();
-        let left = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
-        let off: Vec<usize> = (0..n).filter(|i| left(*i) > self.balance[*i].tolerance).collect();
+        let residual = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
+        let off: Vec<usize> = (0..n).filter(|i| residual(*i) > self.balance[*i].tolerance).collect();
         let force = off.iter().any(|i| matches!(self.conditions[*i], Condition::Force(_)));
         let of_kind = off.iter().copied().filter(|i| matches!(self.conditions[*i], Condition::Force(_)) == force);
-        let worst = of_kind.max_by(|a, b| left(*a).total_cmp(&left(*b))).unwrap_or_default();
+        let worst = of_kind.max_by(|a, b| residual(*a).total_cmp(&residual(*b))).unwrap_or_default();
         let condition = self.conditions[worst];
-        let left = format!("{:.3e} {}", left(worst), condition.unit());
+        let left = format!("{:.3e} {}", residual(worst), condition.unit());
         NotKept::Inconsistent { condition: condition.name(self.machine), left }
     }
 
-    /// The least Σ p times how far limits give way with which there is a way: as far as is usual, or any way if that is not
-    /// enough. Empty if the solver finds none.
+    /// Returns the relaxed limits with the least Σ p |change| with which there is a solution: within the default
+    /// bounds, or without these if they are too tight. Empty if the solver finds no solution.
     fn relief(&self, plane: &Plane, limits: &[(Limit, Row)]) -> Vec<Relief> {
         let mut reliefs = [false, true].into_iter().map(|usual| self.relief_of(plane, limits, usual));
         reliefs.find(|relief| !relief.is_empty()).unwrap_or_default()
@@ -352,12 +354,13 @@ impl<'a> Problem<'a> {
         let Ok(least) = program.solve() else { return Vec::new() };
         let z = DVector::from_fn(k, |j, _| least.x[j] * scale);
         let y = &plane.start + &plane.free * &z;
-        // Rounded outwards in steps that a person may type, coarser where rounding leaves no way.
+        // Rounded outwards to few digits, and to fewer if the rounded limits are infeasible.
         let mut reliefs = [1e-4, 1e-3, 1e-2].into_iter().map(|step| self.relieved(limits, &y, step, scale));
-        reliefs.find(|relief| plane.nearest(&self.bounds(&self.given(limits, relief))).is_ok()).unwrap_or_default()
+        reliefs.find(|relief| plane.nearest(&self.bounds(&self.relaxed(limits, relief))).is_ok()).unwrap_or_default()
     }
 
-    /// What limits have to give for a y, in steps of a part of how far.
+    /// Returns the relaxed limits that admit y, rounded outwards in steps of a fraction `step` of the change's power of
+    /// ten.
     fn relieved(&self, limits: &[(Limit, Row)], y: &DVector<f64>, step: f64, scale: f64) -> Vec<Relief> {
         let relief = |(limit, row): &(Limit, Row)| {
             let over = row.terms.iter().map(|&(j, by)| by * y[j]).sum::<f64>() - row.right;
@@ -373,11 +376,11 @@ impl<'a> Problem<'a> {
         limits.iter().filter_map(relief).collect()
     }
 
-    /// Limits that have given way.
-    fn given(&self, limits: &[(Limit, Row)], relief: &[Relief]) -> Vec<(Limit, Row)> {
+    /// Returns the limits with their relaxed values.
+    fn relaxed(&self, limits: &[(Limit, Row)], relief: &[Relief]) -> Vec<(Limit, Row)> {
         let row = |(limit, row): &(Limit, Row)| {
-            let given = relief.iter().find(|relief| relief.limit == *limit).zip(self.listed(limit.parameter));
-            given.map_or_else(|| row.clone(), |(relief, i)| self.limit(i, limit.side, relief.to))
+            let relaxed = relief.iter().find(|relief| relief.limit == *limit).zip(self.listed(limit.parameter));
+            relaxed.map_or_else(|| row.clone(), |(relief, i)| self.limit(i, limit.side, relief.to))
         };
         limits.iter().map(|both| (both.0.clone(), row(both))).collect()
     }

@@ -1,4 +1,4 @@
-//! [`NotKept`]: why a machine cannot be kept balanced, and what would have to give.
+//! [`NotKept`]: the reason why a machine cannot be kept balanced, and the relaxed limits with which it can.
 
 use std::fmt;
 
@@ -7,31 +7,31 @@ use thiserror::Error;
 use super::super::parameter::Parameter;
 use crate::settings::number::nine_digits;
 
-/// Which end of what a parameter may be.
+/// Lower or upper limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// It may be no less.
+    /// Lower limit.
     Least,
-    /// It may be no more.
+    /// Upper limit.
     Most,
 }
 
-/// An end of what a parameter may be. Of one that is fixed both ends are where it is.
+/// A limit of a parameter. Both limits of a fixed parameter are its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// Of which.
+    /// The parameter.
     pub parameter: Parameter,
-    /// Its key.
+    /// Key of the parameter.
     pub key: String,
-    /// The link that carries it, of a counterweight: its key says only its number.
+    /// For a counterweight, the link that carries it, because its key has only its number.
     pub carrier: Option<String>,
-    /// Which end.
+    /// Whether it is the lower or the upper limit.
     pub side: Side,
-    /// Whether it is fixed.
+    /// Whether the parameter is fixed.
     pub fixed: bool,
-    /// Whether it is there because nothing else was said.
+    /// Whether it is a default limit.
     pub usual: bool,
-    /// Where, m or kg.
+    /// Value of the limit, m or kg.
     pub value: f64,
 }
 
@@ -54,12 +54,12 @@ impl fmt::Display for Limit {
     }
 }
 
-/// A limit that gives way.
+/// A limit with the value to which it is relaxed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relief {
-    /// Which.
+    /// The limit.
     pub limit: Limit,
-    /// As far as here, m or kg.
+    /// Its relaxed value, m or kg.
     pub to: f64,
 }
 
@@ -78,21 +78,21 @@ fn listed<T: fmt::Display>(all: &[T], between: &str) -> String {
     all.iter().map(T::to_string).collect::<Vec<_>>().join(between)
 }
 
-fn would_do(relief: &[Relief]) -> String {
+fn sufficient_relief(relief: &[Relief]) -> String {
     if relief.is_empty() { String::new() } else { format!("; {} would do", listed(relief, " and ")) }
 }
 
 /// Why a machine cannot be kept balanced.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NotKept {
-    /// A number that cannot be.
+    /// A number that is out of range.
     #[error("{what} {value}: want {want}")]
     OutOfRange {
-        /// What it is of.
+        /// Meaning of the number.
         what: String,
-        /// What was given.
+        /// The number.
         value: f64,
-        /// What would be right.
+        /// The range that would be right.
         want: String,
     },
     /// There is no such parameter.
@@ -103,31 +103,31 @@ pub enum NotKept {
     /// One parameter is listed twice.
     #[error("{0} is listed twice: want it once")]
     Twice(String),
-    /// However far all that may change goes.
+    /// No values of the listed parameters balance the machine.
     #[error(
         "nothing that may change balances this machine: {left} remain at best in {condition}; want more parameters free"
     )]
     Inconsistent {
-        /// The condition that stays furthest from met.
+        /// The condition with the largest residual.
         condition: String,
-        /// What remains, with unit.
+        /// Its residual, with unit.
         left: String,
     },
-    /// Some mass would have to vanish, or be less than nothing.
+    /// Balance would need a mass of zero or less.
     #[error("only a mass of nothing or less would balance this machine: want more parameters free")]
     NoMass,
-    /// These limits, and no fewer of them, leave no way.
-    #[error("no balance within these limits: {}{}", listed(.limits, "; "), would_do(.relief))]
+    /// These limits contradict each other: a minimal set.
+    #[error("no balance within these limits: {}{}", listed(.limits, "; "), sufficient_relief(.relief))]
     Conflict {
-        /// They contradict each other; with any of them away the others do not.
+        /// The limits; without any one of them the others do not contradict each other.
         limits: Vec<Limit>,
-        /// What is enough to give way, of these and of all others: the least Σ p times how far.
+        /// Relaxed limits, of these and all others, with which there is a solution: those with the least Σ p |change|.
         relief: Vec<Relief>,
     },
-    /// The solver gave up.
+    /// The solver failed.
     #[error("the solver found no answer: {0}")]
     Failed(String),
-    /// The result is no machine.
+    /// The result is not a valid machine.
     #[error("the machine with it: {0}")]
     Machine(String),
 }

@@ -1,16 +1,17 @@
-//! [`Search`]: the least Σ (p Δ)² where a mass and a place of one body may change.
+//! [`Search`]: minimises Σ (p Δ)² if a mass and a position of one body may change.
 //!
-//! In y the conditions and all limits are linear, but a place changes by y m₀/(p m), so that
-//! F(y) = Σ y_m² + Σ (y_l m₀/m)² is not convex. From several starts Newton steps go downhill on it: each is the least of
-//! a quadratic model within the limits, and every point between two that are within is within. What is found is no worse
-//! than any of the starts, of which one keeps every mass as it is. It is not certified: another place may be better.
+//! In y the conditions and all limits are linear, but a position changes by y m₀/(p m). So the objective
+//! F(y) = Σ y_m² + Σ (y_l m₀/m)² is not convex. Newton's method minimises F from several starts. Each step goes
+//! towards the minimum of a quadratic model within the limits, and stays feasible because the feasible set is convex.
+//! The result is no worse than any start, one of which keeps every mass as it is. It is not certified: another local
+//! minimum may be lower.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | m₀/m | of a body, where its change is measured from and what it becomes | |
-//! | c | y_l m₀/m, p times how far a place moves | |
-//! | β | 1/(m p_m): how fast ln m grows with y_m | |
+//! | m₀/m | reference mass of a body over its new mass | |
+//! | c | y_l m₀/m, which is p times the change of a position | |
+//! | β | 1/(m p_m), the derivative of ln m by y_m | |
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -18,72 +19,73 @@ use super::super::distance::nearest;
 use super::super::plane::{Equation, Plane};
 use crate::convex::Row;
 
-/// Newton steps from one start.
-const MAX_STEPS: usize = 60;
-/// A step that promises less than this fraction of F is the last.
-const NO_GAIN: f64 = 1e-15;
-/// The least curvature, in that of a mass alone, which is left to a model that is not convex.
-const LEAST_CURVATURE: f64 = 0.05;
-/// Part of what a step promises which it has to keep.
-const KEEPS: f64 = 1e-4;
-/// How much heavier than what they are measured from all masses are taken to be in the first quadratic models.
-const HEAVIER: [f64; 5] = [1.0, 3.0, 0.3, 8.0, 0.12];
-/// Starts with masses that differ from each other, for each that may change.
-const MIXED_STARTS: usize = 8;
-/// No more of them than this.
+/// Maximum number of Newton steps from one start.
+const MAX_NEWTON_STEPS: usize = 60;
+/// Iteration stops if the predicted decrease is less than this fraction of F.
+const MIN_DECREASE: f64 = 1e-15;
+/// Smallest curvature of a convexified model, as a fraction of that of a mass alone.
+const MIN_CURVATURE: f64 = 0.05;
+/// Sufficient decrease: the fraction of the predicted decrease that a step must achieve.
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+/// Ratios m/m₀ of all masses in the quadratic models of the first starts.
+const START_MASS_RATIOS: [f64; 5] = [1.0, 3.0, 0.3, 8.0, 0.12];
+/// Number of starts with a different ratio for each mass, per mass that may change.
+const MIXED_STARTS_PER_MASS: usize = 8;
+/// Maximum number of such starts.
 const MAX_MIXED_STARTS: usize = 16;
-/// How many of the starts, the best ones, a search goes on from.
+/// Maximum number of starts, the best ones, from which the search goes on.
 const MAX_SEARCHES: usize = 6;
-/// Exact places may cost so much more, as a fraction: rounding.
-const AS_GOOD: f64 = 1e-9;
+/// Relative tolerance of F for replacing a result by that with exact positions: rounding.
+const VALUE_TOLERANCE: f64 = 1e-9;
 
 /// A mass that may change.
 pub(super) struct Mass {
-    /// Its place in y.
+    /// Its index in y.
     pub at: usize,
-    /// What its change is measured from, kg.
+    /// Reference mass m₀, kg.
     pub from: f64,
-    /// p, 1/kg.
+    /// Penalty p, 1/kg.
     pub penalty: f64,
     /// Its limits, kg.
     pub ends: [f64; 2],
-    /// The places of the same body that may change, in y.
+    /// Indices in y of the positions of the same body that may change.
     pub places: Vec<usize>,
 }
 
-/// What is looked for.
+/// The minimisation problem.
 pub(super) struct Search<'a> {
     pub equations: &'a [Equation],
-    /// Whether each of y counts: fixed ones do not.
+    /// For each component of y whether it enters F: fixed ones do not.
     pub counts: Vec<bool>,
     pub masses: Vec<Mass>,
-    /// a · y ≤ right.
+    /// The limits, a · y ≤ right.
     pub bounds: &'a [Row],
 }
 
 impl Search<'_> {
-    /// Where searches end, the best first; none where nothing is within the limits.
+    /// Returns the results of all searches, the best first; empty if no point is feasible.
     pub fn least(&self, plane: &Plane) -> Vec<DVector<f64>> {
         let mut starts = self.starts(plane);
         starts.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
         starts.truncate(MAX_SEARCHES);
-        let unchanged = self.held(&self.masses.iter().map(|mass| mass.from).collect::<Vec<_>>());
+        let unchanged = self.with_masses(&self.masses.iter().map(|mass| mass.from).collect::<Vec<_>>());
         let mut ends: Vec<_> = starts.into_iter().chain(unchanged).map(|y| self.descend(plane, y)).collect();
         ends.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
-        // Once more with these masses, so that places are exact.
+        // Solved again with these masses held, so that positions are exact.
         let exact = ends.first().and_then(|best| {
             let masses = self.masses.iter().map(|mass| mass.from + best[mass.at] / mass.penalty);
-            self.held(&masses.collect::<Vec<_>>()).filter(|y| self.value(y) <= self.value(best) * (1.0 + AS_GOOD))
+            self.with_masses(&masses.collect::<Vec<_>>())
+                .filter(|y| self.value(y) <= self.value(best) * (1.0 + VALUE_TOLERANCE))
         });
         exact.into_iter().chain(ends).collect()
     }
 
-    /// m₀/m of a body.
+    /// Returns m₀/m of a body.
     fn ratio(&self, mass: &Mass, y: &DVector<f64>) -> f64 {
         mass.from / (mass.from + y[mass.at] / mass.penalty)
     }
 
-    /// F.
+    /// Returns F(y).
     fn value(&self, y: &DVector<f64>) -> f64 {
         let mut c = y.clone();
         for mass in &self.masses {
@@ -94,16 +96,16 @@ impl Search<'_> {
     }
 
     fn starts(&self, plane: &Plane) -> Vec<DVector<f64>> {
-        let all = HEAVIER.map(|by| vec![by; self.masses.len()]);
+        let all = START_MASS_RATIOS.map(|by| vec![by; self.masses.len()]);
         let several = self.masses.len() > 1;
-        let mixed = (1..=(MIXED_STARTS * self.masses.len()).min(MAX_MIXED_STARTS)).filter(|_| several);
-        let mixed = mixed.map(|start| (0..self.masses.len()).map(|i| scattered(start, i)).collect());
-        let modelled = all.into_iter().chain(mixed).filter_map(|heavier: Vec<f64>| self.modelled(plane, &heavier));
-        modelled.collect()
+        let mixed = (1..=(MIXED_STARTS_PER_MASS * self.masses.len()).min(MAX_MIXED_STARTS)).filter(|_| several);
+        let mixed = mixed.map(|start| (0..self.masses.len()).map(|i| mixed_ratio(start, i)).collect());
+        let ratios = all.into_iter().chain(mixed);
+        ratios.filter_map(|ratios: Vec<f64>| self.start(plane, &ratios)).collect()
     }
 
-    /// The best with given masses, kg, as near as their limits let them be.
-    fn held(&self, masses: &[f64]) -> Option<DVector<f64>> {
+    /// Minimises F with the masses held at given values, kg, clamped to their limits; `None` if that is not feasible.
+    fn with_masses(&self, masses: &[f64]) -> Option<DVector<f64>> {
         let held = self.masses.iter().zip(masses).map(|(mass, value)| {
             let mut a = vec![0.0; self.counts.len()];
             a[mass.at] = 1.0;
@@ -116,14 +118,15 @@ impl Search<'_> {
         Some(self.descend(&plane, y))
     }
 
-    /// The least of F with m₀/m as if the masses were so much heavier, and their changes measured from there.
-    fn modelled(&self, plane: &Plane, heavier: &[f64]) -> Option<DVector<f64>> {
+    /// Returns the minimum of the quadratic model of F in which m/m₀ has given ratios, and in which changes of masses
+    /// are measured from those; `None` if it is not feasible.
+    fn start(&self, plane: &Plane, ratios: &[f64]) -> Option<DVector<f64>> {
         let mut h =
             DMatrix::from_diagonal(&DVector::from_iterator(self.counts.len(), self.counts.iter().map(curvature)));
         let mut from = DVector::zeros(self.counts.len());
-        for (mass, heavier) in self.masses.iter().zip(heavier) {
-            mass.places.iter().for_each(|i| h[(*i, *i)] /= heavier * heavier);
-            from[mass.at] = mass.penalty * mass.from * (heavier - 1.0);
+        for (mass, ratio) in self.masses.iter().zip(ratios) {
+            mass.places.iter().for_each(|i| h[(*i, *i)] /= ratio * ratio);
+            from[mass.at] = mass.penalty * mass.from * (ratio - 1.0);
         }
         let (m, c) = plane.cut(self.bounds);
         let reduced = plane.free.tr_mul(&(&h * &plane.free));
@@ -132,12 +135,12 @@ impl Search<'_> {
         Some(&plane.start + &plane.free * z)
     }
 
-    /// Downhill from a start.
+    /// Minimises F from a start by Newton's method with a backtracking line search.
     fn descend(&self, plane: &Plane, start: DVector<f64>) -> DVector<f64> {
         let (m, c) = plane.cut(self.bounds);
         let place = |z: &DVector<f64>| &plane.start + &plane.free * z;
         let mut z = plane.free.tr_mul(&(&start - &plane.start));
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let y = place(&z);
             let value = self.value(&y);
             let slope = plane.free.tr_mul(&self.slope(&y));
@@ -146,19 +149,20 @@ impl Search<'_> {
             };
             let Some(to) = model(false).or_else(|| model(true)) else { break };
             let way = &to - &z;
-            let promised = -slope.dot(&way);
-            if promised <= NO_GAIN * value || promised.is_nan() {
+            let predicted = -slope.dot(&way);
+            if predicted <= MIN_DECREASE * value || predicted.is_nan() {
                 break;
             }
             let shorter = (0..40).map(|i| 0.5_f64.powi(i));
-            let keeps = |by: &f64| self.value(&place(&(&z + &way * *by))) <= value - KEEPS * by * promised;
-            let Some(by) = shorter.into_iter().find(keeps) else { break };
+            let sufficient =
+                |by: &f64| self.value(&place(&(&z + &way * *by))) <= value - SUFFICIENT_DECREASE * by * predicted;
+            let Some(by) = shorter.into_iter().find(sufficient) else { break };
             z += way * by;
         }
         place(&z)
     }
 
-    /// ∂F/∂y.
+    /// Returns the gradient ∂F/∂y.
     fn slope(&self, y: &DVector<f64>) -> DVector<f64> {
         let mut slope = DVector::from_fn(y.len(), |i, _| if self.counts[i] { 2.0 * y[i] } else { 0.0 });
         for mass in &self.masses {
@@ -172,7 +176,7 @@ impl Search<'_> {
         slope
     }
 
-    /// ∂²F/∂y², or as much of it as is convex.
+    /// Returns the Hessian ∂²F/∂y², or a positive definite matrix in place of it if `convex`.
     fn curvature(&self, y: &DVector<f64>, convex: bool) -> DMatrix<f64> {
         let mut h = DMatrix::from_diagonal(&DVector::from_iterator(y.len(), self.counts.iter().map(curvature)));
         for mass in &self.masses {
@@ -188,17 +192,16 @@ impl Search<'_> {
                 bent += (beta * c).powi(2);
             }
             if convex {
-                // What is left of it where the places follow is 2 − 2 Σ (β c)².
-                h[(k, k)] += 2.0 * (bent - 1.0 + LEAST_CURVATURE).max(0.0);
+                // The curvature along y_m, with the positions eliminated, is 2 − 2 Σ (β c)².
+                h[(k, k)] += 2.0 * (bent - 1.0 + MIN_CURVATURE).max(0.0);
             }
         }
         h
     }
 }
 
-/// How much heavier the i-th mass is taken to be at a start, from a tenth to ten times: an additive recurrence, which
-/// spreads evenly.
-fn scattered(start: usize, i: usize) -> f64 {
+/// Returns the ratio m/m₀ of the i-th mass at a start, from 0.1 to 10: an additive recurrence, which spreads evenly.
+fn mixed_ratio(start: usize, i: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let step = (GOLDEN * (i + 1) as f64 * (1.0 + GOLDEN * i as f64)).fract();
     let place = (0.5 + step * start as f64).fract();
@@ -209,7 +212,8 @@ fn curvature(counts: &bool) -> f64 {
     if *counts { 2.0 } else { 0.0 }
 }
 
-/// The least of a quadratic model around z within M z ≤ c; none if the model is not convex, or nothing is within.
+/// Returns the minimum of a quadratic model about z within M z ≤ c; `None` if the model is not convex or the
+/// constraints are infeasible.
 fn step(
     z: &DVector<f64>,
     slope: &DVector<f64>,
@@ -218,7 +222,7 @@ fn step(
 ) -> Option<DVector<f64>> {
     let model = Cholesky::new(curvature)?;
     let (centre, l) = (z - model.solve(slope), model.l());
-    // In Lᵀ (z − centre) the model is a distance.
+    // In coordinates Lᵀ (z − centre) the model is half the squared distance from 0.
     let turned = l.solve_lower_triangular(&m.transpose())?.transpose();
     let way = nearest(&turned, &(c - m * &centre)).ok()?;
     Some(centre + l.tr_solve_lower_triangular(&way)?)
