@@ -33,7 +33,7 @@ pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
 pub enum Exaggeration {
     /// Displacement and rotation are multiplied by this factor.
     Times(f64),
-    /// The base is rotated by minus this compliance, rad/(N m), times the moment, as if on a soft mount.
+    /// The base is rotated by minus this compliance, rad/(N m), times the moment n_B, as if on a soft mount.
     Mount(f64),
 }
 
