@@ -45,7 +45,7 @@ fn unit(v: vec2<f32>) -> vec2<f32> {
     return select(vec2<f32>(0.0), v / max(l, 1e-20), l > 1e-6);
 }
 
-// Unit normal of the line through joint j that bisects the angle between p-j and j-n; zero if a segment has no length.
+// Unit normal of the line through joint j that bisects the angle between p-j and j-n; zero if it is undefined.
 // Both segments that meet in j call this with the same arguments, so their results are identical.
 fn border(p: vec2<f32>, j: vec2<f32>, n: vec2<f32>) -> vec2<f32> {
     let u = unit(j - p);
