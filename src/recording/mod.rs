@@ -11,12 +11,12 @@
 //! | `workspace/<b>` | a reactionless workspace and its boundary; b rotates it |
 //! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, if any |
 //! | `joint_space` | q as coordinates: the plane of b within the joint limits, the planned path, the pose |
-//! | `tower` | all workspaces, b as height: the wall, the present section, and the b for which points are reachable |
+//! | `tower` | all workspaces, b as height: the wall, the present section, and the b that reach the task's points |
 //! | `design/machine`, `design/marks` | the machine from above, to scale: links, centres of mass, discs |
 //! | `design/state`, `design/links`, `design/balance` | tables of measures, masses, and the residuals of (7) and (8) |
 //! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
-//! | `tower` | all workspaces, b as height: the wall, the present section, and the b that reach the points of the task |
+//! | `signals/<topic>` | every row of the table of [`signals`](crate::simulation::signals), at every step, as a series |
 //! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
 //!

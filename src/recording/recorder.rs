@@ -82,7 +82,7 @@ struct Recorder<'a> {
     palette: Palette,
     options: ViewOptions,
     /// Whether the constant parts of the views do not change during the run.
-    lasting: bool,
+    constant_views: bool,
     /// Number of edits that have been applied.
     edits: usize,
     clock: Clock,
@@ -142,7 +142,7 @@ impl<'a> Recorder<'a> {
             forecast,
             root,
             palette,
-            lasting: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
+            constant_views: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
             edits: 0,
             clock: Clock::default(),
             topics: forecast.topics.clone(),
@@ -209,7 +209,7 @@ impl<'a> Recorder<'a> {
     /// Draws all scenes of an instant.
     fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
         let Some(Drawn { views, .. }) = &self.drawn else { return Ok(()) };
-        let when = (at, if self.lasting { None } else { Some(at) });
+        let when = (at, if self.constant_views { None } else { Some(at) });
         let tip = point(frame.end_effector, views.stage().handle_height());
         self.trail.push(|| tip, last);
         self.machine.draw(self.store, when, &views.stage().scene(frame, &self.options))?;

@@ -54,9 +54,9 @@ pub struct Stage {
     /// Whether the run waits because its task is infeasible.
     waits: bool,
     /// Whether the target can be dragged.
-    follows: bool,
+    target_draggable: bool,
     /// Whether links can be dragged while the end effector stays.
-    holds: bool,
+    links_draggable: bool,
     pins: Pins,
     limits: Limits,
     grid: Grid,
@@ -110,8 +110,8 @@ impl Stage {
             ring: space.filter(|space| !space.joints().is_empty()).map(|space| Ring::of(space, ring_radius(&linkage))),
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
-            follows: run.waiting().is_none() && space.is_some(),
-            holds: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
+            target_draggable: run.waiting().is_none() && space.is_some(),
+            links_draggable: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: Grid::of(&linkage),
@@ -188,7 +188,7 @@ impl Stage {
         match handle {
             Handle::EndEffector if self.waits => None,
             // The point of the path below it is picked instead.
-            Handle::Target if !self.follows => None,
+            Handle::Target if !self.target_draggable => None,
             Handle::Target => Some([shown.target.re, shown.target.im, z]),
             Handle::Ring => {
                 let p = self.ring.as_ref()?.knob(shown);
@@ -233,11 +233,11 @@ impl Stage {
     /// Picks the link under the pointer, if the machine has planes on which the link can be rotated, or freedoms left
     /// with fixed end effector.
     pub fn grip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
-        if self.holds {
+        if self.links_draggable {
             let i = self.link_at(shown, pointer)?;
             return turning::hook(i, self.linkage.bars().get(i)?, shown, pointer);
         }
-        let planes = self.planes().filter(|_| self.follows)?;
+        let planes = self.planes().filter(|_| self.target_draggable)?;
         let (i, map) = (self.link_at(shown, pointer)?, planes.map());
         turning::grip(i, self.linkage.bars().get(i)?, map, shown, pointer)
     }

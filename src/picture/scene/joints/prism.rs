@@ -48,7 +48,7 @@ pub(super) struct Prism {
     /// Interval of b that is shown.
     range: Range,
     /// Whether b changes so much that the camera looks across the prism.
-    travels: bool,
+    b_varies: bool,
 }
 
 impl Prism {
@@ -71,7 +71,7 @@ impl Prism {
         let mut space = Self {
             model: Arc::default(),
             outline: Strips::default(),
-            travels: all.is_some_and(|[low, high]| high - low > LARGE_B_CHANGE_RAD),
+            b_varies: all.is_some_and(|[low, high]| high - low > LARGE_B_CHANGE_RAD),
             drives,
             corners,
             course,
@@ -146,7 +146,7 @@ impl Prism {
         let ends = self.bounds(HOME_B_RAD);
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
         let [x, y, z] = ends.map(|[from, to]| 0.5 * (from + to));
-        let (yaw, distance) = if self.travels { (-0.45, 1.2 * size) } else { (1.85, 1.05 * size) };
+        let (yaw, distance) = if self.b_varies { (-0.45, 1.2 * size) } else { (1.85, 1.05 * size) };
         Camera::Orbit(Orbit { centre: [x, y, z - 0.05 * size], distance, yaw, pitch: 0.66 })
     }
 

@@ -269,18 +269,18 @@ fn panels(linkage: &Linkage) -> [Vec<Vec<[f32; 3]>>; 2] {
 
 /// Returns a zigzag line between two points; `half` is its half width, m.
 fn spring(from: Vector, to: Vector, half: f64, z: f64) -> Vec<[f32; 3]> {
-    const TURNS: i32 = 9;
+    const SEGMENTS: i32 = 9;
     let way = to - from;
     let across = way / way.norm().max(1e-12) * Vector::new(0.0, half);
     let at = |i: i32| {
         let side = match i {
-            0 | TURNS => 0.0,
+            0 | SEGMENTS => 0.0,
             i if i % 2 == 0 => 1.0,
             _ => -1.0,
         };
         // Straight at both ends.
-        let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(TURNS) };
+        let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(SEGMENTS) };
         point(from + way * share + across * side, z)
     };
-    (0..=TURNS).map(at).chain([point(to, z)]).collect()
+    (0..=SEGMENTS).map(at).chain([point(to, z)]).collect()
 }

@@ -14,9 +14,9 @@ use crate::picture::scene::pointer::Pointer;
 use crate::picture::scene::{Line, Marker, Name, Pose, Scene, Strips, place, point, posed};
 
 /// Radius of the innermost arc, as a fraction of the reach.
-const RADIUS: f64 = 0.062;
+const ARC_RADIUS: f64 = 0.062;
 /// Radial distance between arcs at one pin, as a fraction of the reach.
-const STEP: f64 = 0.016;
+const ARC_SPACING: f64 = 0.016;
 
 /// Minimum distance between lower and upper limit, and of their span from a full turn, rad.
 const MIN_SPAN_RAD: f64 = PI / 180.0;
@@ -71,7 +71,7 @@ impl Limits {
             };
             let others = arcs.iter().filter(|arc| arc.pin == pin).count();
             let sign = linkage.bars()[outer].sign();
-            let radius = (RADIUS + STEP * others as f64) * linkage.reach();
+            let radius = (ARC_RADIUS + ARC_SPACING * others as f64) * linkage.reach();
             let mut arc = Arc {
                 name: format!("machine/limits/{}", angle.name).into(),
                 k,

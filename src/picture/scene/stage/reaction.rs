@@ -27,7 +27,7 @@ pub fn draw(
     let so_far = || Scale::of(frame.peaks.force.max(felt.force.norm()), frame.peaks.moment);
     let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
-    // An invisible arrow or arc is an empty line, so that a recording clears it.
+    // An invisible arrow or arc is a line without points.
     let mut line = |name: &'static str, own: Handle, strips: Vec<Vec<[f32; 3]>>| {
         let width = if options.hot == Some(own) { 5.0 } else { 3.0 };
         let line = Line::new(name, Strips::from(strips), width, palette.reaction).on_top();

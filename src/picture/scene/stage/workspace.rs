@@ -391,15 +391,16 @@ fn roomiest_of_planes(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vecto
 /// Returns the point of a coarse grid inside the loops that is farthest from them, m, outside the circle of radius
 /// `root` about the base.
 fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], root: f64) -> Vector {
-    const GRID: i32 = 16;
+    const GRID_CELLS: i32 = 16;
     /// Maximum number of vertices of a loop that are used.
-    const THINNED: usize = 240;
+    const MAX_VERTICES: usize = 240;
     let thin = |line: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-        line.iter().step_by(line.len().div_ceil(THINNED).max(1)).copied().collect()
+        line.iter().step_by(line.len().div_ceil(MAX_VERTICES).max(1)).copied().collect()
     };
     let loops: Vec<Vec<[f64; 2]>> = loops.iter().map(thin).collect();
-    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID);
-    let points = (0..GRID * GRID).map(|k| Vector::new(at(k % GRID, x_min, x_max), at(k / GRID, y_min, y_max)));
+    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID_CELLS);
+    let points = (0..GRID_CELLS * GRID_CELLS)
+        .map(|k| Vector::new(at(k % GRID_CELLS, x_min, x_max), at(k / GRID_CELLS, y_min, y_max)));
     // Even-odd rule.
     let is_inside = |p: &Vector| {
         let crossed = |line: &Vec<[f64; 2]>| {
