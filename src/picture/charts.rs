@@ -100,7 +100,7 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| rubs));
     list.extend([PINS, ANGLES]);
-    // There is no pose constant b if no drive turns the base, or if the rate depends on the pose.
+    // There is no pose constant b if no drive turns the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| held(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
@@ -150,7 +150,7 @@ impl Chart {
 }
 
 /// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS`] times
-/// its reference value (sum of torques, inertial forces), otherwise green.
+/// its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };

@@ -26,8 +26,8 @@
 //! recorded: snapshots of the arm, and pin forces (pictures can show the latter, `pin_forces`). Hints at what can be
 //! dragged are not recorded either.
 //!
-//! Each change of the machine in a session is a row of the design, on the time line `edit`, which only such recordings
-//! have, and at the step at which it was made.
+//! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
+//! have a further time line, `edit`.
 //!
 //! Constant parts of an item are written once. Moving parts have at most 200 rows a second, and signals have a row at
 //! every step. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal

@@ -1,5 +1,5 @@
 //! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity; items of one name share it.
-//! Parts of an item marked as constant are written once, the rest when it changes.
+//! Parts of an item marked as constant are written once, other parts when they change.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -33,8 +33,11 @@ pub struct Drawn {
 impl Drawn {
     /// Computes the curves of a plot.
     ///
-    /// `samples` is the session's run, `others` are the overlaid runs with their indices, `shown` is the time interval,
-    /// s, `columns` the width in pixels, and `statistics` whether statistics are computed too.
+    /// * `samples`: the run of the session.
+    /// * `others`: overlaid runs with their indices.
+    /// * `shown`: time interval, s.
+    /// * `columns`: width, pixels.
+    /// * `statistics`: whether statistics are computed.
     pub fn of(
         plot: &Plot<'_>,
         samples: &Samples,

@@ -1,5 +1,5 @@
-//! The base (a plate that floats or is mounted on springs), its reaction wheel, the payload, and the outline of the
-//! machine as if the base had not moved.
+//! The base (a plate that floats or is mounted on springs), its reaction wheel and the payload. If the base moves, base
+//! and machine are also outlined as if it had not moved.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
