@@ -50,8 +50,8 @@ impl Space {
         }
     }
 
-    /// Sets replacements of paths: if the name of an item is the first of a pair or a descendant of it, the second of
-    /// the pair replaces the first in the path of its entity. Of several matching pairs, the first applies.
+    /// Sets replacements of paths, as pairs of old and new prefix. If the name of an item is the old prefix or below
+    /// it, the path of its entity has the new prefix instead. Of several matching pairs, the first applies.
     pub fn rename(&mut self, renamed: Vec<(&'static str, String)>) {
         self.renamed = renamed;
     }

@@ -1,9 +1,11 @@
-//! [`Prism`]: joint space of a machine with planes. Its axes are the drive angles q_1, q_2, q_3, so the planes b = Σ
-//! λ_k q_k, (13), appear as planes. The limits of a_1 and a_2 bound a parallelogram in each plane. All parallelograms
-//! together form a prism along (1, 1, 1), because equal rotations of all drives change no relative angle.
+//! [`Prism`]: joint space of a machine with planes. Its axes are the drive angles q_1, q_2, q_3, so the planes
+//! b = Σ λ_k q_k, (13), appear as planes. The limits of a_1 and a_2 bound a parallelogram in each plane. All
+//! parallelograms together form a prism along (1, 1, 1), because equal rotations of all drives change no relative
+//! angle.
 //!
-//! The drive with the largest λ points up, and the others follow it in order (q_2, q_3, q_1 for the paper's machine),
-//! so the planes are nearly horizontal. The unit of the scene is the radian, and the origin is [`Prism::origin`].
+//! The axis of the drive with the largest λ points up, so the planes are nearly horizontal. The other drives follow in
+//! order (q_2, q_3, q_1 for the paper's machine). The unit of the scene is the radian, and the origin is
+//! [`Prism::origin`].
 
 use std::sync::Arc;
 
