@@ -1,4 +1,4 @@
-// The finished picture onto another target, pixel for pixel.
+// Copies the finished picture to another target, pixel for pixel.
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -18,13 +18,13 @@ fn vertex(@builtin(vertex_index) i: u32) -> Varying {
     return out;
 }
 
-// The picture holds sRGB values: a plain target takes them as they are.
+// The picture holds sRGB values; a target without sRGB encoding takes them unchanged.
 @fragment
 fn plain(in: Varying) -> @location(0) vec4<f32> {
     return textureSample(picture, nearest, in.uv);
 }
 
-// A target that encodes on writing wants them decoded first.
+// A target that encodes to sRGB on writing needs linear values.
 @fragment
 fn encoding(in: Varying) -> @location(0) vec4<f32> {
     let c = textureSample(picture, nearest, in.uv);

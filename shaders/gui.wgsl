@@ -1,14 +1,14 @@
-// Triangles of the interface: letters, lines and areas alike, each with its colour and a place in a texture.
+// Triangles of the user interface (letters, lines and areas), each with a colour and texture coordinates.
 
 struct Screen {
-    // Logical points.
+    // Width and height, logical points.
     size: vec2<f32>,
 };
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) uv: vec2<f32>,
-    // sRGB values with premultiplied alpha, as are those of the texture.
+    // sRGB values with premultiplied alpha, like those of the texture.
     @location(1) colour: vec4<f32>,
 };
 
@@ -26,13 +26,13 @@ fn vertex(@location(0) at: vec2<f32>, @location(1) uv: vec2<f32>, @location(2) c
     return out;
 }
 
-// A plain target takes sRGB values as they are.
+// A target without sRGB encoding takes sRGB values unchanged.
 @fragment
 fn plain(in: Varying) -> @location(0) vec4<f32> {
     return in.colour * textureSample(image, filtering, in.uv);
 }
 
-// A target that encodes on writing wants them decoded first.
+// A target that encodes to sRGB on writing needs linear values.
 @fragment
 fn encoding(in: Varying) -> @location(0) vec4<f32> {
     let c = in.colour * textureSample(image, filtering, in.uv);

@@ -1,6 +1,6 @@
-// Polylines as ribbons of constant width on the screen. Each segment is a rectangle that holds its capsule; the
-// fragment shader measures the distance to the segment, so joins and ends are round and edges are smooth. Fragments
-// near a joint belong to one of its two segments only, so translucent lines have no knots.
+// Polylines as ribbons of constant width on the screen. Each segment is drawn as the bounding rectangle of a capsule.
+// The fragment shader computes the distance to the segment, so joins and ends are round and edges are antialiased.
+// Fragments near a joint belong to one of its two segments only, so translucent lines are not darker at joints.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -25,7 +25,7 @@ struct Segment {
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) ends: vec4<f32>, // a, b on the screen
-    @location(1) @interpolate(flat) cuts: vec4<f32>, // normals of the borders to the neighbours; zero for none
+    @location(1) @interpolate(flat) cuts: vec4<f32>, // normals of the borders with the neighbours; zero without one
     @location(2) @interpolate(flat) shape: vec4<f32>, // half width, arc, dash, gap, all in physical px
     @location(3) @interpolate(flat) colour: vec4<f32>,
 };
@@ -33,7 +33,7 @@ struct Varying {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> segments: array<Segment>;
 
-// Towards the eye by this share of the depth range: a line on a face lies over it.
+// Shift towards the eye as a fraction of the depth range, so that a line on a face is drawn over the face.
 const BIAS = 1e-5;
 
 fn screen(clip: vec4<f32>) -> vec2<f32> {
@@ -45,8 +45,8 @@ fn unit(v: vec2<f32>) -> vec2<f32> {
     return select(vec2<f32>(0.0), v / max(l, 1e-20), l > 1e-6);
 }
 
-// Normal of the line through joint j that halves the angle between p-j and j-n. Both segments that meet in j call this
-// with the same arguments, so they agree to the last bit.
+// Unit normal of the line through joint j that bisects the angle between p-j and j-n; zero if it is undefined.
+// Both segments that meet in j call this with the same arguments, so their results are identical.
 fn border(p: vec2<f32>, j: vec2<f32>, n: vec2<f32>) -> vec2<f32> {
     let u = unit(j - p);
     let v = unit(n - j);
@@ -64,10 +64,10 @@ fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i: u32) -
 
     var out: Varying;
     if a.z < 0.0 && b.z < 0.0 {
-        out.clip = vec4<f32>(0.0, 0.0, -1.0, 1.0); // all four corners here: nothing is drawn
+        out.clip = vec4<f32>(0.0, 0.0, -1.0, 1.0); // all four corners coincide: nothing is drawn
         return out;
     }
-    // Cut at the near plane, or the far side of the eye would fold over.
+    // Clip at the near plane: points behind the eye would be projected to the wrong side.
     let a_near = a.z < 0.0;
     let b_near = b.z < 0.0;
     let whole_a = a;
@@ -81,7 +81,7 @@ fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i: u32) -
     if !b_near && after.z >= 0.0 { cuts = vec4<f32>(cuts.xy, border(pa, pb, screen(after))); }
 
     let half = 0.5 * s.width * frame.pixels_per_point;
-    let reach = max(half, 0.5) + 1.0; // room for the smooth edge
+    let reach = max(half, 0.5) + 1.0; // margin for the antialiased edge
     var along = unit(pb - pa);
     if all(along == vec2<f32>(0.0)) { along = vec2<f32>(1.0, 0.0); }
     let across = vec2<f32>(-along.y, along.x);
@@ -108,7 +108,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         discard;
     }
     let half = in.shape.x;
-    let wide = max(half, 0.5); // thinner than a pixel: a pixel wide, and fainter
+    let wide = max(half, 0.5); // a line thinner than a pixel is drawn a pixel wide and fainter
     let ab = b - a;
     let along = dot(p - a, ab) / max(length(ab), 1e-6);
     let on = clamp(along, 0.0, length(ab));
@@ -118,7 +118,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let dash = in.shape.z;
     let gap = in.shape.w;
     if dash > 0.0 && gap > 0.0 {
-        // Distance to the nearest dash, a rounded rectangle no longer than `dash`: dash = width makes dots.
+        // Distance to the nearest dash, a rounded rectangle of length `dash`; dash = width gives dots.
         let period = dash + gap;
         let s = in.shape.y + on - 0.5 * dash;
         let t = abs(s - period * round(s / period));

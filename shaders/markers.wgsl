@@ -1,4 +1,4 @@
-// Discs and rings of constant size on the screen, over everything. Colours leave premultiplied.
+// Discs and rings of constant size on the screen, over everything. Output colours have premultiplied alpha.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -32,7 +32,7 @@ fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i: u32) -
     let centre = frame.clip_from_world * vec4<f32>(m.at, 1.0);
     var out: Varying;
     if centre.z < 0.0 {
-        out.clip = vec4<f32>(0.0, 0.0, -1.0, 1.0); // behind the eye: all corners in one place
+        out.clip = vec4<f32>(0.0, 0.0, -1.0, 1.0); // behind the eye: all corners coincide
         return out;
     }
     let p = (centre.xy / centre.w * vec2<f32>(0.5, -0.5) + 0.5) * frame.size_px;

@@ -1,4 +1,4 @@
-// Soft shadows of bars on the plane below them: darkest under the middle, gone at `reach` from it.
+// Soft shadows of bars on the plane below them: fully dark up to `core` from the centre line, zero from `reach` on.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -11,9 +11,9 @@ struct Frame {
 struct Shadow {
     root: vec2<f32>, // m
     tip: vec2<f32>,  // m
-    z: f32,          // of the plane, m
-    core: f32,       // half the width of what is fully dark, m
-    reach: f32,      // from the middle to where it ends, m
+    z: f32,          // height of the plane, m
+    core: f32,       // half width of the fully dark part, m
+    reach: f32,      // half width of the whole shadow, m
     strength: f32,
 };
 

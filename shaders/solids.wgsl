@@ -1,5 +1,5 @@
-// Bars, joints and base: instanced meshes in a calm light. A face that looks straight up at an eye straight above
-// keeps its colour exactly.
+// Bars, joints and base: instanced meshes with diffuse lighting. A horizontal face seen from straight above has exactly
+// its own colour.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -20,7 +20,7 @@ struct Vertex {
 };
 
 struct Varying {
-    // Invariant: the two passes over translucent solids must agree on depth to the last bit.
+    // Invariant: both passes over translucent solids must compute identical depths.
     @builtin(position) @invariant clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) @interpolate(flat) colour: vec4<f32>,
@@ -29,7 +29,7 @@ struct Varying {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> instances: array<Instance>;
 
-// Normals stay normal under any scaling when these turn them.
+// The cofactor matrix transforms normals correctly under any scaling.
 fn cofactors(m: mat4x4<f32>) -> mat3x3<f32> {
     return mat3x3<f32>(cross(m[1].xyz, m[2].xyz), cross(m[2].xyz, m[0].xyz), cross(m[0].xyz, m[1].xyz));
 }
@@ -46,7 +46,7 @@ fn vertex(v: Vertex, @builtin(instance_index) i: u32) -> Varying {
 
 const KEY = vec3<f32>(-0.36, 0.48, 0.8); // towards the light: above left, unit
 
-// Sky from above, a key light, and a faint lamp at the eye.
+// Sky light from above, a key light, and a faint light at the eye.
 fn light(normal: vec3<f32>, eye: vec3<f32>) -> f32 {
     let sky = mix(0.46, 0.62, 0.5 + 0.5 * normal.z);
     let key = 0.30 * max(dot(normal, KEY), 0.0);
@@ -58,12 +58,12 @@ fn light(normal: vec3<f32>, eye: vec3<f32>) -> f32 {
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let up = vec3<f32>(0.0, 0.0, 1.0);
     let level = light(normalize(in.normal), frame.eye_direction) / light(up, up);
-    // Past full light, towards white rather than into clipping.
+    // Levels above 1 are blended towards white instead of clipped.
     let lit = mix(in.colour.rgb * min(level, 1.0), vec3<f32>(1.0), clamp(level - 1.0, 0.0, 1.0));
     return vec4<f32>(lit, in.colour.a);
 }
 
-// An open surface: lit on the side that is seen, and denser where it turns away from the eye, as glass is.
+// An open surface: lit on the visible side, and more opaque at grazing angles, like glass.
 @fragment
 fn shell_fragment(in: Varying) -> @location(0) vec4<f32> {
     let normal = normalize(in.normal);
@@ -76,13 +76,13 @@ fn shell_fragment(in: Varying) -> @location(0) vec4<f32> {
 
 const CASING = 1.25; // px
 
-// The far side of the solid, a little wider on the screen: what shows of it sets a solid off from those below it.
+// The back faces of the solid, a little wider on the screen; the visible rim separates the solid from those below it.
 @vertex
 fn casing_vertex(v: Vertex, @builtin(instance_index) i: u32) -> @builtin(position) vec4<f32> {
     let m = instances[i].world_from_mesh;
     var clip = frame.clip_from_world * (m * vec4<f32>(v.position, 1.0));
     let normal = frame.clip_from_world * vec4<f32>(cofactors(m) * v.normal, 0.0);
-    // How the point moves on the screen when it moves along its normal.
+    // Direction in which the point moves on the screen when it moves along its normal.
     let out = (normal.xy * clip.w - clip.xy * normal.w) * frame.size_px;
     if length(out) > 1e-12 {
         let shift = normalize(out) * CASING * frame.pixels_per_point;

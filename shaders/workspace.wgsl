@@ -1,6 +1,6 @@
-// A reactionless workspace, Eq. (16), evaluated at each vertex of a grid over (a_1, a_2). The turn b* is one number of
-// the area, so turning it costs nothing. Sheets that overlap blend, and the colour gathers. The colour goes from one to
-// another with a measure of dexterity, which the turn does not change.
+// A reactionless workspace, Eq. (16), evaluated at each vertex of a grid over (a_1, a_2). The rotation b* is one number
+// of the area, so rotating it needs no new geometry. Overlapping sheets blend to a stronger colour. A measure of
+// dexterity, which does not depend on b*, interpolates between two colours.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -16,13 +16,13 @@ struct Area {
     u1: vec3<f32>,  // first component of u_k
     z: f32,         // m
     u2: vec3<f32>,  // second component of u_k
-    x: f32,         // of B, m
+    x: f32,         // x of B, m
     v: vec3<f32>,   // v_k, rad
-    y: f32,
+    y: f32,         // y of B, m
     a_min: vec2<f32>,
     a_max: vec2<f32>,
-    colour: vec4<f32>, // where the measure is empty
-    shade: vec4<f32>,  // where it is full or more
+    colour: vec4<f32>, // where |share| is 0
+    shade: vec4<f32>,  // where |share| is 1 or more
     full: f32,
     empty: f32,
     measure: u32,      // 0: |det|, m^2; 1: sqrt det(J J^T), m^2; 2: worst |tau| of a unit force, N m/N
@@ -32,13 +32,13 @@ struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
     @location(1) @interpolate(flat) shade: vec4<f32>,
-    @location(2) share: f32, // from empty to full; for det its sign tells sheets apart
+    @location(2) share: f32, // (measure - empty) / (full - empty); for det its sign differs between sheets
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> areas: array<Area>;
 
-override CELLS: u32 = 64u; // a side; the index buffer counts on it
+override CELLS: u32 = 64u; // per side; the index buffer depends on it
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -> Varying {
@@ -50,7 +50,7 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -
     let y = area.c * sin(angle);
     let one = vec3<f32>(1.0);
     let at = vec3<f32>(area.x + dot(x, one), area.y + dot(y, one), area.z);
-    // d(x + iy)/da_j = i sum_k u_kj (x_k + i y_k), and a quarter turn of both columns leaves det alone.
+    // d(x + iy)/da_j = i sum_k u_kj (x_k + i y_k); a quarter turn of both columns does not change det.
     var value = dot(x, area.u1) * dot(y, area.u2) - dot(y, area.u1) * dot(x, area.u2);
     if area.measure == 1u {
         let minors = x * y.yzx - y * x.yzx;

@@ -1,4 +1,4 @@
-//! What a window would show, drawn without one: figures, pictures in recordings, and tests.
+//! Drawing without a window, for figures, pictures in recordings, and tests.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
 use super::scene::camera::Camera;
 
-/// A surface that egui and the scene draw on, and that can be read back.
+/// A texture that egui and the scene renderer draw on, and that can be read back.
 pub struct Canvas {
     gpu: Gpu,
     gui: GuiRenderer,
@@ -20,10 +20,11 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Of a size in physical pixels; `scale` of them make a logical one.
+    /// Creates a canvas of the given size in physical pixels; `scale` is the number of physical pixels per logical
+    /// point.
     ///
     /// # Errors
-    /// If no adapter can draw; the text names what to install.
+    /// If there is no usable GPU adapter; the message names the package to install.
     pub fn new([width, height]: [u32; 2], scale: f32) -> Result<Self, NoAdapter> {
         let gpu = Gpu::new()?;
         let format = wgpu::TextureFormat::Rgba8Unorm;
@@ -37,19 +38,19 @@ impl Canvas {
         Ok(Self { gpu, gui, ctx, texture, size_px, pixels_per_point: scale, fonts: false })
     }
 
-    /// Draws what a function makes with egui.
+    /// Draws the user interface that `draw` builds with egui.
     ///
     /// # Errors
     /// If the picture cannot be read back.
     pub fn draw(&mut self, mut draw: impl FnMut(&mut egui::Ui)) -> Result<Picture, NoPicture> {
-        // The first passes load fonts and settle the layout; the last one counts.
+        // The first passes load fonts and settle the layout; only the picture of the last pass is used.
         for _ in 0..4 {
             self.pass(&mut draw);
         }
         self.read()
     }
 
-    /// A scene with its words and nothing around it.
+    /// Draws a scene with its labels over the whole canvas.
     ///
     /// # Errors
     /// If the picture cannot be read back.

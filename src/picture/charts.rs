@@ -1,5 +1,5 @@
-//! The one table of charts: which signals a plot holds, its title, unit and range, and the colours of its lines. The
-//! window's plots and the recording's are these.
+//! The table of charts: the signals of each plot, its title, unit and range, and the colours of its lines. Both the
+//! window and recordings use this table.
 
 pub mod choice;
 pub mod drawn;
@@ -20,36 +20,36 @@ use crate::simulation::signals::Signal;
 /// A plot of signals over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chart {
-    /// What it shows.
+    /// Title.
     pub title: &'static str,
     /// Unit of the values as the window shows them.
     pub unit: &'static str,
-    /// The signals it holds: paths, or groups of them.
+    /// Paths of signals, or of groups of signals.
     pub signals: &'static [&'static str],
-    /// The least half of its range, or the least range where it is not about zero; in the unit of the window.
+    /// Smallest half range if the range is centred on zero, otherwise smallest range; in the unit of the window.
     pub least: f64,
-    /// The range is about zero.
+    /// Whether the range is symmetric about zero.
     pub centred: bool,
-    /// What SI values are multiplied by in the window.
+    /// Factor from SI values to the unit of the window.
     pub times: f64,
-    /// Where it is to be seen.
+    /// Where the chart is shown.
     pub place: Place,
-    /// The cases of a recording are laid over each other in it.
+    /// Whether a recording overlays all its cases in this chart.
     pub compared: bool,
 }
 
-/// Where a chart is to be seen.
+/// Where a chart is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Beside the scene, in the window and in recordings.
     Beside,
-    /// In the window where somebody asks what the pins carry; in recordings, among what is inside the machine.
+    /// In the window if pin forces are switched on; in recordings, on the page of internal signals.
     Pins,
-    /// In recordings only, among what is inside the machine.
+    /// In recordings only, on the page of internal signals.
     Inside,
 }
 
-/// A chart that holds nothing yet.
+/// A chart without signals; the base of all others.
 pub const PLAIN: Chart = Chart {
     title: "",
     unit: "",
@@ -64,7 +64,7 @@ pub const PLAIN: Chart = Chart {
 const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..PLAIN };
 const MOMENT: Chart =
     Chart { title: "Base moment", unit: "N m", signals: &["moment/total"], least: 0.5, compared: true, ..PLAIN };
-/// What the machine transmits, and what of it the base feels past its reaction wheel.
+/// Moment that the machine transmits, and the moment that reaches the base after its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 const FORCE: Chart =
     Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], least: 0.5, ..PLAIN };
@@ -92,7 +92,7 @@ const TRANSMISSION: Chart =
 const CHANGE_POINT: Chart =
     Chart { title: "To the nearest change point", unit: "rad", signals: &["change_point/distance"], ..INSIDE };
 
-/// The charts that have something to tell of a scenario, in the order in which they stand.
+/// Returns the charts that apply to a scenario, in order of display.
 pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     let wheel = scenario.base.wheel.is_some();
     let rubs = scenario.plant.friction != Default::default();
@@ -100,14 +100,14 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| rubs));
     list.extend([PINS, ANGLES]);
-    // Where no drive turns the base, or how much depends on the pose, there is no b.
+    // There is no pose constant b if no drive turns the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| held(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
 }
 
 impl Chart {
-    /// Whether the window shows it; `pins` where the forces of pins are switched on.
+    /// Whether the window shows the chart; `pins`: pin forces are switched on.
     pub fn in_window(&self, pins: bool) -> bool {
         match self.place {
             Place::Beside => true,
@@ -116,23 +116,23 @@ impl Chart {
         }
     }
 
-    /// Whether it holds a signal.
+    /// Whether the chart contains a signal.
     pub fn holds(&self, signal: &Signal) -> bool {
         self.signals.iter().any(|of| signal.path == *of || signal.group() == *of)
     }
 
-    /// Its unit where values are in SI units; empty for none.
+    /// Returns the SI unit of the values; empty if dimensionless.
     pub fn si_unit(&self) -> String {
         match (self.times == 1.0, self.unit) {
             (_, "1") => String::new(),
             (true, unit) => unit.into(),
-            // All of them are in thousandths.
+            // Every scaled chart is in thousandths.
             (false, unit) => unit.split(", ").map(|u| u.strip_prefix('m').unwrap_or(u)).collect::<Vec<_>>().join(", "),
         }
     }
 
-    /// Bounds of its axis that hold still: rounded outwards about values from `low` to `high`, and never so tight that
-    /// rounding noise looks like a signal.
+    /// Returns bounds of the axis, rounded outwards about the values from `low` to `high`. Rounded bounds seldom change
+    /// as values arrive. The range is never smaller than `least`, so that rounding noise does not look like a signal.
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         if self.centred {
             let most = round_up(low.abs().max(high.abs()).max(self.least));
@@ -149,8 +149,8 @@ impl Chart {
     }
 }
 
-/// The colour of a signal in every chart; a reaction is red where it is one and green where it is none, by the peaks up
-/// to the instant that is asked about.
+/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS`] times
+/// its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };

@@ -1,4 +1,4 @@
-//! Draws what egui has made: triangles of its own, and scenes among them.
+//! Draws the output of egui: its triangles, and the scenes between them.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,32 +11,32 @@ use super::render::Twin;
 use super::render::shader::{Shader, embedded, twin};
 
 twin! {
-    /// What every triangle is measured by.
+    /// Width and height of the surface, logical points.
     struct Screen {
         size: [f32; 2],
     }
 }
 
-/// The layouts of all structs that Rust and WGSL share here.
+/// Memory layouts of the structs of this file that Rust and WGSL share.
 pub const TWINS: [Twin; 1] = [Screen::TWIN];
 
-/// Where a picture goes.
+/// The surface that the interface is drawn on.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet<'a> {
-    /// Of the renderer's format.
+    /// View of the target texture, in the format of the renderer.
     pub view: &'a wgpu::TextureView,
-    /// Physical pixels.
+    /// Width and height, physical pixels.
     pub size_px: [u32; 2],
-    /// Physical ones of a logical one.
+    /// Physical pixels per logical point.
     pub pixels_per_point: f32,
-    /// What lies behind everything.
+    /// Background colour.
     pub behind: Color32,
 }
 
-/// Pipelines and memory for what egui makes.
+/// Pipelines and buffers that draw the output of egui.
 ///
-/// Its shader reads one texel and multiplies: where a processor draws, each pixel of the interface costs a fraction of
-/// what egui's own asks for, which filters by hand beside it.
+/// The shader reads one texel and multiplies. In software rendering, a pixel costs a fraction of egui's own shader,
+/// which filters textures in shader code.
 pub struct GuiRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -49,7 +49,7 @@ pub struct GuiRenderer {
     images: HashMap<TextureId, Image>,
     vertices: Memory<Vertex>,
     indices: Memory<u32>,
-    /// Where each mesh of the pass lies in the two, in order.
+    /// Index range and first vertex of each mesh of the pass, in order.
     meshes: Vec<(Range<u32>, i32)>,
     scenes: Renderers,
 }
@@ -60,7 +60,7 @@ struct Image {
     group: wgpu::BindGroup,
 }
 
-/// A buffer that grows, and what is to go into it.
+/// A GPU buffer that grows, and the items to be copied into it.
 struct Memory<T> {
     label: &'static str,
     usage: wgpu::BufferUsages,
@@ -73,7 +73,7 @@ impl<T: bytemuck::NoUninit> Memory<T> {
         Self { label, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None, list: Vec::new() }
     }
 
-    /// Sends the list; `None` if it is empty.
+    /// Copies the list to the GPU and returns the buffer; `None` if the list is empty.
     fn send(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Option<&wgpu::Buffer> {
         let bytes: &[u8] = bytemuck::cast_slice(&self.list);
         let size = bytes.len() as u64;
@@ -91,7 +91,7 @@ impl<T: bytemuck::NoUninit> Memory<T> {
 }
 
 impl GuiRenderer {
-    /// For surfaces of a format.
+    /// Creates a renderer for surfaces of the given format.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, format: wgpu::TextureFormat) -> Self {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
@@ -148,7 +148,7 @@ impl GuiRenderer {
         }
     }
 
-    /// Takes over what has become of egui's textures, draws its shapes over a whole sheet, and sends it all off.
+    /// Applies the changes of egui's textures, draws its shapes on the whole surface, and submits the commands.
     pub fn draw(&mut self, sheet: &Sheet, textures: &mut TexturesDelta, shapes: &[ClippedPrimitive]) {
         self.shader.reload(&self.device);
         for (id, deltas) in textures.set.drain() {
@@ -178,7 +178,7 @@ impl GuiRenderer {
             ..Default::default()
         });
         let mut meshes = self.meshes.iter();
-        // Whether the pass still is as a mesh wants it.
+        // Whether viewport, pipeline and buffers of the pass are set for meshes.
         let mut is_ready = false;
         for shape in shapes {
             let clip = pixels(shape.clip_rect, sheet);
@@ -226,7 +226,7 @@ impl GuiRenderer {
         }
     }
 
-    /// Lists the triangles of all meshes, one after the other.
+    /// Concatenates the triangles of all meshes.
     fn gather(&mut self, shapes: &[ClippedPrimitive]) {
         let (vertices, indices) = (&mut self.vertices.list, &mut self.indices.list);
         vertices.clear();
@@ -242,7 +242,7 @@ impl GuiRenderer {
         }
     }
 
-    /// A texture that is new, or of which a part has changed.
+    /// Creates a texture, or writes the changed part of a texture.
     fn update(&mut self, id: TextureId, delta: &ImageDelta) {
         let ImageData::Color(image) = &delta.image;
         let [width, height] = image.size.map(|n| n as u32);
@@ -257,7 +257,7 @@ impl GuiRenderer {
                     mip_level_count: 1,
                     sample_count: 1,
                     dimension: wgpu::TextureDimension::D2,
-                    // Its sRGB values are taken as they are.
+                    // Not an sRGB format: values are sampled without conversion.
                     format: wgpu::TextureFormat::Rgba8Unorm,
                     usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
                     view_formats: &[],
@@ -266,7 +266,7 @@ impl GuiRenderer {
             let group = self.group(&texture, delta.options);
             self.images.insert(id, Image { texture, options: delta.options, group });
         }
-        // A part of what is not there is nothing.
+        // A partial update of an unknown texture is ignored.
         let Some(Image { texture, .. }) = self.images.get(&id) else { return };
         let [x, y] = delta.pos.unwrap_or_default().map(|n| n as u32);
         self.queue.write_texture(
@@ -298,7 +298,7 @@ impl GuiRenderer {
     }
 }
 
-/// The scene that stands in a shape's place.
+/// Returns the scene that a shape stands for, if any.
 fn scene(shape: &ClippedPrimitive) -> Option<&Paint> {
     match &shape.primitive {
         Primitive::Callback(callback) => callback.callback.downcast_ref(),
@@ -306,7 +306,7 @@ fn scene(shape: &ClippedPrimitive) -> Option<&Paint> {
     }
 }
 
-/// The pixels of a sheet that a rectangle in points covers: left, top, width, height; `None` if there are none.
+/// Returns the pixels of a surface that a rectangle in points covers: left, top, width, height; `None` if it is empty.
 fn pixels(rect: Rect, sheet: &Sheet) -> Option<[u32; 4]> {
     let [width, height] = sheet.size_px;
     let at = |x: f32, most: u32| (x * sheet.pixels_per_point).round().clamp(0.0, most as f32) as u32;
@@ -315,7 +315,7 @@ fn pixels(rect: Rect, sheet: &Sheet) -> Option<[u32; 4]> {
     (left < right && top < bottom).then(|| [left, top, right - left, bottom - top])
 }
 
-/// A colour as a target of a format is cleared with.
+/// Returns the clear value of a colour for a target of the given format.
 fn clear_colour(colour: Color32, format: wgpu::TextureFormat) -> wgpu::Color {
     let parts = match format.is_srgb() {
         true => egui::Rgba::from(colour).to_array(),
@@ -351,7 +351,7 @@ fn pipeline(
     layout: &wgpu::PipelineLayout,
     format: wgpu::TextureFormat,
 ) -> wgpu::RenderPipeline {
-    // What lies behind shines through; the sheet itself stays as opaque as it was.
+    // Colours are blended over the colours behind them; the alpha of the surface never decreases.
     let blend = wgpu::BlendState {
         color: wgpu::BlendComponent::OVER,
         alpha: wgpu::BlendComponent {

@@ -1,4 +1,4 @@
-//! What it looks like: plain data to draw, and what draws it.
+//! Scenes and charts as plain data, and the code that draws them.
 
 #[cfg(feature = "ui")]
 pub mod canvas;

@@ -1,19 +1,19 @@
-//! Numbers as a person reads them: round ones, signs, and no more digits than matter.
+//! Formatting of numbers: round values, signs, and significant digits only.
 
-/// The next of 1, 2, 5 times a power of ten.
+/// Rounds up to 1, 2 or 5 times a power of ten.
 pub fn round_up(x: f64) -> f64 {
     let decade = 10f64.powf(x.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|v| *v >= x * (1.0 - 1e-12)).unwrap_or(10.0 * decade)
 }
 
-/// Fixed decimals with a real minus sign, and no minus on zero.
+/// Formats with fixed decimals and the sign U+2212 for minus; zero has no sign.
 pub fn signed(x: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", x.abs());
     let zero = text.chars().all(|c| c == '0' || c == '.');
     if x < 0.0 && !zero { format!("−{text}") } else { text }
 }
 
-/// Three digits, without zeros at the end.
+/// Formats with three significant digits, without trailing zeros.
 pub fn three_digits(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return "0".into();
@@ -23,18 +23,19 @@ pub fn three_digits(x: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// A round number as it is, up to six decimals.
+/// Formats with up to six decimals, without trailing zeros.
 pub fn round_number(x: f64) -> String {
     format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').into()
 }
 
-/// An angle in whole degrees, or with a digit where it has one.
+/// Formats an angle, rad, in degrees with one decimal, or without if that is zero.
 pub fn degrees(angle: f64) -> String {
     let text = signed(angle.to_degrees(), 1);
     text.strip_suffix(".0").map_or_else(|| text.clone(), Into::into)
 }
 
-/// The round values from `low` to `high`, some `count` of them at most, and the step between two.
+/// Returns the multiples of a round step from `low` to `high`, and the step; the step divides the interval into at most
+/// `count` parts.
 pub fn spaced(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
     let width = high - low;
     if !(width.is_finite() && width > 0.0 && low.abs().max(high.abs()) < 1e12 * width) {
@@ -46,15 +47,16 @@ pub fn spaced(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
     ((0..=count).map(|i| (first + i as f64) * step).collect(), step)
 }
 
-/// Characters that fit beside a small plot.
-const BRIEF: usize = 7;
+/// Maximum number of characters of a tick label beside a small plot.
+const MAX_TICK_CHARS: usize = 7;
 
-/// The numbers of an axis so short that they fit beside a small plot: as they are, else in thousands (k), millions (M) or
-/// billions (G), else with a power of ten.
+/// Formats the tick labels of an axis so that they fit beside a small plot: plain numbers, else in thousands (k),
+/// millions (M) or billions (G), else with a power of ten.
 pub fn ticks(values: &[f64], step: f64) -> Vec<String> {
-    let fits = |texts: &[String]| texts.iter().all(|text| text.chars().count() <= BRIEF);
+    let fits = |texts: &[String]| texts.iter().all(|text| text.chars().count() <= MAX_TICK_CHARS);
     let whole: Vec<String> = values.iter().map(|x| at_step(*x, step)).collect();
-    let wide = |text: &String| text.contains('e') || text.chars().filter(char::is_ascii_digit).count() >= BRIEF;
+    let wide =
+        |text: &String| text.contains('e') || text.chars().filter(char::is_ascii_digit).count() >= MAX_TICK_CHARS;
     if fits(&whole) && !whole.iter().any(wide) {
         return whole;
     }
@@ -71,7 +73,7 @@ pub fn ticks(values: &[f64], step: f64) -> Vec<String> {
     values.iter().map(|x| power(*x, step)).collect()
 }
 
-/// With a power of ten, as many digits as tell steps apart and have room.
+/// Formats with a power of ten and as many decimals as `step` resolves, at most two.
 fn power(x: f64, step: f64) -> String {
     if x.abs() < 0.5 * step.abs() || !x.is_finite() {
         return if x.is_finite() { "0".into() } else { "–".into() };
@@ -80,8 +82,8 @@ fn power(x: f64, step: f64) -> String {
     format!("{x:.digits$e}").replace('-', "−")
 }
 
-/// A number of which steps of a size can be told apart: with as many decimals as that takes, and with a power of ten
-/// where the step is far from 1.
+/// Formats a number to the resolution `step`: with as many decimals as resolve `step`, or with a power of ten if `step`
+/// is outside 1e-6.5 to 1e6.5.
 pub fn at_step(x: f64, step: f64) -> String {
     if !x.is_finite() {
         return "–".into();

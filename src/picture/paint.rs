@@ -1,4 +1,4 @@
-//! A scene and its words painted by egui: in the window, in figures and in the pictures of recordings alike.
+//! Paints a scene and its labels with egui: in the window, in figures and in the pictures of recordings.
 
 pub mod figure;
 pub mod portrait;
@@ -13,23 +13,23 @@ use super::scene::camera::Camera;
 use super::scene::pointer::Pointer;
 use super::scene::{Rgba, Scene};
 
-/// A colour of the palette for egui.
+/// Converts a colour of the palette to one of egui.
 pub fn colour([r, g, b, a]: Rgba) -> Color32 {
     let byte = |x: f32| (x * 255.0).round() as u8;
     Color32::from_rgba_unmultiplied(byte(r), byte(g), byte(b), byte(a))
 }
 
-/// Bold type of a size.
+/// Bold font of the given size, points.
 pub fn bold(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name("bold".into()))
 }
 
-/// Plain type of a size.
+/// Regular font of the given size, points.
 pub fn plain(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// Inter, with figures of one width; signs that it lacks come from DejaVu Sans.
+/// Installs the font Inter, with digits of equal width; glyphs that it lacks come from DejaVu Sans.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
     let files: [(&str, &[u8]); 3] = [
@@ -50,21 +50,21 @@ pub fn install_fonts(ctx: &egui::Context) {
 
 /// A viewport and the camera in it.
 pub struct Spot {
-    /// Points of the screen.
+    /// Rectangle on the screen, points.
     pub rect: Rect,
-    /// What looks at the scene.
+    /// Camera of the viewport.
     pub camera: Camera,
 }
 
 impl Spot {
-    /// A place of the screen as the scene meets it.
+    /// Converts a point of the screen to a pointer in the scene.
     pub fn pointer(&self, pos: Pos2) -> Pointer {
         let at = pos - self.rect.min;
         let pair = |v: Vec2| [f64::from(v.x), f64::from(v.y)];
         Pointer { camera: self.camera, size: pair(self.rect.size()), at: pair(at) }
     }
 
-    /// Where a point, m, is seen.
+    /// Projects a point, m, onto the screen; `None` if the camera does not see it.
     pub fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
         let [x, y] = self.pointer(self.rect.min).seen(point)?;
         Some(self.rect.min + vec2(x as f32, y as f32))
@@ -78,50 +78,50 @@ pub(super) struct Renderers {
     all: Vec<Place>,
 }
 
-/// Where a scene of a window is drawn: a renderer for each quality that was asked for.
+/// The renderers of one scene, one for each quality in use.
 #[derive(Default)]
 struct Place {
     fine: Option<Renderer>,
     draft: Option<Renderer>,
-    /// What was drawn last.
+    /// Scene, view and quality that were drawn last.
     last: Option<(Arc<Scene>, View, Quality)>,
 }
 
 impl Renderers {
-    /// `format` is that of the pass they draw in.
+    /// Creates an empty set; `format` is the format of the render pass that they draw in.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         Self { device: device.clone(), format, all: Vec::new() }
     }
 
-    /// Draws a scene where it is not the one that was drawn last. Renderers are made when they are first needed.
-    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, asked: &Paint) {
-        while self.all.len() <= asked.number {
+    /// Draws the requested scene unless it was drawn last. Renderers are created on first use.
+    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, request: &Paint) {
+        while self.all.len() <= request.number {
             self.all.push(Place::default());
         }
-        let place = &mut self.all[asked.number];
+        let place = &mut self.all[request.number];
         let is_there = place.last.as_ref().is_some_and(|(scene, view, quality)| {
-            Arc::ptr_eq(scene, &asked.scene) && *view == asked.view && *quality == asked.quality
+            Arc::ptr_eq(scene, &request.scene) && *view == request.view && *quality == request.quality
         });
         if is_there {
             return;
         }
-        let renderer = match asked.quality {
+        let renderer = match request.quality {
             Quality::Fine => &mut place.fine,
             Quality::Draft => &mut place.draft,
         };
-        renderer.get_or_insert_with(|| Renderer::drawing(&self.device, self.format, asked.quality)).prepare(
+        renderer.get_or_insert_with(|| Renderer::drawing(&self.device, self.format, request.quality)).prepare(
             &self.device,
             queue,
             encoder,
-            &asked.scene,
-            &asked.view,
+            &request.scene,
+            &request.view,
         );
-        place.last = Some((asked.scene.clone(), asked.view, asked.quality));
+        place.last = Some((request.scene.clone(), request.view, request.quality));
     }
 
-    /// Copies what was drawn last of a scene into a pass's viewport.
-    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, asked: &Paint) {
-        let Some(Place { fine, draft, last: Some((.., quality)) }) = self.all.get(asked.number) else { return };
+    /// Copies the last picture of the requested scene into the viewport of a pass.
+    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, request: &Paint) {
+        let Some(Place { fine, draft, last: Some((.., quality)) }) = self.all.get(request.number) else { return };
         let renderer = match quality {
             Quality::Fine => fine.as_ref(),
             Quality::Draft => draft.as_ref(),
@@ -132,7 +132,7 @@ impl Renderers {
     }
 }
 
-/// A scene that stands among egui's shapes.
+/// Request to draw a scene; a paint callback among egui's shapes.
 pub(super) struct Paint {
     number: usize,
     scene: Arc<Scene>,
@@ -140,7 +140,7 @@ pub(super) struct Paint {
     quality: Quality,
 }
 
-/// From now on what moves is drawn in draft, and finely once it rests: for windows that the processor draws.
+/// Switches to draft quality while a scene changes, and fine quality once it rests; for software rendering.
 pub fn draw_drafts(ctx: &egui::Context) {
     ctx.data_mut(|data| data.insert_temp(drafts_id(), true));
 }
@@ -149,31 +149,31 @@ fn drafts_id() -> egui::Id {
     egui::Id::unique("what moves is drawn in draft")
 }
 
-/// How long nothing moves before it is drawn finely, s.
-const SETTLED: f64 = 0.12;
+/// Time without change after which a scene is drawn in fine quality, s.
+const REST_TIME_S: f64 = 0.12;
 
-/// What was asked for in the pass before, and since when.
+/// Scene and view of the previous pass, and the time, s, since when they have not changed.
 #[derive(Clone)]
-struct Asked {
+struct Unchanged {
     scene: Arc<Scene>,
     view: View,
     since: f64,
 }
 
-/// The scene of the pass before, if this one looks the same, and how finely it is to be drawn.
+/// Returns the scene to draw and its quality. The scene is that of the previous pass if this one looks the same.
 fn settle(ctx: &egui::Context, number: usize, scene: &Arc<Scene>, view: &View) -> (Arc<Scene>, Quality) {
     let id = egui::Id::unique("what a scene looked like").with(number);
-    let (now, before) = (ctx.input(|i| i.time), ctx.data(|data| data.get_temp::<Asked>(id)));
+    let (now, before) = (ctx.input(|i| i.time), ctx.data(|data| data.get_temp::<Unchanged>(id)));
     let same = before.filter(|before| before.view == *view && before.scene.looks_like(scene));
-    let asked = same.unwrap_or_else(|| Asked { scene: scene.clone(), view: *view, since: now });
-    let rest = SETTLED - (now - asked.since);
+    let current = same.unwrap_or_else(|| Unchanged { scene: scene.clone(), view: *view, since: now });
+    let rest = REST_TIME_S - (now - current.since);
     let drafts = ctx.data(|data| data.get_temp(drafts_id()).unwrap_or(false));
     let quality = if drafts && rest > 0.0 { Quality::Draft } else { Quality::Fine };
     if quality == Quality::Draft {
         ctx.request_repaint_after_secs(rest as f32);
     }
-    let scene = asked.scene.clone();
-    ctx.data_mut(|data| data.insert_temp(id, asked));
+    let scene = current.scene.clone();
+    ctx.data_mut(|data| data.insert_temp(id, current));
     (scene, quality)
 }
 

@@ -1,7 +1,7 @@
-//! The layout that a recording opens with: scene left, joint space and tower behind it, plots by unit right, events
-//! below; several cases side by side first, and each in a tab of its own.
+//! The layout with which a recording opens: scene on the left with tabs of joint space and tower, plots on the right,
+//! events below. Several cases are compared in a first tab, and each has a tab of its own.
 //!
-//! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
+//! Views are rows of a separate store. The builders of the SDK set neither the eye of a 3D view nor axis ranges nor
 //! backgrounds, so the rows are written here.
 
 use rerun::blueprint::components::VisualBounds2D;
@@ -29,7 +29,7 @@ use crate::picture::charts::{Chart, Place};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 
-/// Writes the layout and has the viewer open with it.
+/// Writes the layout and makes the viewer open with it; `pictured`: there are offscreen pictures.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -43,7 +43,7 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
     for case in cases {
         let (parts, front) = (layout.case(case, cases.len() == 1)?, usize::from(case.design.leads));
         match cases {
-            // Alone it needs no tab around its own.
+            // A single case needs no enclosing tab.
             [_] => (tabs, active) = (Vec::from(parts), front),
             _ => tabs.push(layout.tabs(&case.title, &parts, front)?),
         }
@@ -62,13 +62,13 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
         .with_state(PanelState::Collapsed)
         .with_timeline(TIME)
         .with_loop_mode(LoopMode::All)
-        // A layout cannot say at what instant to stop; in motion, the first look shows more than the start.
+        // A layout cannot set the displayed instant; playback shows more than the start.
         .with_play_state(PlayState::Playing);
     layout.store.layout(&"time_panel".into(), &time)?;
     layout.store.activate_layout()
 }
 
-/// The charts of all cases with the ranges that they share, so that they can be compared.
+/// Returns the charts of all cases with common ranges, so that cases can be compared.
 fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
     let mut all: Vec<(Chart, [f64; 2])> = Vec::new();
     for (chart, [low, high]) in cases.iter().flat_map(|case| &case.charts) {
@@ -94,33 +94,33 @@ struct Part {
 struct Layout<'a> {
     store: &'a mut Store,
     palette: Palette,
-    /// The tab that is being laid out: the name of its case, or none where all are side by side.
+    /// Name of the case of the current tab; empty for the comparison of all cases.
     tab: String,
     charts: Vec<(Chart, [f64; 2])>,
     pictured: bool,
 }
 
-/// What marks an identifier as one that its maker chose (version 8).
+/// Version and variant bits of a custom identifier (UUID version 8).
 const VERSION: u128 = 0x0000_0000_0000_8000_8000_0000_0000_0000;
 const VERSION_BITS: u128 = 0x0000_0000_0000_f000_c000_0000_0000_0000;
 
-/// How many lines of (7) or (8) a title names.
-const LINES: usize = 6;
+/// Maximum number of conditions of (7) or (8) in a title.
+const MAX_TITLE_CONDITIONS: usize = 6;
 
-/// How many cases a legend names; it has room for no more.
-const LEGEND: usize = 5;
+/// Maximum number of cases in a legend; more do not fit.
+const MAX_LEGEND_CASES: usize = 5;
 
 impl Layout<'_> {
-    /// The identifier of a view or container: always the same for the same thing. A viewer keeps what it knows of a view
-    /// by its identifier, also from one recording to the next, and shows nothing where that turns out to be of another
-    /// class.
+    /// Returns the identifier of a view or container, which depends only on its class, tab and contents. A viewer
+    /// stores the state of a view by its identifier, even across recordings, and shows nothing if the stored class
+    /// differs.
     fn id(&self, class: &str, words: &[&str]) -> Uuid {
         let mut hash = Hash::default();
         [class, &self.tab].iter().chain(words).for_each(|word| hash.add(word));
         Uuid::from_u128(hash.number() & !VERSION_BITS | VERSION)
     }
 
-    /// Parts behind each other, with one of them in front.
+    /// Adds a container of tabs; `front` is the index of the active tab.
     fn tabs(&mut self, name: &str, parts: &[Part], front: usize) -> Result<Part, StoreError> {
         self.parted(ContainerKind::Tabs, name, parts, (&[], front))
     }
@@ -135,7 +135,7 @@ impl Layout<'_> {
         self.parted(kind, name, parts, (shares, 0))
     }
 
-    /// A container whose parts have shares of it, or one of which is in front.
+    /// Adds a container; `shares` are the relative sizes of its parts, `front` is the index of the active tab.
     fn parted(
         &mut self,
         kind: ContainerKind,
@@ -173,7 +173,7 @@ impl Layout<'_> {
         properties: &[(&str, &dyn AsComponents)],
     ) -> Result<Part, StoreError> {
         let from = origin.to_string();
-        // Charts of one case can be of the same entities.
+        // Charts of one case can have the same entities, so the name is part of the identifier.
         let words: Vec<&str> = [name, from.as_str()].into_iter().chain(contents.iter().map(String::as_str)).collect();
         let id = self.id(class, &words);
         let path = EntityPath::from(format!("view/{id}"));
@@ -188,7 +188,7 @@ impl Layout<'_> {
         Ok(Part { path, id })
     }
 
-    /// Several cases side by side: scenes above, what differs below.
+    /// Adds the comparison of several cases: scenes above, and compared plots, machines and events below.
     fn comparison(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
@@ -211,7 +211,7 @@ impl Layout<'_> {
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
-    /// One case: scene left, plots right, events below; and its design.
+    /// Adds one case: scene on the left, plots on the right, events below; and its design.
     fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
@@ -237,8 +237,7 @@ impl Layout<'_> {
         Ok([motion, self.design(case)?])
     }
 
-    /// The machine as it is designed: a drawing to scale, what it weighs and comes to, and what that leaves of (7) and
-    /// (8).
+    /// Adds the design of the machine: a drawing to scale, its masses and measures, and the residuals of (7) and (8).
     fn design(&mut self, case: &Preview) -> Result<Part, StoreError> {
         let (root, design) = (under(&case.root, "design"), &case.design);
         let shown = ["machine", "marks", "grid"].map(|part| format!("$origin/{part}/**"));
@@ -264,19 +263,19 @@ impl Layout<'_> {
         self.view("TextDocument", name, origin, &["$origin/**".into()], &[])
     }
 
-    /// The bars of (7), or of (8).
+    /// Adds the bar chart of (7) if `force`, otherwise of (8).
     fn bars(&mut self, name: &str, drives: usize, force: bool, origin: &EntityPath) -> Result<Part, StoreError> {
         let of = Condition::all(drives).filter(|c| matches!(c, Condition::Force(_)) == force);
         let lines: Vec<_> = of.collect();
-        let symbols: Vec<String> = lines.iter().take(LINES).map(|line| line.symbol()).collect();
-        let more = if lines.len() > LINES { " …" } else { "" };
+        let symbols: Vec<String> = lines.iter().take(MAX_TITLE_CONDITIONS).map(|line| line.symbol()).collect();
+        let more = if lines.len() > MAX_TITLE_CONDITIONS { " …" } else { "" };
         let unit = lines.first().map_or("", |line| line.unit());
         let name = format!("{name}  {}{more}  {unit}, white: left", symbols.join(" "));
         let legend = view::PlotLegend::new().with_visible(false);
         self.view("BarChart", &name, origin, &["$origin/**".into()], &[("PlotLegend", &legend)])
     }
 
-    /// What less inertia costs in mass.
+    /// Adds the Pareto front of added mass and inertia.
     fn front(&mut self, origin: &EntityPath) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         let [left, top, right, bottom] = SEEN;
@@ -289,7 +288,7 @@ impl Layout<'_> {
         self.view("2D", name, origin, &["$origin/**".into()], &properties)
     }
 
-    /// The charts of a case that stand in some places, one below the other.
+    /// Adds the charts of a case in the given places, one below the other.
     fn plots(&mut self, case: &Preview, name: &str, stands: fn(Place) -> bool) -> Result<Part, StoreError> {
         let mut parts = Vec::new();
         for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
@@ -304,29 +303,29 @@ impl Layout<'_> {
 
     fn scene(&mut self, case: &Preview, name: &str) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
-        // The scene has a grid of its own.
+        // The scene contains its own grid.
         let grid = view::LineGrid3D::new().with_visible(false);
         let eye = case.scene.controls();
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
-        // Everything of the case but what has a view of its own.
+        // All entities of the case except those with views of their own.
         let others = ["signals", "events", "phase", "view", "joint_space", "tower", "design"];
         let without = others.iter().map(|part| format!("- $origin/{part}/**"));
         let contents: Vec<_> = ["$origin/**".to_owned()].into_iter().chain(without).collect();
         self.view("3D", name, &case.root, &contents, &properties)
     }
 
-    /// What was drawn offscreen.
+    /// Adds the view of the offscreen pictures.
     fn pictures(&mut self, case: &Preview, name: &str) -> Result<Part, StoreError> {
         self.view("2D", name, &under(&case.root, "view"), &["$origin/**".into()], &[])
     }
 
-    /// A space with axes of its own.
+    /// Adds a 3D view of all entities under an origin.
     fn drawing(&mut self, name: &str, origin: &EntityPath, eye: &Eye) -> Result<Part, StoreError> {
         self.space(name, origin, &["$origin/**".into()], eye)
     }
 
-    /// Some of what stands under an origin, seen from an eye.
+    /// Adds a 3D view of some entities under an origin, seen from an eye.
     fn space(&mut self, name: &str, origin: &EntityPath, contents: &[String], eye: &Eye) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         let grid = view::LineGrid3D::new().with_visible(false);
@@ -336,7 +335,7 @@ impl Layout<'_> {
         self.view("3D", name, origin, contents, &properties)
     }
 
-    /// The series of a chart; those that share an entity with them are hidden.
+    /// Adds the plot of a chart; other series of the same entities are hidden.
     fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
         let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.holds(signal));
         let topics: Vec<_> = case.topics.iter().filter(held).collect();
@@ -353,7 +352,7 @@ impl Layout<'_> {
         Ok(plot)
     }
 
-    /// How the series of an entity look in a plot.
+    /// Sets the style of the series of an entity in a plot.
     fn draw_as(&mut self, plot: &Part, path: &EntityPath, i: usize, style: &SeriesLines) -> Result<(), StoreError> {
         let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
         let id = VisualizerInstructionId::new_deterministic(path, i);
@@ -378,13 +377,13 @@ impl Layout<'_> {
         self.view("TimeSeries", name, origin, contents, &properties)
     }
 
-    /// The same signal of every case in one plot, each named by its case.
+    /// Adds a plot of one signal for all cases, with series named by case.
     fn compared(&mut self, cases: &[Preview], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
         let of = |case: &Preview| case.topics.iter().find(|topic| topic.name == chart.signals[0]).cloned();
         let topics: Vec<_> = cases.iter().filter_map(|case| Some((case, of(case)?))).collect();
         let contents: Vec<_> = topics.iter().map(|(case, topic)| topic.path(&case.root).to_string()).collect();
-        let legend = cases.len() <= LEGEND;
-        let range = if legend { with_room(range, cases.len()) } else { range };
+        let legend = cases.len() <= MAX_LEGEND_CASES;
+        let range = if legend { with_legend_space(range, cases.len()) } else { range };
         let plot = self.time_series(&name_of(chart), &EntityPath::root(), &contents, Some(range), legend)?;
         for (i, (case, topic)) in topics.iter().enumerate() {
             let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
@@ -411,13 +410,13 @@ impl Layout<'_> {
     }
 }
 
-/// Title and unit.
+/// Returns title and unit of a chart.
 fn name_of(chart: &Chart) -> String {
     [chart.title, &chart.si_unit()].join("  ").trim_end().to_owned()
 }
 
-/// The title of a plot with the colours of what it shows: a legend would cover the curves of so low a plot. Of one series
-/// the title says everything already, and of many the pointer tells which is which.
+/// Returns the title of a plot, with the symbols and colours of its series if these are a few drives. A legend would
+/// cover the curves of so low a plot. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();
@@ -428,17 +427,17 @@ fn titled(chart: &Chart, case: &Preview) -> String {
     [name_of(chart)].into_iter().chain(words).collect::<Vec<_>>().join("  ·  ")
 }
 
-/// What the colours of the first drives are called.
+/// Names of the colours of the first drives.
 const COLOURS: [&str; 4] = ["blue", "orange", "green", "violet"];
 
-/// A range with room below for a legend of so many lines.
-fn with_room([low, high]: [f64; 2], lines: usize) -> [f64; 2] {
-    // In parts of the height of a plot, of a viewer of a usual size.
+/// Extends a range downwards by the space for a legend of `lines` lines.
+fn with_legend_space([low, high]: [f64; 2], lines: usize) -> [f64; 2] {
+    // Fraction of the height of a plot, in a viewer of usual size.
     let share = 0.05 + 0.08 * lines as f64;
     [low - share / (1.0 - share) * (high - low), high]
 }
 
-/// Where nothing is felt, the green of zero; else reds that can be told apart.
+/// Returns the colour of a case: green if it is reactionless, otherwise distinguishable reds.
 fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
     match quiet {
         true => palette.zero,

@@ -1,4 +1,4 @@
-//! One entity of a recording: the shape that it keeps, and the rows of what changes, kept until they are written.
+//! One entity of a recording: its constant shape, and the rows of its changing components until they are written.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -14,15 +14,16 @@ use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{Together, colour, solid};
 use crate::picture::scene::{Area, Changes, Mesh, Model, Pose, Rgba, Strips};
 
-/// Cells of a workspace along each angle.
+/// Grid cells of a workspace along each angle.
 const CELLS: u32 = 40;
-/// The most dashes and gaps of a line that lasts, and of one that is drawn anew again and again.
-const LASTING: f32 = 400.0;
-const PASSING: f32 = 13.0;
-/// Poses nearer to each other than this are one, m and parts of a turn.
-const SAME: f32 = 2e-6;
+/// Maximum number of dashes and gaps of a constant line.
+const MAX_DASHES_CONSTANT: f32 = 400.0;
+/// Maximum number of dashes and gaps of a line that changes.
+const MAX_DASHES_CHANGING: f32 = 13.0;
+/// Tolerance for equality of poses, m and components of the unit vector.
+const POSE_TOLERANCE: f32 = 2e-6;
 
-/// A pose about z: cosine and sine, and a shift, m.
+/// A rotation about z, as cosine and sine, and a translation, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid {
     pub along: [f32; 2],
@@ -40,21 +41,21 @@ impl Rigid {
         Self { at, ..Self::HOME }
     }
 
-    /// A point of the world in this pose's own coordinates.
+    /// Transforms a point of the world to the coordinates of this pose.
     pub fn inside(&self, p: [f32; 3]) -> [f32; 3] {
         let [c, s] = self.along;
         let d = [0, 1, 2].map(|i| p[i] - self.at[i]);
         [c * d[0] + s * d[1], c * d[1] - s * d[0], d[2]]
     }
 
-    /// This pose seen from another.
+    /// Returns this pose relative to another.
     pub fn within(&self, outer: &Self) -> Self {
         let ([c, s], [x, y]) = (outer.along, self.along);
         Self { along: [c * x + s * y, c * y - s * x], at: outer.inside(self.at) }
     }
 
     pub fn is_near(&self, other: &Self) -> bool {
-        let near = |a: f32, b: f32| (a - b).abs() < SAME;
+        let near = |a: f32, b: f32| (a - b).abs() < POSE_TOLERANCE;
         self.at.into_iter().zip(other.at).chain(self.along.into_iter().zip(other.along)).all(|(a, b)| near(a, b))
     }
 
@@ -64,7 +65,7 @@ impl Rigid {
     }
 }
 
-/// What items are drawn as.
+/// Kinds of items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Solid,
@@ -74,7 +75,7 @@ pub enum Kind {
     Label,
 }
 
-/// A point on the screen: where, its radius, px, its colour, and its words.
+/// A point with a radius on the screen, px, a colour and a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dot {
     pub at: [f32; 3],
@@ -83,7 +84,7 @@ pub struct Dot {
     pub text: String,
 }
 
-/// Lines with their width, px, colour and dashes.
+/// Lines with a width, px, a colour and dashes.
 #[derive(Clone, Debug)]
 pub struct Strokes {
     pub strips: Strips,
@@ -99,7 +100,7 @@ impl PartialEq for Strokes {
     }
 }
 
-/// What an entity shows that can change at any instant.
+/// Components of an entity that can change at any instant.
 #[derive(Clone, Debug)]
 pub enum Shape {
     Strokes(Strokes),
@@ -120,7 +121,7 @@ impl PartialEq for Shape {
     }
 }
 
-/// What an entity shows until somebody says otherwise.
+/// Components of an entity that are constant until they are written again.
 #[derive(Clone, Debug)]
 pub enum Lasting {
     Mesh(Arc<Model>, usize, Rgba),
@@ -131,7 +132,7 @@ pub enum Lasting {
         width: f32,
         rgba: Rgba,
     },
-    /// The colour of meshes that change.
+    /// Colour of meshes that change.
     Tint(Rgba),
 }
 
@@ -155,19 +156,23 @@ impl PartialEq for Lasting {
 pub struct Entity {
     pub kind: Kind,
     pub path: EntityPath,
-    /// Its ancestors, nearest first, that may stand in a pose.
+    /// Names of its ancestors, nearest first, which may have poses.
     pub ancestors: Vec<String>,
-    /// In the scene at hand: what it shows, and where it stands.
+    /// Constant components in the current scene.
     pub lasting: Option<Lasting>,
+    /// Changing components in the current scene.
     pub shape: Option<Shape>,
+    /// Pose in the current scene.
     pub pose: Option<(Rigid, Changes)>,
-    /// Where each of several of one name is, and how many times as high as its mesh.
+    /// Pose and vertical stretch of each solid of one name.
     pub placed: Vec<(Rigid, f32)>,
-    /// The middles of hollow discs of one name, and their radius.
+    /// Centres of the rings of one name, and their radius.
     pub rings: (Vec<[f32; 3]>, f32),
+    /// Whether the current scene contains it.
     pub is_there: bool,
-    /// What has been written, and the rows that gather.
+    /// Constant components that have been written.
     pub written: Option<Lasting>,
+    /// Whether a constant pose has been written.
     pub stands: bool,
     pub shapes: Track<Option<Shape>>,
     pub poses: Track<Rigid>,
@@ -199,7 +204,7 @@ impl Entity {
         self.rings.0.clear();
     }
 
-    /// Lines of one name and look are one shape.
+    /// Adds lines; lines of one name and style form one shape.
     pub fn strokes(&mut self, strokes: Strokes) {
         match &mut self.shape {
             Some(Shape::Strokes(all)) if all.is_alike(&strokes) => {
@@ -216,7 +221,8 @@ impl Entity {
         }
     }
 
-    /// Several of one name share a mesh, and none of their poses is the entity's; several rings are one shape.
+    /// Converts several solids of one name to instances of one mesh, and several rings to one shape; the entity then
+    /// has no pose.
     pub fn share(&mut self) {
         if let (Some(Lasting::Ring { width, rgba, .. }), (middles, radius)) = (&self.lasting, &self.rings)
             && middles.len() > 1
@@ -232,7 +238,8 @@ impl Entity {
         }
     }
 
-    /// Writes what is new of it in the scene at hand, within the pose of what it is part of.
+    /// Writes constant components of the current scene that are new, and buffers rows of changing ones. `outer` is the
+    /// pose of its nearest ancestor with a pose.
     pub fn note(
         &mut self,
         store: &mut Store,
@@ -255,7 +262,7 @@ impl Entity {
         let mut stands = None;
         if let Some((pose, changes)) = self.pose {
             let pose = pose.within(outer);
-            // What is part of something else stays where it is within it, but for rounding.
+            // Within an ancestor, equal poses differ by rounding errors.
             let is_part = *outer != Rigid::HOME;
             let same = |last: &Rigid| if is_part { last.is_near(&pose) } else { *last == pose };
             let known = self.poses.last().is_some_and(same);
@@ -290,7 +297,7 @@ impl Entity {
         Ok(())
     }
 
-    /// Writes what it shows until somebody says otherwise, and where it stands for good.
+    /// Writes constant components, with the constant pose `stands` if there is one.
     fn write_lasting(
         &self,
         store: &mut Store,
@@ -308,7 +315,7 @@ impl Entity {
             Lasting::Sheet(area) => Box::new(sheet(area)),
             Lasting::Tint(rgba) => Box::new(Mesh3D::update_fields().with_albedo_factor(colour(*rgba).0)),
             Lasting::Strokes(strokes) => Box::new(
-                LineStrips3D::new(strokes.drawn(eye, LASTING))
+                LineStrips3D::new(strokes.drawn(eye, MAX_DASHES_CONSTANT))
                     .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
                     .with_colors([colour(strokes.rgba)]),
             ),
@@ -324,7 +331,7 @@ impl Entity {
         store.shape(since, &self.path, &Together(&all))
     }
 
-    /// Writes the poses that have gathered.
+    /// Writes the buffered poses.
     pub fn write_poses(&mut self, store: &mut Store, eye: &Eye) -> Result<(), StoreError> {
         let (clock, poses) = self.poses.take();
         if !poses.is_empty() {
@@ -348,7 +355,7 @@ impl Entity {
         for row in &rows {
             lengths.push(match row {
                 Some(Shape::Strokes(row)) => {
-                    let drawn = row.drawn(eye, PASSING);
+                    let drawn = row.drawn(eye, MAX_DASHES_CHANGING);
                     let n = drawn.len();
                     strokes.extend(drawn.into_iter().map(|strip| (strip, row.width, row.rgba)));
                     n
@@ -384,7 +391,7 @@ impl Entity {
                     .with_positions(dots.iter().map(|dot| dot.at))
                     .with_labels(dots.iter().map(|dot| dot.text.as_str()))
                     .with_colors(dots.iter().map(|dot| colour(dot.rgba)));
-                // One radius for all of a row: no dot.
+                // A single radius of zero for each row hides the dots.
                 let dotless = Points3D::update_fields().with_radii(rows.iter().map(|_| Radius::ZERO));
                 let columns = words.columns(lengths)?.chain(dotless.columns_of_unit_batches()?);
                 store.columns(&clock, &self.path, columns)
@@ -401,7 +408,7 @@ impl Entity {
 }
 
 impl Entity {
-    /// Writes meshes that are drawn anew, a row each; one that is not there has no triangles.
+    /// Writes changing meshes, one row each; a missing mesh has no triangles.
     fn write_meshes(
         &self,
         store: &mut Store,
@@ -426,19 +433,19 @@ impl Entity {
     }
 }
 
-/// Around the origin.
+/// Returns a circle around the origin, as a closed polyline.
 fn circle(radius: f32) -> impl Iterator<Item = [f32; 3]> {
     let on = |i: u8| TAU * f32::from(i) / 48.0;
     (0..=48).map(on).map(move |a| [radius * a.cos(), radius * a.sin(), 0.0])
 }
 
 impl Strokes {
-    /// Whether both look alike but for where they run.
+    /// Whether both have the same style.
     fn is_alike(&self, other: &Self) -> bool {
         (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
     }
 
-    /// In dashes where it has some: the viewer knows none.
+    /// Returns the strips in coordinates of the recording, divided into at most about `most` dashes and gaps if dashed.
     pub fn drawn(&self, eye: &Eye, most: f32) -> Vec<Vec<[f32; 3]>> {
         let strips = self.strips.iter().filter(|strip| strip.len() > 1);
         let placed = |strip: &Vec<[f32; 3]>| strip.iter().map(|p| eye.place(*p)).collect::<Vec<_>>();
@@ -463,7 +470,7 @@ pub fn transform(poses: &[Rigid], eye: &Eye) -> Transform3D {
     transform
 }
 
-/// One row for each pose; their turns where any of them turns.
+/// Returns one row for each pose; rotations are included if any pose is rotated.
 pub fn transform_rows(poses: &[Rigid], eye: &Eye) -> Transform3D {
     let rows = Transform3D::update_fields().with_many_translation(poses.iter().map(|pose| eye.place(pose.at)));
     match poses.iter().any(|pose| pose.along != Rigid::HOME.along) {
@@ -472,7 +479,7 @@ pub fn transform_rows(poses: &[Rigid], eye: &Eye) -> Transform3D {
     }
 }
 
-/// A workspace that is neither turned nor shifted.
+/// Returns the mesh of a workspace without rotation and translation.
 fn sheet(area: &Area) -> Mesh3D {
     let share = |i: u32| i as f32 / CELLS as f32;
     let at = |i: u32, j: u32| {

@@ -1,4 +1,4 @@
-//! What happened: events, phases and the verdict, in words.
+//! Texts of events, phases and the verdict.
 
 use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
 
@@ -16,7 +16,7 @@ use crate::simulation::frame::{Frame, Peaks, Phase};
 /// Events and phases of a case.
 #[derive(Debug)]
 pub struct Events {
-    /// Tells the events of several cases apart.
+    /// Prefix of the texts, which names the case if there are several.
     prefix: String,
     palette: Palette,
     rows: Vec<Row>,
@@ -34,7 +34,7 @@ struct Row {
 }
 
 impl Events {
-    /// Nothing has happened yet.
+    /// Returns an empty list of events.
     pub fn new(prefix: String, palette: Palette) -> Self {
         let watched = Watched::begin(&Default::default());
         Self { prefix, palette, rows: Vec::new(), phases: Track::new(), watched }
@@ -44,23 +44,23 @@ impl Events {
         self.rows.push(Row { at, text, level, rgba });
     }
 
-    /// It begins.
+    /// Adds the start of the run.
     pub fn start(&mut self, at: Instant, title: &str, machine: &str) {
         self.add(at, format!("start: {title}, machine {machine}"), TextLogLevel::INFO, self.palette.ink);
     }
 
-    /// What is planned, to take T, s.
+    /// Adds the plan; `time` is its duration T, s.
     pub fn plan(&mut self, at: Instant, task: &Task, time: f64) {
         self.add(at, format!("plan: {}, T = {time:.3} s", task.in_one_line()), TextLogLevel::INFO, self.palette.ink);
     }
 
-    /// What an instant brings.
+    /// Records the phase and the events of an instant.
     pub fn note(&mut self, at: Instant, frame: &Frame, scenario: &Scenario) {
         self.phases.push(at, frame.phase);
         self.watched.see(frame, (scenario.step, &scenario.machine));
     }
 
-    fn tell(&mut self, event: &Event, dt: f64) {
+    fn add_event(&mut self, event: &Event, dt: f64) {
         let (level, rgba) = match event.kind {
             Kind::Edit => (TextLogLevel::INFO, self.palette.drive(0)),
             Kind::Bookmark | Kind::Within => (TextLogLevel::INFO, self.palette.amber),
@@ -73,7 +73,7 @@ impl Events {
         self.add(at, event.words.clone(), level, rgba);
     }
 
-    /// Writes everything, with the verdict, of a run of a scenario in steps so long, s.
+    /// Writes all events, phases and the verdict of a run; `dt` is the integration step, s.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -96,10 +96,10 @@ impl Events {
 
         let mut all = gestures(&scenario.edits, dt);
         all.extend_from_slice(self.watched.events());
-        // A bookmark may stand beyond the end of what is recorded.
+        // A bookmark may be beyond the end of the recording.
         all.extend(bookmarked(&scenario.bookmarks, dt).into_iter().filter(|mark| mark.step <= end.step));
         all.extend((!verdict.reactionless).then(|| self.watched.peak()));
-        all.iter().for_each(|event| self.tell(event, dt));
+        all.iter().for_each(|event| self.add_event(event, dt));
         let torques: Vec<String> = peaks.torque.iter().map(|t| brief(*t)).collect();
         self.add(end, format!("peak |τ| {} N m", torques.join(", ")), TextLogLevel::INFO, self.palette.ink);
         let (level, rgba) = match verdict.is_good() {

@@ -1,4 +1,4 @@
-//! From where a view opens.
+//! Initial position of the eye of a view.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,46 +7,47 @@ use rerun::external::re_sdk_types::blueprint::archetypes::EyeControls3D;
 
 use crate::picture::scene::camera::{Camera, Flat, Orbit};
 
-/// Half the height of the picture at a distance of 1: the viewer looks through 55°.
+/// Half the height of the picture at a distance of 1; the viewer has a field of view of 55°.
 const HALF_HEIGHT: f64 = 0.5206;
 
-/// Pixels from the middle of the picture to its top, in a window of the usual size; fewer than there are, because the
-/// viewer's words stand in boxes.
+/// Assumed pixels from the centre of the picture to its top, in a window of usual size. They are fewer than the actual
+/// ones, because the viewer draws labels in boxes.
 const HALF_PIXELS: f64 = 240.0;
 
 /// An eye that looks at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Eye {
-    /// Where it is, in coordinates whose last axis points up.
+    /// Position, in coordinates whose third axis points up.
     pub orbit: Orbit,
-    /// Which axis of the recording each of these is.
+    /// Index of the axis of the recording for each of these axes.
     pub axes: [usize; 3],
-    /// How thick what it looks at is recorded, as a part of how thick it is.
+    /// Scale factor of recorded heights.
     pub thickness: f32,
 }
 
-/// How thick a drawing is that is seen from straight above, where the viewer's perspective would shift what is higher.
-const FLAT: f32 = 0.03;
+/// Scale factor of heights in drawings seen from straight above, so that perspective hardly shifts higher parts.
+const FLAT_THICKNESS: f32 = 0.03;
 
 impl Eye {
-    /// An eye in a space whose z points up.
+    /// Returns an eye in a space whose z axis points up.
     pub fn upright(orbit: Orbit) -> Self {
         Self::along(orbit, [0, 1, 2])
     }
 
-    /// An eye in a space with these axes.
+    /// Returns an eye in a space with the given axes.
     pub fn along(orbit: Orbit, axes: [usize; 3]) -> Self {
         Self { orbit, axes, thickness: 1.0 }
     }
 
-    /// An eye straight above a drawing, so that a square with such sides is seen around a point, m.
+    /// Returns an eye straight above a drawing that shows a square around a point; `side` is the length of its sides,
+    /// m.
     pub fn above([x, y]: [f64; 2], side: f64) -> Self {
         let distance = 0.5 * side / HALF_HEIGHT;
         let orbit = Orbit { centre: [x, y, 0.0], distance, yaw: 0.0, pitch: FRAC_PI_2 };
-        Self { orbit, axes: [0, 1, 2], thickness: FLAT }
+        Self { orbit, axes: [0, 1, 2], thickness: FLAT_THICKNESS }
     }
 
-    /// Where a camera is, in a space with these axes.
+    /// Converts a camera to an eye in a space with the given axes.
     pub fn of(camera: &Camera, axes: [usize; 3]) -> Self {
         match camera {
             Camera::Orbit(orbit) => Self::along(*orbit, axes),
@@ -54,27 +55,27 @@ impl Eye {
         }
     }
 
-    /// Whether it looks at a drawing from straight above.
+    /// Whether the eye looks at a drawing from straight above.
     pub fn is_above(&self) -> bool {
         self.thickness != 1.0
     }
 
-    /// What looks at the scene from there.
+    /// Returns the camera at this position.
     pub fn camera(&self) -> Camera {
         Camera::Orbit(self.orbit)
     }
 
-    /// A pixel in the middle of the picture, m.
+    /// Size of a pixel at the centre of the picture, m.
     pub fn pixel(&self) -> f32 {
         (self.orbit.distance * HALF_HEIGHT / HALF_PIXELS) as f32
     }
 
-    /// A point from its own coordinates to those of the recording, m.
+    /// Transforms a point, m, to the coordinates of the recording.
     pub fn place(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         self.turn([x, y, self.thickness * z])
     }
 
-    /// A direction from its own coordinates to those of the recording.
+    /// Transforms a direction to the coordinates of the recording.
     pub fn turn<T: Copy + Default>(&self, p: [T; 3]) -> [T; 3] {
         let mut placed = [T::default(); 3];
         for (axis, x) in self.axes.into_iter().zip(p) {
@@ -83,7 +84,7 @@ impl Eye {
         placed
     }
 
-    /// A shift on the screen, px, y down, as one in its own coordinates.
+    /// Converts a shift on the screen, px, y down, to a shift in the scene, m.
     pub fn shift(&self, [right, down]: [f32; 2]) -> [f32; 3] {
         let unit = self.pixel();
         let (yaw, pitch) = (self.orbit.yaw as f32, self.orbit.pitch as f32);
@@ -92,7 +93,7 @@ impl Eye {
         [0, 1, 2].map(|i| unit * (right * across[i] - down * up[i]))
     }
 
-    /// For the layout.
+    /// Returns the eye controls of the layout.
     pub fn controls(&self) -> EyeControls3D {
         let Orbit { centre, distance, .. } = self.orbit;
         let towards = self.camera().eye_direction().map(f64::from);

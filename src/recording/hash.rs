@@ -1,21 +1,21 @@
-//! A number of 128 bits from some words: the identifier of a recording, and of each part of its layout. Two of them must
-//! never be equal by chance, so they are cut from a cryptographic hash. The checksum of a file of samples is another one:
-//! it only has to find damage, and quickly.
+//! Hashes of 128 bits as identifiers of a recording and of the parts of its layout. They must not collide, so they are
+//! part of a cryptographic hash. Files of samples use a different, faster checksum, which only detects damage.
 
 use sha2::{Digest, Sha256};
 
-/// The first half of the SHA-256 hash of some words, each ended by a zero byte, so that "ab", "c" and "a", "bc" differ.
+/// The first half of the SHA-256 hash of some words, each followed by a zero byte, so that "ab", "c" and "a", "bc"
+/// differ.
 #[derive(Default)]
 pub struct Hash(Sha256);
 
 impl Hash {
-    /// Takes one more word in.
+    /// Adds a word.
     pub fn add(&mut self, word: &str) {
         self.0.update(word);
         self.0.update([0]);
     }
 
-    /// The number.
+    /// Returns the hash.
     pub fn number(self) -> u128 {
         let bytes = self.0.finalize();
         bytes.iter().take(16).fold(0, |number, byte| number << 8 | u128::from(*byte))

@@ -1,37 +1,37 @@
-//! Recordings: scenarios run without a window and written to a Rerun file, with the layout to look at them.
+//! Recordings: runs of scenarios without a window, written to a Rerun file with a layout for the viewer.
 //!
-//! One file holds all cases, each under `/<case>/`, on the shared time lines `sim_time` and `step`:
+//! One file holds all cases, each under `/<case>/`, on the common time lines `sim_time` and `step`:
 //!
-//! | entity | what |
+//! | entity | contents |
 //! |---|---|
-//! | `machine/base`, `machine/link/<name>` | meshes that never change; transforms |
-//! | `machine/joints` | one mesh, and where each pin is |
-//! | `com`, `end_effector`, `target` | where they are; `end_effector/path` is the whole trail |
-//! | `plan/path`, `plan/waypoints`, `plan/start` | where the end effector is to go; gone while the pointer leads |
-//! | `workspace/<b>` | a reactionless workspace and its boundary; b turns it |
-//! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, where there are any |
-//! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
-//! | `tower` | all workspaces, b as height: the wall, the present slice, and which b reach the task's points |
+//! | `machine/base`, `machine/link/<name>` | constant meshes; transforms |
+//! | `machine/joints` | one mesh, and the position of each pin |
+//! | `com`, `end_effector`, `target` | positions; `end_effector/path` is the whole trail |
+//! | `plan/path`, `plan/waypoints`, `plan/start` | the planned path; absent while the target is dragged |
+//! | `workspace/<b>` | a reactionless workspace and its boundary; b rotates it |
+//! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, if any |
+//! | `joint_space` | q as coordinates: the plane of b within the joint limits, the planned path, the pose |
+//! | `tower` | all workspaces, b as height: the wall, the present section, and the b that reach the task's points |
 //! | `design/machine`, `design/marks` | the machine from above, to scale: links, centres of mass, discs |
-//! | `design/state`, `design/links`, `design/balance` | what it comes to, weighs, and leaves of (7) and (8), as tables |
-//! | `design/bars`, `design/front` | (7) and (8) as bars; of counterweights, what less inertia costs in mass |
-//! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
+//! | `design/state`, `design/links`, `design/balance` | tables of measures, masses, and the residuals of (7) and (8) |
+//! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
+//! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
 //! | `signals/<topic>` | every row of the table of [`signals`](crate::simulation::signals), at every step, as a series |
-//! | `events`, `phase` | what happened |
+//! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
 //!
-//! Each item of the [`Scene`](crate::picture::scene::Scene) that the window opens with is an entity, by its own name; the
-//! plots are the window's [`charts`](crate::picture::charts). So a new item of the scene, or a new signal in a chart, is
-//! recorded without a change here. What a person first has to switch on in the window is not recorded: snapshots of the
-//! arm, and the forces of the pins, of which pictures can show the latter (`pin_forces`). Nor are the marks that invite a
-//! person to drag something.
+//! Each item of the [`Scene`](crate::picture::scene::Scene) that the window opens with is an entity with the name of
+//! the item. The plots are the [`charts`](crate::picture::charts) of the window. So a new item of the scene, or a new
+//! signal in a chart, is recorded without a change here. Options that are off by default in the window are not
+//! recorded: snapshots of the arm, and pin forces (pictures can show the latter, `pin_forces`). Hints at what can be
+//! dragged are not recorded either.
 //!
-//! Each change of the machine that a session holds is a row of the design, on the time line `edit`, which only such
-//! recordings have, and at the step at which it was made.
+//! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
+//! have a further time line, `edit`.
 //!
-//! What an item says never changes is written once; what moves has at most 200 rows a second, and a signal has a row at
-//! every step. Machine, scenario, version and verdict are properties of the recording. The same scenarios give the same
-//! recording, whenever and wherever it is made.
+//! Constant parts of an item are written once. Moving parts have at most 200 rows a second, and signals have a row at
+//! every step. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal
+//! recordings, independent of time and machine.
 
 mod blueprint;
 mod dashes;
@@ -72,81 +72,81 @@ use store::{Store, StoreError};
 /// A scenario that was recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Its name.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Where it is.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Steps done; there is one more frame.
+    /// Number of steps; there is one frame more.
     pub steps: u64,
     /// Largest |τ_k|, N m.
     pub peak_torque: Vec<f64>,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// Largest |n_B|, what the arm transmits, N m.
+    /// Largest |n_B| transmitted by the arm, N m.
     pub peak_base_moment: f64,
-    /// Whether the arm transmitted nothing.
+    /// Whether the arm transmitted no reaction.
     pub reactionless: bool,
-    /// What is to be said of it.
+    /// Verdict on the run.
     pub verdict: Verdict,
-    /// What can be said of machine, plan and run.
+    /// Statements about machine, plan and run.
     pub statements: Statements,
-    /// What somebody should know: why there are no pictures.
+    /// Notes for the user: why there are no pictures.
     pub notes: Vec<String>,
 }
 
-/// How far the recording has got.
+/// Progress of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress<'a> {
-    /// Steps done, of all scenarios. Each counts twice: it is run for the scales, and recorded.
+    /// Completed steps of all scenarios. Each step counts twice, because each scenario is run for the scales first.
     pub done: u64,
-    /// Steps to do.
+    /// Total number of steps.
     pub of: u64,
-    /// The scenario at hand.
+    /// Name of the current scenario.
     pub what: &'a str,
 }
 
-/// Why nothing was recorded. No file is left then, and none was touched.
+/// Reasons why nothing was recorded. No file is created or changed in that case.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// Nothing to record.
+    /// There is no scenario.
     #[error("no scenario: want at least one")]
     Nothing,
-    /// Cases of one recording go by their names.
+    /// Two scenarios of one recording have the same name.
     #[error("two scenarios are called {0:?}: want different names in one recording")]
     SameName(String),
     /// A scenario cannot start, or one of its edits cannot apply.
     #[error("{scenario}: {refusal}")]
     Refused {
-        /// Which.
+        /// Name of the scenario.
         scenario: String,
-        /// Why.
+        /// Reason.
         refusal: Refusal,
     },
-    /// The pictures asked for cannot be.
+    /// The requested pictures cannot be made.
     #[error("pictures: {0}")]
     Pictures(String),
-    /// The file.
+    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Whoever asked for it wants it no more.
+    /// The caller stopped the recording.
     #[error("the recording was stopped before its end: no file is left")]
     Stopped,
     /// Rerun refuses the data.
     #[error("{}: {why}", file.display())]
     Data {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What it says.
+        /// Message of Rerun.
         why: String,
     },
 }
 
-/// Runs scenarios and records all of them in one file, which appears when it is complete. `progress` hears how far it is
-/// and says whether the rest is still wanted.
+/// Runs scenarios and records all of them in one file, which appears when it is complete. `progress` is called with the
+/// progress and returns whether to continue.
 ///
 /// # Errors
-/// If a scenario cannot run, or the file exists and is not to be replaced, or cannot be written, or is not wanted any
-/// more; no file is left then.
+/// If a scenario cannot run, if the file exists and must not be replaced or cannot be written, or if `progress` returns
+/// false. No file is left in these cases.
 pub fn record(
     scenarios: &[Scenario],
     file: &Path,
@@ -178,11 +178,12 @@ fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
     }
 }
 
-/// The most pictures of a recording, and the most pixels of all of them.
-const MOST_PICTURES: f64 = 1e5;
-const MOST_PIXELS: f64 = 1.5e11;
+/// Maximum number of pictures of a recording.
+const MAX_PICTURES: f64 = 1e5;
+/// Maximum number of pixels of all pictures of a recording.
+const MAX_PIXELS: f64 = 1.5e11;
 
-/// Refuses more pictures than anybody would wait for.
+/// Checks the number and size of the pictures.
 fn check_pictures(scenarios: &[Scenario], cases: &[Preview], options: &Options) -> Result<(), RecordError> {
     let Some(p) = options.pictures else { return Ok(()) };
     let of_case = |(scenario, case): (&Scenario, &Preview)| {
@@ -190,7 +191,7 @@ fn check_pictures(scenarios: &[Scenario], cases: &[Preview], options: &Options) 
         steps.min(steps * scenario.step * p.fps) + 1.0
     };
     let count: f64 = scenarios.iter().zip(cases).map(of_case).sum();
-    let most = MOST_PICTURES.min(MOST_PIXELS / (f64::from(p.width) * f64::from(p.height))).floor();
+    let most = MAX_PICTURES.min(MAX_PIXELS / (f64::from(p.width) * f64::from(p.height))).floor();
     match count <= most {
         true => Ok(()),
         false => Err(RecordError::Pictures(format!(
@@ -207,12 +208,12 @@ fn stopped_or(scenario: String, refusal: Refusal) -> RecordError {
     }
 }
 
-/// About how many steps a run has.
+/// Estimates the number of steps of a run.
 fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
 }
 
-/// What tells this recording from others: everything that goes into it.
+/// Returns the hash of all inputs of a recording.
 fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
     let mut hash = Hash::default();
     hash.add(env!("CARGO_PKG_VERSION"));
@@ -246,7 +247,7 @@ fn write(
         cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
-    // Now it is known.
+    // The exact number of steps.
     let total: u64 = cases.iter().map(|case| case.steps).sum();
     before = total;
     check_pictures(scenarios, &cases, options)?;
@@ -256,7 +257,7 @@ fn write(
     let scale = preview::scale(&cases);
     let mut set = Set { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
-    // The layout stands first, so that no viewer begins with one of its own.
+    // The layout comes first, so that the viewer does not create a default one.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
     let done = laid_out.and_then(|()| {
         if preview::have_designs(&cases) {

@@ -1,24 +1,24 @@
-//! What to record.
+//! Options of a recording.
 
-/// Offscreen pictures to take on the way.
+/// Options of offscreen pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pictures {
-    /// Pictures a second of simulated time.
+    /// Pictures per second of simulated time.
     pub fps: f64,
-    /// Pixels a row.
+    /// Width, pixels.
     pub width: u32,
-    /// Rows.
+    /// Height, pixels.
     pub height: u32,
-    /// Arrows show what the pins carry.
+    /// Whether arrows show the pin forces.
     pub pin_forces: bool,
 }
 
-/// What to record, and over what.
+/// Options of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Pictures, if any. Where there is nothing to draw with, the recording goes without and says so in its
+    /// Pictures, if any. Without a usable adapter there are no pictures, which is said in the
     /// [`notes`](super::Recording::notes).
     pub pictures: Option<Pictures>,
-    /// Replace a file that is there.
+    /// Whether an existing file is replaced.
     pub force: bool,
 }

@@ -1,4 +1,4 @@
-//! Offscreen pictures on the way, as PNG.
+//! Offscreen pictures during a recording, as PNG.
 
 use rerun::{EncodedImage, EntityPath};
 
@@ -12,10 +12,10 @@ use crate::picture::render::{View, offscreen::Gpu};
 use crate::picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
 use crate::simulation::frame::Frame;
 
-/// Bytes that are gathered before they are written.
-const ROLL: usize = 4 << 20;
+/// Size of buffered pictures above which they are written, bytes.
+const MAX_BUFFERED_BYTES: usize = 4 << 20;
 
-/// Draws scenes: with their words, where there is a font.
+/// Draws scenes; with labels, if fonts are compiled in.
 #[cfg(feature = "ui")]
 struct Painter(crate::picture::canvas::Canvas);
 
@@ -26,7 +26,7 @@ struct Painter(Gpu, View);
 impl Painter {
     fn new(wanted: Pictures) -> Result<Self, NoAdapter> {
         let size = [wanted.width, wanted.height];
-        // As large as in a window of this height, down to what is still read.
+        // Scale as in a window of this height, but large enough for labels to be legible.
         let scale = (wanted.height as f32 / 800.0).max(0.5);
         #[cfg(feature = "ui")]
         return Ok(Self(crate::picture::canvas::Canvas::new(size, scale)?));
@@ -56,20 +56,20 @@ impl Painter {
     }
 }
 
-/// Takes pictures, if any are wanted and there is something to draw with.
+/// Takes pictures, if they are requested and there is a usable adapter.
 pub struct Series {
     wanted: Option<Pictures>,
     note: Option<String>,
     #[cfg(feature = "render")]
     painter: Option<Painter>,
-    /// Pictures of the case at hand.
+    /// Number of pictures of the current case.
     taken: u64,
     clock: Clock,
     pictures: Vec<Vec<u8>>,
 }
 
 impl Series {
-    /// Looks for something to draw with.
+    /// Opens an adapter if pictures are requested.
     pub fn of(wanted: Option<Pictures>) -> Self {
         let mut series = Self {
             wanted,
@@ -109,12 +109,12 @@ impl Series {
         self.wanted.is_some()
     }
 
-    /// Why there are no pictures, if some were wanted.
+    /// Returns why there are no pictures, if they were requested.
     pub fn notes(&self) -> Vec<String> {
         self.note.iter().cloned().collect()
     }
 
-    /// Whether a picture is due at this instant, on the step nearest to its time.
+    /// Whether a picture is due at this instant: the step is the one nearest to its time.
     pub fn is_due(&mut self, frame: &Frame, step: f64) -> bool {
         if frame.step == 0 {
             self.taken = 0;
@@ -122,7 +122,7 @@ impl Series {
         self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.taken as f64 / p.fps)
     }
 
-    /// Takes one.
+    /// Takes a picture.
     #[cfg(feature = "render")]
     pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame, options: &ViewOptions) -> Result<(), Stop> {
         let (Some(wanted), Some(painter)) = (self.wanted, &mut self.painter) else { return Ok(()) };
@@ -136,7 +136,7 @@ impl Series {
         }
         self.pictures.push(picture.to_png().map_err(|why| failed(&why))?);
         self.clock.push(at);
-        // Where steps are longer than the time between pictures, one a step.
+        // If steps are longer than the time between pictures, there is one picture per step.
         self.taken = self.taken.max((frame.time * wanted.fps).floor() as u64) + 1;
         Ok(())
     }
@@ -146,12 +146,12 @@ impl Series {
         Ok(())
     }
 
-    /// Whether it is time to write.
+    /// Whether the buffered pictures should be written.
     pub fn is_full(&self) -> bool {
-        self.pictures.iter().map(Vec::len).sum::<usize>() > ROLL
+        self.pictures.iter().map(Vec::len).sum::<usize>() > MAX_BUFFERED_BYTES
     }
 
-    /// Writes what was taken.
+    /// Writes the buffered pictures.
     pub fn write(&mut self, store: &mut Store, path: &EntityPath) -> Result<(), Stop> {
         if self.pictures.is_empty() {
             return Ok(());

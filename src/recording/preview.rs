@@ -1,5 +1,5 @@
-//! Runs a scenario once before it is recorded. Its extremes decide the layout and the scales, which stand at the head of
-//! the file; and a scenario that cannot run is refused before anything is written.
+//! Runs a scenario once before it is recorded. Its extreme values determine the layout and the scales, which come first
+//! in the file. A scenario that cannot run is refused before anything is written.
 
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
@@ -19,44 +19,44 @@ use crate::simulation::frame::Peaks;
 use crate::simulation::signals::{Signal, signals};
 use crate::study::comparison::Candidate;
 
-/// What a run will come to.
+/// Extreme values of a run, and the views and charts that follow from them.
 #[derive(Debug)]
 pub struct Preview {
     /// Name of the scenario.
     pub name: String,
-    /// A line about it.
+    /// Title of the case.
     pub title: String,
-    /// Where its entities are.
+    /// Path of its entities.
     pub root: EntityPath,
-    /// Steps.
+    /// Number of steps.
     pub steps: u64,
-    /// The largest of everything.
+    /// Peak values.
     pub peaks: Peaks,
-    /// Least and greatest b, rad.
+    /// Minimum and maximum of b, rad.
     pub b: [f64; 2],
-    /// The signals that it records.
+    /// Recorded signals.
     pub topics: Vec<Topic>,
-    /// The charts that tell something of it, with the least and the greatest value in each.
+    /// Charts that apply, with the minimum and maximum of the values in each.
     pub charts: Vec<(Chart, [f64; 2])>,
-    /// From where the machine is seen.
+    /// Eye of the view of the machine.
     pub scene: Eye,
-    /// What is derived of the run.
+    /// Cache of the results derived from the run.
     pub queries: Queries,
-    /// From where joint space is seen, if there is one.
+    /// Eye of the view of joint space, if there is one.
     pub joints: Option<Eye>,
-    /// From where the tower is seen, if there is one.
+    /// Eye of the view of the tower, if there is one.
     pub tower: Option<Eye>,
-    /// The machine as it is designed.
+    /// Design of the machine.
     pub design: Design,
-    /// The same, to be set beside those of others.
+    /// Design of the machine for comparison with other cases.
     pub candidate: Candidate,
 }
 
 impl Preview {
-    /// Runs a scenario; `tick` hears of steps that are done, and says whether the rest is still wanted.
+    /// Runs a scenario; `tick` is called with the number of completed steps and returns whether to continue.
     ///
     /// # Errors
-    /// If it cannot start, one of its edits cannot apply, or it is not wanted any more.
+    /// If the scenario cannot start, one of its edits cannot be applied, or `tick` returns false.
     pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64) -> bool) -> Result<Self, Refusal> {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
@@ -98,7 +98,7 @@ impl Preview {
     }
 }
 
-/// Where the machines of several cases are set side by side.
+/// Path of the comparison of the machines of several cases.
 pub const DESIGNS: &str = "comparison/designs";
 
 /// Whether the machines of several cases differ.
@@ -106,13 +106,13 @@ pub fn have_designs(cases: &[Preview]) -> bool {
     cases.iter().any(|case| !case.candidate.is_alike(&cases[0].candidate))
 }
 
-/// What full arrows and arcs stand for in all of them, so that they can be compared.
+/// Returns the common scale of arrows and arcs of all cases.
 pub fn scale(cases: &[Preview]) -> Scale {
     let largest = |of: fn(&Preview) -> f64| cases.iter().map(of).fold(0.0, f64::max);
     Scale::of(largest(|c| c.peaks.force), largest(|c| c.peaks.moment))
 }
 
-/// From the front and above, so near that the arm and its workspaces fill the view.
+/// Returns an eye in front and above, at which the arm and its workspaces fill the view; `reach` in m.
 fn near(reach: f64) -> Eye {
     Eye::upright(Orbit { centre: [-0.04 * reach, 0.06 * reach, 0.0], distance: 1.75 * reach, yaw: 0.3, pitch: 0.95 })
 }

@@ -1,4 +1,4 @@
-//! One case: from the frames of a run to the entities of a recording.
+//! Records one case: writes the frames of a run as entities.
 
 use std::sync::Arc;
 
@@ -27,32 +27,32 @@ use crate::session::verdict::{Statements, Verdict};
 use crate::session::{Edit, Plan, Run, replay_while};
 use crate::simulation::frame::{Frame, Peaks};
 
-/// Rows that gather before they are written.
-const BATCH: usize = 8192;
+/// Number of buffered rows above which they are written.
+const MAX_BUFFERED_ROWS: usize = 8192;
 
-/// What moves has a row this often, s; a screen shows no more.
-const ROW_TIME: f64 = 0.005;
+/// Interval between the rows of moving items, s; a screen cannot show more.
+const ROW_INTERVAL_S: f64 = 0.005;
 
-/// Points of a trail, at most.
-const TRAIL: usize = 16_384;
+/// Maximum number of points of a trail.
+const MAX_TRAIL_POINTS: usize = 16_384;
 
-/// What the cases of one recording share.
+/// Common parts of the cases of one recording.
 pub struct Set<'a> {
-    /// Where everything goes.
+    /// Store of all rows.
     pub store: &'a mut Store,
-    /// Pictures on the way.
+    /// Offscreen pictures.
     pub pictures: &'a mut Series,
-    /// Of reactions.
+    /// Scale of reactions.
     pub scale: Scale,
-    /// More than one case: events say of which they are.
+    /// Whether there is more than one case; the texts of events then name the case.
     pub several: bool,
 }
 
-/// Runs a scenario and writes its entities; its peaks. `tick` hears of steps that are done, and says whether the rest is
-/// still wanted.
+/// Runs a scenario, writes its entities, and returns its peaks, verdict and statements. `tick` is called with the
+/// number of completed steps and returns whether to continue.
 ///
 /// # Errors
-/// If it cannot run, be drawn or be written, or is not wanted any more.
+/// If the scenario cannot run, be drawn or be written, or if `tick` returns false.
 pub fn record(
     set: &mut Set<'_>,
     scenario: &Scenario,
@@ -63,8 +63,8 @@ pub fn record(
     let mut failure = None;
     let run = replay_while(scenario, |run, frame| {
         failure = recorder.see(run, frame).err();
-        let told = frame.step.is_multiple_of(64) || frame.step == forecast.steps;
-        failure.is_none() && (!told || tick(frame.step))
+        let reports = frame.step.is_multiple_of(64) || frame.step == forecast.steps;
+        failure.is_none() && (!reports || tick(frame.step))
     });
     match (failure, run) {
         (Some(stop), _) => Err(stop),
@@ -81,15 +81,15 @@ struct Recorder<'a> {
     root: &'a EntityPath,
     palette: Palette,
     options: ViewOptions,
-    /// Nothing that the views show for good changes on the way.
-    lasting: bool,
-    /// Edits that have applied.
+    /// Whether the constant parts of the views do not change during the run.
+    constant_views: bool,
+    /// Number of edits that have been applied.
     edits: usize,
     clock: Clock,
     topics: Vec<Topic>,
     row_every: u64,
     drawn: Option<Drawn>,
-    /// The b that the run begins with, rad.
+    /// Pose constant b at the start, rad.
     first_b: f64,
     machine: Space,
     joints: Option<Space>,
@@ -98,7 +98,7 @@ struct Recorder<'a> {
     events: Events,
 }
 
-/// What is drawn from: views as they were made, and as base and payload are now.
+/// Views of the run, without and with the present base and payload.
 struct Drawn {
     made: Arc<Views>,
     views: Arc<Views>,
@@ -133,7 +133,7 @@ impl<'a> Recorder<'a> {
             machine: Space::new(root.clone(), forecast.scene, palette.background),
             joints: forecast.joints.map(|eye| space("joint_space", eye)),
             tower: forecast.tower.map(|eye| space("tower", eye)),
-            trail: Thinned::new(1, TRAIL),
+            trail: Thinned::new(1, MAX_TRAIL_POINTS),
             events: Events::new(prefix, palette),
             options: ViewOptions { invites: false, scale: Some(*scale), ..ViewOptions::default() },
             store,
@@ -142,17 +142,17 @@ impl<'a> Recorder<'a> {
             forecast,
             root,
             palette,
-            lasting: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
+            constant_views: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
             edits: 0,
             clock: Clock::default(),
             topics: forecast.topics.clone(),
-            row_every: (ROW_TIME / scenario.step).round().max(1.0) as u64,
+            row_every: (ROW_INTERVAL_S / scenario.step).round().max(1.0) as u64,
             drawn: None,
             first_b: 0.0,
         })
     }
 
-    /// One instant.
+    /// Records one instant.
     fn see(&mut self, run: &Run, frame: &Frame) -> Result<(), Stop> {
         let (at, last) = (Instant::of(frame), frame.step == self.forecast.steps);
         if frame.step == 0 {
@@ -163,27 +163,27 @@ impl<'a> Recorder<'a> {
         self.events.note(at, frame, run.scenario());
         self.clock.push(at);
         self.topics.iter_mut().for_each(|topic| topic.push(frame));
-        // What is drawn anew stands in its place from then on.
+        // After a change of the views, the scene is drawn at once.
         if last || redrawn || frame.step.is_multiple_of(self.row_every) {
             self.draw(at, frame, last)?;
         }
         if let Some(drawn) = self.drawn.as_ref().filter(|_| self.pictures.is_due(frame, self.scenario.step)) {
             self.pictures.take(at, drawn.views.stage(), frame, &self.options)?;
         }
-        if self.clock.len() >= BATCH || self.pictures.is_full() {
+        if self.clock.len() >= MAX_BUFFERED_ROWS || self.pictures.is_full() {
             self.flush()?;
         }
         Ok(())
     }
 
-    /// Whether edits have applied just now.
+    /// Counts the edits applied up to an instant; returns whether there are new ones.
     fn edited(&mut self, at: Instant) -> bool {
         let before = self.edits;
         self.edits += self.scenario.edits[before..].iter().take_while(|timed| timed.step <= at.step).count();
         self.edits > before
     }
 
-    /// Makes the views again if what they show has changed; whether it has.
+    /// Updates the views; returns whether their constant parts have changed.
     fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
         let force = run.scenario().plant.force;
         self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
@@ -194,7 +194,7 @@ impl<'a> Recorder<'a> {
         match drawn {
             Some(before) if Arc::ptr_eq(&before.made, &made) => return false,
             Some(_) => {}
-            // Workspaces go by the b that they begin with.
+            // Workspaces are named by their b at the start.
             None => self.first_b = frame.b_reference,
         }
         let named = |b: f64| format!("workspace/{b:.3}");
@@ -206,10 +206,10 @@ impl<'a> Recorder<'a> {
         true
     }
 
-    /// Everything that is to be seen at an instant.
+    /// Draws all scenes of an instant.
     fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
         let Some(Drawn { views, .. }) = &self.drawn else { return Ok(()) };
-        let when = (at, if self.lasting { None } else { Some(at) });
+        let when = (at, if self.constant_views { None } else { Some(at) });
         let tip = point(frame.end_effector, views.stage().handle_height());
         self.trail.push(|| tip, last);
         self.machine.draw(self.store, when, &views.stage().scene(frame, &self.options))?;
@@ -226,7 +226,7 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// Writes what has gathered.
+    /// Writes all buffered rows.
     fn flush(&mut self) -> Result<(), Stop> {
         for topic in &mut self.topics {
             topic.write(self.store, self.root, &self.clock)?;
@@ -238,7 +238,7 @@ impl<'a> Recorder<'a> {
         self.pictures.write(self.store, &under(self.root, "view"))
     }
 
-    /// What is known only at the end.
+    /// Writes the rest: trail, events and properties.
     fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict, Statements), Stop> {
         let frame = &run.frame();
         self.flush()?;
@@ -253,11 +253,11 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Properties that hold the drift of each drive.
+/// Names of the properties of the drift of each drive.
 const DRIFTS: [&str; MAX_DRIVES] =
     ["drift_1", "drift_2", "drift_3", "drift_4", "drift_5", "drift_6", "drift_7", "drift_8"];
 
-/// All that the run can be made of again, what was foreseen, and what came of it.
+/// Returns the properties of a case: the inputs that reproduce the run, its forecast, and its results.
 fn properties(
     scenario: &Scenario,
     (peaks, verdict, statements): (&Peaks, &Verdict, &Statements),
@@ -284,8 +284,8 @@ fn properties(
         let text = format!("{} ({})", statement.words, statement.why);
         all = all.with_component::<Text>(name, words(&text));
     }
-    if let Some(left) = verdict.past_wheel {
-        all = all.with_component::<Scalar>("peak_moment_past_wheel", number(left));
+    if let Some(moment) = verdict.past_wheel {
+        all = all.with_component::<Scalar>("peak_moment_past_wheel", number(moment));
     }
     if let Some(price) = price {
         all = all
@@ -300,7 +300,7 @@ fn properties(
             all = all.with_component::<Scalar>("gap", number(gap));
         }
     }
-    // By drive, a number for each cycle: so far it has drifted in all.
+    // For each drive, the cumulative drift after each cycle.
     if let [start, ends @ ..] = &cycles[..] {
         for (k, name) in DRIFTS.into_iter().enumerate().take(start.len()) {
             let drift: Vec<f64> = ends.iter().map(|end| end[k] - start[k]).collect();

@@ -1,8 +1,8 @@
-//! Rows of an entity, kept until they are written.
+//! Rows of an entity, buffered until they are written.
 
 use super::store::{Clock, Instant};
 
-/// Rows of something that changes rarely: equal ones are left out.
+/// Rows of a component that changes rarely; rows equal to their predecessor are omitted.
 #[derive(Debug)]
 pub struct Track<T> {
     clock: Clock,
@@ -11,7 +11,7 @@ pub struct Track<T> {
 }
 
 impl<T: Clone + PartialEq> Track<T> {
-    /// Without a row.
+    /// Returns an empty track.
     pub fn new() -> Self {
         Self { clock: Clock::default(), rows: Vec::new(), last: None }
     }
@@ -25,18 +25,18 @@ impl<T: Clone + PartialEq> Track<T> {
         }
     }
 
-    /// The last row there was.
+    /// Returns the last row, even if it has been taken.
     pub fn last(&self) -> Option<&T> {
         self.last.as_ref()
     }
 
-    /// Hands over the rows since it was last asked, with their instants.
+    /// Returns and removes the buffered rows with their instants.
     pub fn take(&mut self) -> (Clock, Vec<T>) {
         (std::mem::take(&mut self.clock), std::mem::take(&mut self.rows))
     }
 }
 
-/// Keeps every n-th item, and at most `most` of them: when there are more, it drops every other one and doubles n.
+/// Keeps every n-th item, and at most `most` of them: if there are more, it drops every other one and doubles n.
 #[derive(Debug)]
 pub struct Thinned<T> {
     items: Vec<T>,
@@ -46,12 +46,12 @@ pub struct Thinned<T> {
 }
 
 impl<T> Thinned<T> {
-    /// Nothing kept so far, to keep every n-th item from now on.
+    /// Returns an empty list that keeps every n-th item, n = `every`.
     pub fn new(every: u64, most: usize) -> Self {
         Self { items: Vec::new(), every: every.max(1), seen: 0, most }
     }
 
-    /// Takes the next item, and keeps it if it is the n-th or the last of all.
+    /// Counts the next item, and keeps it if its number is a multiple of n or if it is the last one.
     pub fn push(&mut self, item: impl FnOnce() -> T, last: bool) {
         if self.seen.is_multiple_of(self.every) || last {
             self.items.push(item());
@@ -67,7 +67,7 @@ impl<T> Thinned<T> {
         self.seen += 1;
     }
 
-    /// Hands over what was kept.
+    /// Returns and removes the kept items.
     pub fn take(&mut self) -> Vec<T> {
         std::mem::take(&mut self.items)
     }

@@ -1,5 +1,5 @@
 //! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity; items of one name share it.
-//! What an item says never changes is written once, the rest when it changes.
+//! Parts of an item marked as constant are written once, other parts when they change.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -14,12 +14,12 @@ use super::style::under;
 use crate::picture::scene::palette::mix;
 use crate::picture::scene::{Anchor, Area, Changes, Label, Line, Marker, Model, Rgba, Scene, Solid};
 
-/// How far each line that is over everything lies above the one before it, px.
-const STEP: f32 = 0.1;
-/// The viewer's words stand in boxes: rows of them are so many times as far apart as in the window, and letters are so
-/// wide, parts of their height.
-const ROWS: f32 = 1.4;
-const LETTER: f32 = 0.5;
+/// Height between consecutive lines that are drawn over everything, px.
+const LINE_SPACING_PX: f32 = 0.1;
+/// Factor from the row spacing of labels in the window to that in the viewer, which draws labels in boxes.
+const ROW_SPACING: f32 = 1.4;
+/// Mean width of a letter, as a fraction of the font size.
+const LETTER_WIDTH: f32 = 0.5;
 
 /// A space of a recording.
 #[derive(Debug)]
@@ -27,17 +27,17 @@ pub struct Space {
     root: EntityPath,
     eye: Eye,
     background: Rgba,
-    /// How names of items begin, and how the paths of their entities begin instead.
+    /// Prefixes of item names, and the prefixes of entity paths that replace them.
     renamed: Vec<(&'static str, String)>,
     entities: Vec<Entity>,
-    /// Their places by name, for each kind.
+    /// Indices of the entities by name, for each kind.
     known: [HashMap<String, usize>; 5],
-    /// Entities that stand in a pose, by their names.
+    /// Indices of the entities that can have a pose, by name.
     posed: HashMap<String, usize>,
 }
 
 impl Space {
-    /// Under a root, seen from an eye.
+    /// Returns an empty space under a root, seen from an eye.
     pub fn new(root: EntityPath, eye: Eye, background: Rgba) -> Self {
         Self {
             root,
@@ -50,8 +50,8 @@ impl Space {
         }
     }
 
-    /// Puts items under other paths from now on: an item whose name is the first of a pair, or lies under it, becomes the
-    /// entity with the second of the pair in its place. Of several pairs that fit, the first counts.
+    /// Sets replacements of paths, as pairs of old and new prefix. If the name of an item is the old prefix or below
+    /// it, the path of its entity has the new prefix instead. Of several matching pairs, the first applies.
     pub fn rename(&mut self, renamed: Vec<(&'static str, String)>) {
         self.renamed = renamed;
     }
@@ -83,8 +83,8 @@ impl Space {
         entity
     }
 
-    /// Writes the shapes of a scene that are not in the recording yet: for all times, or from the instant `since` on. Poses
-    /// and shapes that can change gather as rows until [`Space::write`].
+    /// Writes the constant shapes of a scene that are not yet in the recording, for all times or from the instant
+    /// `since` on. Rows of poses and shapes that can change are buffered until [`Space::write`].
     ///
     /// # Errors
     /// If it cannot be written.
@@ -104,8 +104,8 @@ impl Space {
         });
         let mut lift = 0.0;
         for line in &scene.lines {
-            // The viewer knows only depth: what is drawn later lies nearer to the eye.
-            lift += if line.on_top { STEP * self.eye.pixel() } else { 0.0 };
+            // The viewer orders by depth only, so later lines are placed nearer to the eye.
+            lift += if line.on_top { LINE_SPACING_PX * self.eye.pixel() } else { 0.0 };
             self.line(line, if line.on_top { lift } else { 0.0 });
         }
         scene.markers.iter().for_each(|marker| self.marker(marker));
@@ -168,28 +168,28 @@ impl Space {
         if edged {
             let [x, y, z] = marker.at;
             let inside = marker.radius - marker.stroke_width;
-            // Nearer to the eye than what it lies on.
+            // Nearer to the eye than the outer disc.
             let inner = dot([x, y, z + px], inside, over(background, marker.fill));
             self.entity(Kind::Marker, &format!("{}/inside", marker.name)).dot(inner);
         }
     }
 
     fn label(&mut self, label: &Label) {
-        let width = LETTER * label.size * label.text.chars().count() as f32;
+        let width = LETTER_WIDTH * label.size * label.text.chars().count() as f32;
         let [right, down] = label.offset;
         let aside = match label.anchor {
             Anchor::Left => 0.5 * width,
             Anchor::Centre => 0.0,
             Anchor::Right => -0.5 * width,
         };
-        let shift = self.eye.shift([right + aside, ROWS * down]);
+        let shift = self.eye.shift([right + aside, ROW_SPACING * down]);
         let at = [0, 1, 2].map(|i| label.at[i] + shift[i]);
         let rgba = over(self.background, label.colour);
         let dot = Dot { at, radius: 0.0, rgba, text: label.text.clone() };
         self.entity(Kind::Label, &label.name).dot(dot);
     }
 
-    /// Writes the rows since the last time.
+    /// Writes the buffered rows.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -199,7 +199,7 @@ impl Space {
     }
 }
 
-/// A colour over another: the viewer's lines and points hide what is behind them.
+/// Blends a colour over the background, because lines and points of the viewer are opaque.
 fn over(background: Rgba, [r, g, b, a]: Rgba) -> Rgba {
     mix(background, [r, g, b, 1.0], a)
 }

@@ -1,22 +1,22 @@
-//! Why recording a case stopped.
+//! Reasons why the recording of a case stops.
 
 use super::store::StoreError;
 use crate::session::Refusal;
 
-/// Why a case was not recorded.
+/// Reasons why a case is not recorded.
 #[derive(Debug)]
 pub enum Stop {
-    /// It cannot run.
+    /// The scenario cannot run.
     Refused {
-        /// Which.
+        /// Name of the scenario.
         scenario: String,
-        /// Why.
+        /// Reason.
         refusal: Refusal,
     },
-    /// The pictures asked for cannot be.
+    /// The requested pictures cannot be made.
     #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing to draw them with"))]
     Pictures(String),
-    /// It cannot be written.
+    /// The recording cannot be written.
     Store(StoreError),
 }
 

@@ -1,8 +1,8 @@
 //! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
 //!
-//! A thread of its own encodes and writes while the next chunk is made, in the order of the chunks. It hands its error
-//! over, so that a full disk is said to whoever records; the stream of the SDK can only say so on standard error.
-//! Identifiers count up from the recording's own, so that the same data give the same chunks.
+//! A separate thread encodes and writes chunks in order, while the next chunk is made. It returns its error, so that
+//! the caller learns of a full disk; the stream of the SDK only prints it to standard error. Identifiers of chunks
+//! count up from that of the recording, so that equal data give equal chunks.
 
 use std::io::Write;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use crate::files::NewFile;
 
-/// What the viewer files layouts under.
+/// Application name under which the viewer stores layouts.
 pub const APPLICATION: &str = "stillbase";
 
 /// Time line of simulated time.
@@ -27,13 +27,13 @@ pub const TIME: &str = "sim_time";
 /// Time line of steps.
 pub const STEP: &str = "step";
 
-/// Time line of changes of the machine, where there are any.
+/// Time line of changes of the machine, if there are any.
 pub const EDIT: &str = "edit";
 
-/// Why a row was not written.
+/// Reasons why a row is not written.
 #[derive(Debug, Error)]
 pub enum StoreError {
-    /// The file system.
+    /// Error of the file system.
     #[error(transparent)]
     Write(#[from] std::io::Error),
     /// Rerun refuses the data.
@@ -69,12 +69,12 @@ pub struct Instant {
     pub step: u64,
     /// Time since the start, ns.
     pub nanos: i64,
-    /// Changes of the machine up to then; none of what does not tell of them.
+    /// Number of changes of the machine so far; `None` for rows without the time line of changes.
     pub edit: Option<usize>,
 }
 
 impl Instant {
-    /// After so many steps, and so much time, s.
+    /// Returns the instant after `step` steps and `time`, s.
     pub fn at(step: u64, time: f64) -> Self {
         Self { step, nanos: (1e9 * time).round() as i64, edit: None }
     }
@@ -85,38 +85,38 @@ impl Instant {
 pub struct Clock {
     steps: Vec<i64>,
     nanos: Vec<i64>,
-    /// Of rows that tell of changes of the machine, which no others stand between.
+    /// Numbers of changes of the machine; empty, or one for each row.
     edits: Vec<i64>,
 }
 
 impl Clock {
-    /// One more row.
+    /// Adds a row.
     pub fn push(&mut self, at: Instant) {
         self.steps.push(at.step as i64);
         self.nanos.push(at.nanos);
         self.edits.extend(at.edit.map(|edit| edit as i64));
     }
 
-    /// Of each row.
+    /// Returns the instants of all rows.
     pub fn instants(&self) -> impl Iterator<Item = Instant> + '_ {
         let edit = |i: usize| self.edits.get(i).map(|edit| *edit as usize);
         let both = self.steps.iter().zip(&self.nanos).enumerate();
         both.map(move |(i, (step, nanos))| Instant { step: *step as u64, nanos: *nanos, edit: edit(i) })
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// No row.
+    /// Removes all rows.
     pub fn clear(&mut self) {
         self.steps.clear();
         self.nanos.clear();
         self.edits.clear();
     }
 
-    /// The time lines; to be cloned for each entity, which costs nothing.
+    /// Returns the time lines; they are cheap to clone for each entity.
     pub fn columns(&self) -> Vec<TimeColumn> {
         let sorted = Some(true);
         let mut columns = vec![
@@ -130,10 +130,10 @@ impl Clock {
     }
 }
 
-/// Where the rows go.
+/// The rows of a recording and of its layout.
 pub struct Store {
     to: SyncSender<Message>,
-    /// Gone once it has been asked why it stopped.
+    /// Thread that writes; `None` once its result has been taken.
     writer: Option<JoinHandle<Result<NewFile, StoreError>>>,
     recording: StoreId,
     layout: StoreId,
@@ -141,22 +141,22 @@ pub struct Store {
     next: u128,
 }
 
-/// What the writer is told; without a last word it leaves nothing behind.
+/// Messages to the writer thread; without a final `Close` it leaves no file.
 enum Message {
     Row(Box<LogMsg>),
     Close,
 }
 
-/// Messages that may wait for the writer.
-const QUEUE: usize = 64;
+/// Maximum number of messages that wait for the writer.
+const QUEUE_LENGTH: usize = 64;
 
-/// Rows of a chunk have identifiers that count up from the chunk's: chunks keep this far apart.
-const APART: u128 = 1 << 64;
+/// Distance between the identifiers of chunks; identifiers of the rows of a chunk count up from that of the chunk.
+const CHUNK_ID_STEP: u128 = 1 << 64;
 
 impl Store {
-    /// Begins a recording and its layout; `digest` is all that tells it from other recordings.
+    /// Begins a recording and its layout; `digest` identifies the recording.
     pub fn open(to: NewFile, digest: u128) -> Result<Self, StoreError> {
-        let (sender, receiver) = sync_channel(QUEUE);
+        let (sender, receiver) = sync_channel(QUEUE_LENGTH);
         let writer = thread::Builder::new().name("recording".into()).spawn(move || write(to, &receiver))?;
         let id = format!("{digest:032x}");
         let mut store = Self {
@@ -164,8 +164,8 @@ impl Store {
             writer: Some(writer),
             recording: StoreId::new(StoreKind::Recording, APPLICATION, id.as_str()),
             layout: StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-layout")),
-            // The upper half counts chunks, from a place that depends on the digest so that recordings do not share
-            // them; its top bits stay clear, because readers take it for nanoseconds.
+            // The upper half counts chunks, from a number that depends on the digest, so that recordings have different
+            // identifiers. Its top bits are zero, because readers interpret it as nanoseconds.
             next: (digest >> 90 << 24) << 64,
         };
         let source = StoreSource::Other(format!("stillbase {}", env!("CARGO_PKG_VERSION")));
@@ -184,7 +184,7 @@ impl Store {
         }
     }
 
-    /// Why the writer has stopped.
+    /// Returns the error for which the writer has stopped.
     fn why(&mut self) -> StoreError {
         match self.writer.take().map(JoinHandle::join) {
             Some(Ok(Err(error))) => error,
@@ -193,7 +193,7 @@ impl Store {
     }
 
     fn id(&mut self) -> ChunkId {
-        self.next += APART;
+        self.next += CHUNK_ID_STEP;
         ChunkId::from_u128(self.next)
     }
 
@@ -213,7 +213,7 @@ impl Store {
         Ok(Chunk::builder_with_id(id, path.clone()).with_archetype(row, at, what).build()?)
     }
 
-    /// Something that is true at all times.
+    /// Writes components that hold at all times.
     pub fn fixed(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
         let chunk = self.row(TimePoint::default(), path, what)?;
         self.append(self.recording.clone(), &chunk)
@@ -231,7 +231,7 @@ impl Store {
         self.append(self.recording.clone(), &chunk)
     }
 
-    /// Something that holds from an instant on, or for good.
+    /// Writes components that hold from an instant on, or at all times.
     pub fn shape(
         &mut self,
         since: Option<Instant>,
@@ -244,7 +244,7 @@ impl Store {
         }
     }
 
-    /// Many rows at once.
+    /// Writes many rows at once.
     pub fn columns(
         &mut self,
         clock: &[TimeColumn],
@@ -260,28 +260,28 @@ impl Store {
         self.append(self.recording.clone(), &chunk)
     }
 
-    /// A part of the layout.
+    /// Writes a part of the layout.
     pub fn layout(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
         let at = TimePoint::from([(Timeline::new_sequence("blueprint"), TimeInt::ZERO)]);
         let chunk = self.row(at, path, what)?;
         self.append(self.layout.clone(), &chunk)
     }
 
-    /// Has the viewer open with the layout.
+    /// Makes the viewer open with the layout.
     pub fn activate_layout(&mut self) -> Result<(), StoreError> {
         let command =
             BlueprintActivationCommand { blueprint_id: self.layout.clone(), make_active: true, make_default: true };
         self.send(command.into())
     }
 
-    /// Gives up.
+    /// Aborts the recording; no file is left.
     pub fn abandon(mut self) {
         drop(self.to);
-        // The file is gone when the writer is; why it gave up is known already.
+        // The writer removes the file when it ends; its error is known already.
         let _ = self.writer.take().map(JoinHandle::join);
     }
 
-    /// Writes the table of contents.
+    /// Finishes the file with its table of contents.
     pub fn close(mut self) -> Result<NewFile, StoreError> {
         if self.to.send(Message::Close).is_err() {
             return Err(self.why());
@@ -293,7 +293,7 @@ impl Store {
     }
 }
 
-/// Encodes and writes messages until the last.
+/// Encodes and writes messages until `Close`.
 fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreError> {
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
     let written = loop {
@@ -307,7 +307,7 @@ fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreErro
             Err(_) => break Err(StoreError::Data("given up".into())),
         }
     };
-    // Taken out, so that the encoder does not try to finish what failed.
+    // Takes the file out, so that the encoder does not try to finish after an error.
     let mut to = encoder.into_inner()?;
     written?;
     to.flush()?;

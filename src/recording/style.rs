@@ -1,4 +1,4 @@
-//! How entities are named and how they look: the palette's colours with their meanings, as the viewer wants them.
+//! Names and styles of entities: the colours of the palette in the types of the viewer.
 
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AsComponents, Color, EntityPath, LineStrips3D, Mesh3D, Radius, SerializedComponentBatch};
@@ -7,19 +7,19 @@ use super::eye::Eye;
 use crate::picture::scene::{Mesh, Rgba};
 use crate::simulation::signals::Signal;
 
-/// The path of an entity under another, part by part.
+/// Returns the path of an entity under another, part by part.
 pub fn under(root: &EntityPath, path: &str) -> EntityPath {
     let parts = path.split('/').map(EntityPathPart::new);
     EntityPath::new(root.iter().cloned().chain(parts).collect())
 }
 
-/// A colour of the palette.
+/// Converts a colour of the palette.
 pub fn colour(rgba: Rgba) -> Color {
     let [r, g, b, a] = rgba.map(|x| (255.0 * x.clamp(0.0, 1.0)).round() as u8);
     Color::from_unmultiplied_rgba(r, g, b, a)
 }
 
-/// `τ₁ N m`: Rerun has no label on the axis.
+/// Returns symbol and unit, like `τ₁ N m`, because axes of Rerun have no labels.
 pub fn series_name(signal: &Signal) -> String {
     match signal.unit {
         "1" => signal.symbol.clone(),
@@ -27,7 +27,7 @@ pub fn series_name(signal: &Signal) -> String {
     }
 }
 
-/// A number with the digits that matter: tiny ones in powers of ten.
+/// Formats a number with four decimals, or with a power of ten below 1e-3.
 pub fn brief(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
@@ -36,7 +36,8 @@ pub fn brief(x: f64) -> String {
     }
 }
 
-/// A mesh in one colour, in the axes of an eye; of a drawing what is seen from above, without light and shade.
+/// Returns a mesh in one colour, in the axes of an eye. For a drawing seen from above, only faces that look up are
+/// included, without shading.
 pub fn solid(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
     if eye.is_above() {
         return drawn(mesh, rgba, eye);
@@ -47,7 +48,7 @@ pub fn solid(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
         .with_albedo_factor(colour(rgba).0)
 }
 
-/// What of a mesh faces up.
+/// Returns the faces of a mesh that look up, without normals.
 fn drawn(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
     let is_up = |triangle: &&[u32; 3]| triangle.iter().all(|v| mesh.normals[*v as usize][2] > 0.05);
     let mut places = vec![None; mesh.positions.len()];
@@ -63,7 +64,7 @@ fn drawn(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
     Mesh3D::new(positions).with_triangle_indices(triangles).with_albedo_factor(colour(rgba).0)
 }
 
-/// Lines of a width, points on the screen.
+/// Returns lines; `width` in points on the screen.
 pub fn lines(strips: impl IntoIterator<Item = Vec<[f32; 3]>>, width: f32, rgba: Rgba) -> LineStrips3D {
     LineStrips3D::new(strips).with_radii([Radius::new_ui_points(0.5 * width)]).with_colors([colour(rgba)])
 }

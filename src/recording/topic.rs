@@ -1,5 +1,5 @@
-//! Topics: signals that share an entity. Each row of an entity has an identifier and two times, 18 bytes in the file
-//! where a value has 8; signals of one entity share them.
+//! Topics: signals that share an entity. Each row of an entity has an identifier and two times, which take 18 bytes in
+//! the file, while a value takes 8; signals of one entity share them.
 
 use rerun::{EntityPath, Scalars, SeriesLines};
 
@@ -10,8 +10,8 @@ use crate::picture::scene::palette::Palette;
 use crate::simulation::frame::{Frame, Peaks};
 use crate::simulation::signals::Signal;
 
-/// Entities of several groups of signals. Any other group is an entity by its own name; so is a signal that is compared
-/// with those of other cases, because a legend names all series of an entity, the hidden ones too.
+/// Entities of several groups of signals. Any other group is a separate entity with its own name. So is a signal that
+/// is compared between cases, because a legend names all series of an entity, even hidden ones.
 const TOPICS: [(&str, &[&str]); 4] = [
     ("drives", &["torque", "friction", "angle", "reference", "error", "rate", "acceleration", "joint", "pose"]),
     (
@@ -36,19 +36,19 @@ const TOPICS: [(&str, &[&str]); 4] = [
     ("inside", &["pin", "transmission", "change_point", "dexterity", "torque_per_force", "energy", "audit"]),
 ];
 
-/// Signals of one entity, and their values at the steps since the last time that they were written.
+/// Signals of one entity, and their values at the steps that are not yet written.
 #[derive(Clone, Debug)]
 pub struct Topic {
-    /// The entity under `signals`.
+    /// Name of the entity under `signals`.
     pub name: String,
     /// Its series, in the order of the table of signals.
     pub signals: Vec<Signal>,
-    /// Row by row.
+    /// Buffered values, row by row.
     values: Vec<f64>,
 }
 
 impl Topic {
-    /// All signals by topic.
+    /// Groups all signals by topic.
     pub fn all(signals: Vec<Signal>, charts: &[Chart]) -> Vec<Self> {
         let mut topics: Vec<Self> = Vec::new();
         for signal in signals {
@@ -65,12 +65,12 @@ impl Topic {
         topics
     }
 
-    /// Where it is in the recording.
+    /// Path of the entity in the recording.
     pub fn path(&self, root: &EntityPath) -> EntityPath {
         under(root, &format!("signals/{}", self.name))
     }
 
-    /// Names, colours and widths of its series.
+    /// Writes names, colours and widths of the series.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -89,12 +89,12 @@ impl Topic {
         store.fixed(&self.path(root), &style)
     }
 
-    /// One more row.
+    /// Adds a row with the values of a frame.
     pub fn push(&mut self, frame: &Frame) {
         self.values.extend(self.signals.iter().map(|signal| signal.value(frame)));
     }
 
-    /// Writes the rows since the last time, at the instants of a clock.
+    /// Writes the buffered rows at the instants of a clock.
     ///
     /// # Errors
     /// If they cannot be written.

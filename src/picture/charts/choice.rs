@@ -1,4 +1,4 @@
-//! What a person chose to see in plots: [`Choice`], plain data; and the [`Plot`]s that come of it.
+//! The user's choice of plots and curves ([`Choice`], plain data), and the resulting [`Plot`]s.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,24 +8,24 @@ use super::{Chart, PLAIN, charts};
 use crate::session::scenario::Scenario;
 use crate::simulation::signals::Signal;
 
-/// The most plots that a person adds, and the most curves added to one.
-const MOST: usize = 24;
+/// Maximum number of plots that the user adds, and of curves added to one plot.
+const MAX_ADDED: usize = 24;
 
-/// What a person chose to see in plots.
+/// The user's choice of plots and curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choice {
-    /// The time that all plots show, s; none follows the run.
+    /// Time interval that all plots show, s; `None` follows the run.
     pub range: Option<[f64; 2]>,
-    /// What the curves come to in that time stands below each plot.
+    /// Whether statistics of the curves in that interval are shown below each plot.
     pub statistics: bool,
-    /// Plots of one's own, by name.
+    /// Names of the plots that the user added.
     pub own: Vec<String>,
-    /// What was changed about a plot, by its name.
+    /// Changes of plots, by name of the plot.
     pub changes: BTreeMap<String, Changes>,
 }
 
-/// What was changed about one plot.
+/// The user's changes of one plot.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Changes {
@@ -33,41 +33,41 @@ pub struct Changes {
     pub added: Vec<String>,
     /// Paths of curves that are switched off.
     pub off: BTreeSet<String>,
-    /// The path of the signal that it is drawn over in place of time.
+    /// Path of the signal on the horizontal axis; `None` for time.
     pub against: Option<String>,
-    /// The values that it shows; none shows all of them.
+    /// Bounds of the vertical axis; `None` shows all values.
     pub values: Option<[f64; 2]>,
-    /// It is put away.
+    /// Whether the plot is closed.
     pub closed: bool,
 }
 
-/// What can be changed.
+/// A change of the choice.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
     /// Switches a plot's curve on or off.
     Show(String, String, bool),
-    /// A plot of its own for a signal.
+    /// Adds a plot for a signal.
     Plot(String),
-    /// One more curve in a plot.
+    /// Adds a curve to a plot.
     Add(String, String),
-    /// Takes a curve that was added out of its plot.
+    /// Removes an added curve from its plot.
     Remove(String, String),
-    /// Draws a plot over a signal, or over time.
+    /// Sets the signal on the horizontal axis of a plot; `None` for time.
     Against(String, Option<String>),
-    /// The values that a plot shows; none shows all of them.
+    /// Sets the bounds of the vertical axis of a plot; `None` shows all values.
     Values(String, Option<[f64; 2]>),
-    /// Puts a plot away: one of one's own for good.
+    /// Closes a plot; a plot that the user added is deleted.
     Close(String),
-    /// Brings all plots back that were put away.
+    /// Reopens all closed plots.
     Reopen,
-    /// The time to show, s; none follows the run.
+    /// Sets the time interval, s; `None` follows the run.
     Range(Option<[f64; 2]>),
-    /// Shows or hides what curves come to.
+    /// Shows or hides the statistics of the curves.
     Statistics(bool),
 }
 
 impl Choice {
-    /// Changes it.
+    /// Applies a change.
     pub fn change(&mut self, change: Change) {
         match change {
             Change::Show(plot, path, on) => {
@@ -80,7 +80,7 @@ impl Choice {
             }
             Change::Plot(path) => {
                 let free = |name: &String| !self.own.contains(name);
-                let name = (1..=MOST).map(|i| format!("plot {i}")).find(free);
+                let name = (1..=MAX_ADDED).map(|i| format!("plot {i}")).find(free);
                 if let Some(name) = name {
                     self.changes.insert(name.clone(), Changes { added: vec![path], ..Changes::default() });
                     self.own.push(name);
@@ -89,7 +89,7 @@ impl Choice {
             Change::Add(plot, path) => {
                 let changes = self.changes.entry(plot).or_default();
                 changes.off.remove(&path);
-                if !changes.added.contains(&path) && changes.added.len() < MOST {
+                if !changes.added.contains(&path) && changes.added.len() < MAX_ADDED {
                     changes.added.push(path);
                 }
             }
@@ -119,11 +119,11 @@ impl Choice {
             }
             Change::Statistics(shown) => self.statistics = shown,
         }
-        // What is as it was need not be remembered.
+        // Entries without any change are dropped.
         self.changes.retain(|_, changes| *changes != Changes::default());
     }
 
-    /// The plots of a scenario, in the order in which they stand; `pins` where the forces of pins are switched on.
+    /// Returns the plots of a scenario in order of display; `pins`: pin forces are switched on.
     pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal], pins: bool) -> Vec<Plot<'a>> {
         let none = Changes::default();
         let of = |name: &str| self.changes.get(name).unwrap_or(&none);
@@ -134,50 +134,50 @@ impl Choice {
             let chart = Chart { centred: false, least: 0.0, ..PLAIN };
             Plot::of(name, chart, true, of(name), signals)
         });
-        // Of a plot of one's own nothing is left where the machine has none of its signals.
+        // An added plot is omitted if the machine has none of its signals.
         known.chain(own.filter(|plot| !plot.curves.is_empty())).collect()
     }
 
-    /// How many plots are put away.
+    /// Number of closed plots.
     pub fn closed(&self) -> usize {
         self.changes.values().filter(|changes| changes.closed).count()
     }
 }
 
-/// A plot as it is to be drawn.
+/// A plot to be drawn.
 #[derive(Clone, Debug)]
 pub struct Plot<'a> {
-    /// What the choice calls it.
+    /// Name in the [`Choice`].
     pub name: String,
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// The chart that it is, or one that holds nothing.
+    /// Chart of the table, or a chart without signals.
     pub chart: Chart,
-    /// A person made it.
+    /// Whether the user added the plot.
     pub own: bool,
-    /// Its curves, those that are off too.
+    /// All curves, including those that are switched off.
     pub curves: Vec<Curve<'a>>,
-    /// What it is drawn over in place of time.
+    /// Signal on the horizontal axis; `None` for time.
     pub against: Option<&'a Signal>,
-    /// The values that it shows; none shows all of them.
+    /// Bounds of the vertical axis; `None` shows all values.
     pub values: Option<[f64; 2]>,
 }
 
 /// A curve of a plot.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve<'a> {
-    /// What it shows.
+    /// Signal on the vertical axis.
     pub signal: &'a Signal,
-    /// It is switched on.
+    /// Whether the curve is switched on.
     pub on: bool,
-    /// A person added it.
+    /// Whether the user added the curve.
     pub added: bool,
-    /// What its SI values are multiplied by.
+    /// Factor from SI values to displayed values.
     pub times: f64,
 }
 
 impl Curve<'_> {
-    /// The unit of its values.
+    /// Returns the unit of the displayed values; empty if dimensionless.
     pub fn unit(&self) -> String {
         match (self.times == 1.0, self.signal.unit) {
             (_, "1") => String::new(),
@@ -212,7 +212,7 @@ impl<'a> Plot<'a> {
         Self { name: name.into(), title, chart, own, curves, against, values: changes.values }
     }
 
-    /// What stands above it.
+    /// Returns the title, with the symbol of the horizontal axis unless that is time.
     pub fn heading(&self) -> String {
         match self.against {
             Some(across) => format!("{} against {}", self.title, across.symbol),
@@ -225,7 +225,7 @@ impl<'a> Plot<'a> {
         self.curves.iter().filter(|curve| curve.on)
     }
 
-    /// The units of its values, each once.
+    /// Returns the units of the values, each once, separated by commas.
     pub fn unit(&self) -> String {
         if !self.own && !self.curves.iter().any(|curve| curve.added) {
             return self.chart.unit.into();

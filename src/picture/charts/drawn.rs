@@ -1,4 +1,4 @@
-//! What a plot's curves come to in a range of time: [`Drawn`], made when samples, range or choice change.
+//! The curves of a plot in a time interval ([`Drawn`]), recomputed when samples, interval or choice change.
 
 use super::choice::Plot;
 use crate::study::samples::Samples;
@@ -7,31 +7,37 @@ use crate::study::series::Statistics;
 /// A curve's points, in the units of its plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Which of the plot's curves.
+    /// Index of the curve in the plot.
     pub curve: usize,
-    /// Which run is laid over; none for the session's own.
+    /// Index of the overlaid run; `None` for the run of the session.
     pub run: Option<usize>,
-    /// Over time, s, or over the other signal.
+    /// Points (x, y), where x is time, s, or the value of the signal on the horizontal axis.
     pub points: Vec<[f64; 2]>,
 }
 
 /// The curves of a plot, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
-    /// Runs that are laid over first, then the session's own.
+    /// Lines of overlaid runs first, then those of the session's run.
     pub lines: Vec<Line>,
-    /// What it spans: time, s, or the values of the other signal.
+    /// Bounds of the horizontal axis: time, s, or the values of the signal on that axis.
     pub x: [f64; 2],
-    /// What its values span.
+    /// Bounds of the vertical axis.
     pub y: [f64; 2],
-    /// What they span where all of them are shown.
+    /// Bounds of the vertical axis that show all values.
     pub all: [f64; 2],
-    /// What each curve comes to, if that is asked for; as many as the plot has curves.
+    /// Statistics of each curve of the plot; empty unless requested.
     pub statistics: Vec<Option<Statistics>>,
 }
 
 impl Drawn {
-    /// Of a plot, in so many columns of pixels.
+    /// Computes the curves of a plot.
+    ///
+    /// * `samples`: the run of the session.
+    /// * `others`: overlaid runs with their indices.
+    /// * `shown`: time interval, s.
+    /// * `columns`: width, pixels.
+    /// * `statistics`: whether statistics are computed.
     pub fn of(
         plot: &Plot<'_>,
         samples: &Samples,
@@ -41,7 +47,7 @@ impl Drawn {
         statistics: bool,
     ) -> Self {
         let runs = others.iter().map(|(i, run)| (Some(*i), *run)).chain([(None, samples)]);
-        let mut drawn = Self { lines: Vec::new(), x: shown, y: NONE, all: NONE, statistics: Vec::new() };
+        let mut drawn = Self { lines: Vec::new(), x: shown, y: EMPTY, all: EMPTY, statistics: Vec::new() };
         let mut across = [f64::INFINITY, f64::NEG_INFINITY];
         for (run, samples) in runs {
             for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
@@ -74,32 +80,32 @@ impl Drawn {
             let curves = plot.curves.iter();
             drawn.statistics = curves.map(|c| of(&c.signal.path).map(|s| scaled(s, c.times))).collect();
         }
-        drawn.all = room(plot, drawn.y);
+        drawn.all = rounded_bounds(plot, drawn.y);
         drawn.y = plot.values.unwrap_or(drawn.all);
         if plot.against.is_some() {
-            drawn.x = apart(across);
+            drawn.x = with_margin(across);
         }
         drawn
     }
 
-    /// The smallest difference of its values that is told apart in words: less than can be seen.
+    /// Returns the resolution with which values are written: less than the eye resolves on the vertical axis.
     pub fn finest(&self) -> f64 {
         2e-4 * (self.y[1] - self.y[0])
     }
 }
 
-/// Of no values.
-const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+/// Bounds of an empty set of values.
+const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 fn widen(bounds: &mut [f64; 2], [low, high]: [f64; 2]) {
     *bounds = [bounds[0].min(low), bounds[1].max(high)];
 }
 
-/// Rounded bounds about values, with some room.
-fn room(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
+/// Returns rounded bounds of values, with a margin.
+fn rounded_bounds(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     let mut chart = plot.chart;
     if chart.least == 0.0 {
-        // A signal of one's own is as small as it is.
+        // A plot that the user added has no minimum range; 0.1 % of its largest value takes its place.
         let most = low.abs().max(high.abs());
         chart.least = if most.is_finite() && most > 0.0 { 1e-3 * most } else { 1.0 };
     }
@@ -108,8 +114,8 @@ fn room(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     [low - margin, high + margin]
 }
 
-/// Bounds with some room.
-fn apart([low, high]: [f64; 2]) -> [f64; 2] {
+/// Returns bounds with a margin, which are never equal.
+fn with_margin([low, high]: [f64; 2]) -> [f64; 2] {
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
     }

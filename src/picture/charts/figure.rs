@@ -1,5 +1,5 @@
-//! A plot as plain data to be painted: lines, words and dots at places in points. The window paints it, and files of
-//! pictures are written from it.
+//! A plot as plain graphic items (lines, text and dots, coordinates in points). The window paints them, and picture
+//! files are written from them.
 
 use super::choice::Plot;
 use super::colour;
@@ -10,147 +10,149 @@ use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::simulation::frame::{Frame, Peaks};
 
-/// Something to paint.
+/// A graphic item; coordinates and lengths in points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// A line through points.
     Line {
-        /// Where it goes.
+        /// Vertices.
         points: Vec<[f32; 2]>,
-        /// How thick it is.
+        /// Width.
         width: f32,
-        /// Its colour.
+        /// Colour.
         colour: Rgba,
-        /// Lengths of its dashes and of the gaps between them; none where it has no gaps.
+        /// Lengths of dashes and gaps; `None` for a solid line.
         dash: Option<[f32; 2]>,
-        /// Nothing of it is seen outside the axes.
+        /// Whether the line is clipped to the axes.
         inside: bool,
     },
-    /// Words on one line.
+    /// A line of text.
     Text {
-        /// Where they stand.
+        /// Anchor point.
         at: [f32; 2],
-        /// How they stand there: from 0, on the right of and below it, to 1, on its left and above.
+        /// Position of the anchor point within the text: 0 is its left and top, 1 its right and bottom.
         anchor: [f32; 2],
-        /// The words.
+        /// Pieces of text, from left to right.
         words: Vec<Words>,
     },
-    /// A dot.
+    /// A filled disc.
     Dot {
-        /// Where it is.
+        /// Centre.
         at: [f32; 2],
-        /// Its radius.
+        /// Radius.
         radius: f32,
-        /// Its colour.
+        /// Colour.
         colour: Rgba,
     },
-    /// A rectangle.
+    /// A filled rectangle.
     Area {
-        /// Its left, top, right and bottom.
+        /// Left, top, right and bottom.
         sides: [f32; 4],
-        /// Its colour.
+        /// Colour.
         colour: Rgba,
     },
 }
 
-/// Words of one look.
+/// A piece of text of one size, weight and colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
     /// The text.
     pub text: String,
-    /// Size of the type.
+    /// Font size.
     pub size: f32,
-    /// Bold type.
+    /// Whether the font is bold.
     pub bold: bool,
-    /// Colour of the type.
+    /// Colour of the text.
     pub colour: Rgba,
 }
 
-/// Where values stand: a rectangle, and what it spans.
+/// The axes of a plot: a rectangle, and the intervals of values along its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
     /// Left, top, right and bottom.
     pub sides: [f32; 4],
-    /// From left to right.
+    /// Interval from left to right.
     pub x: [f64; 2],
-    /// From bottom to top.
+    /// Interval from bottom to top.
     pub y: [f64; 2],
 }
 
-/// Room on the left for the numbers of the axis.
+/// Width of the margin for the tick labels of the vertical axis, points.
 pub const LEFT: f32 = 42.0;
-/// Room below for those of time.
+/// Height of the margin for the tick labels of the horizontal axis, points.
 pub const BELOW: f32 = 15.0;
 
 impl Axes {
-    /// In a rectangle that also holds the numbers.
+    /// Returns axes inside a rectangle (left, top, right, bottom) that also holds the tick labels.
     pub fn within([left, top, right, bottom]: [f32; 4], drawn: &Drawn) -> Self {
         Self { sides: [left + LEFT, top, right - 2.0, bottom - BELOW], x: drawn.x, y: drawn.y }
     }
 
-    /// Where a point stands.
+    /// Maps a point (x, y) of values to the screen, points.
     pub fn place(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         let [left, top, right, bottom] = self.sides.map(f64::from);
         let across = (x - self.x[0]) / (self.x[1] - self.x[0]);
         let up = (y - self.y[0]) / (self.y[1] - self.y[0]);
-        // What is far outside stays outside.
+        // Clamped far outside the axes, so that coordinates fit an f32.
         [left + across * (right - left), bottom + up * (top - bottom)].map(|p| p.clamp(-1e5, 1e5) as f32)
     }
 
-    /// The value of y at a place.
+    /// Returns the value of y at a vertical coordinate, points.
     pub fn y_at(&self, place: f32) -> f64 {
         let [_, top, _, bottom] = self.sides;
         self.y[0] + f64::from((place - bottom) / (top - bottom)) * (self.y[1] - self.y[0])
     }
 
-    /// The value of x at a place.
+    /// Returns the value of x at a horizontal coordinate, points.
     pub fn x_at(&self, place: f32) -> f64 {
         let [left, _, right, _] = self.sides;
         self.x[0] + f64::from((place - left) / (right - left)) * (self.x[1] - self.x[0])
     }
 }
 
-/// What a plot is drawn with.
+/// Colours and instants with which a plot is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
-    /// Its colours.
+    /// Colours.
     pub palette: &'a Palette,
-    /// The largest values of the run, by which reactions are red or green.
+    /// Largest values of the run, which decide whether reactions are red or green.
     pub peaks: &'a Peaks,
-    /// The instant on display.
+    /// Frame on display.
     pub now: &'a Frame,
-    /// The one at the second cursor.
+    /// Frame at the second cursor.
     pub mark: Option<&'a Frame>,
-    /// The one under the pointer.
+    /// Frame under the pointer.
     pub hover: Option<&'a Frame>,
 }
 
-/// How a curve is drawn: its colour, and dashes where another of the plot has that colour already.
+/// Returns the colour and the dash of a curve; curves are dashed if an earlier curve of the plot has the same colour.
 pub fn pen(plot: &Plot<'_>, curve: usize, look: &Look<'_>) -> (Rgba, Option<[f32; 2]>) {
     let tone = |i: usize| colour(plot.curves[i].signal, look.palette, look.peaks);
     let same = (0..curve).filter(|i| tone(*i) == tone(curve)).count();
     (tone(curve), [None, Some([6.0, 3.0]), Some([1.5, 2.5]), Some([10.0, 3.0])][same % 4])
 }
 
-/// Dashes and opacity of the lines of a run that is laid over. Runs differ by these, because colour says what is drawn.
+/// Returns the dash and the opacity of the lines of an overlaid run. Runs do not differ by colour, because the colour
+/// stands for the signal.
 pub fn dashes(run: usize) -> (Option<[f32; 2]>, f32) {
     let styles = [[7.0, 4.2], [1.2, 4.0], [3.5, 2.1], [14.0, 8.4], [1.2, 7.0]];
     (styles.get(run % 6).copied(), if run >= 6 { 0.45 } else { 0.7 })
 }
 
-const SMALL: f32 = 10.0;
-/// So far off a curve nobody sees, points.
-const UNSEEN: f32 = 0.1;
+/// Font size of tick labels, points.
+const TICK_SIZE_PT: f32 = 10.0;
+/// Tolerance of the simplification of curves, points.
+const THINNING_TOLERANCE_PT: f32 = 0.1;
 
-/// Axes, curves and cursors.
+/// Returns the items of axes, curves and cursors.
 pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
     let p = look.palette;
     let [left, top, right, bottom] = axes.sides;
-    // Words last: what is inside the axes is painted in one go.
+    // Text last, so that all clipped items follow each other.
     let (mut items, mut words) = (Vec::new(), Vec::new());
-    let small = |text: String| vec![Words { text, size: SMALL, bold: false, colour: p.dim }];
+    let small = |text: String| vec![Words { text, size: TICK_SIZE_PT, bold: false, colour: p.dim }];
     let line = |points: Vec<[f32; 2]>, width, colour, dash| Item::Line { points, width, colour, dash, inside: true };
-    // As many values as have room, and two at least.
+    // As many tick values as fit the height, and at least two.
     let room = ((bottom - top) / 24.0).clamp(2.0, 9.0).floor() as u8;
     let round = |count: u8| spaced(axes.y[0], axes.y[1], f64::from(count));
     let (values, step) =
@@ -173,14 +175,14 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
         let text = at_step(*value, step);
         let text = if unit.is_empty() { text } else { format!("{text} {unit}") };
         items.push(line(vec![[x, bottom], [x, bottom + 3.0]], 1.0, p.line, None));
-        // The outermost stay inside.
+        // The last label is right-aligned, to stay inside the rectangle.
         let anchor = if x > right - 14.0 { 1.0 } else { 0.5 };
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
         words.push(Item::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
     for run in &drawn.lines {
         let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();
-        let points = thinned(&points, UNSEEN);
+        let points = thinned(&points, THINNING_TOLERANCE_PT);
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
@@ -196,7 +198,8 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
     items
 }
 
-/// The present instant, the second cursor and the pointer: upright lines over time, dots over another signal.
+/// Returns the marks of the displayed instant, the second cursor and the pointer: vertical lines if the horizontal axis
+/// is time, otherwise dots.
 fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
     let p = look.palette;
     let [_, top, _, bottom] = axes.sides;
@@ -215,7 +218,7 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
                 let at = [against.value(frame), curve.times * curve.signal.value(frame)];
-                // Of values that are not shown there is no dot.
+                // No dot for values outside the vertical axis.
                 let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
                 seen.then(|| Item::Dot { at: axes.place(at), radius: 3.5, colour: tone })
             })),
@@ -227,18 +230,18 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
 /// A picture of a plot, with its title.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Width and height.
+    /// Width and height, points.
     pub size: [f32; 2],
-    /// Behind everything.
+    /// Background colour.
     pub background: Rgba,
-    /// Where its values stand.
+    /// Axes of the plot.
     pub axes: Axes,
-    /// What to paint, in this order.
+    /// Items in order of painting.
     pub items: Vec<Item>,
 }
 
 impl Figure {
-    /// Of a plot, with its title, units, and its curves by symbol.
+    /// Returns the picture of a plot, with its title, its units and the symbols of its curves; `size` in points.
     pub fn of(plot: &Plot<'_>, drawn: &Drawn, size: [f32; 2], look: &Look<'_>) -> Self {
         let p = look.palette;
         let [width, height] = size;

@@ -1,63 +1,64 @@
-//! Which time plots show, and how it is moved: [`Extent`].
+//! The time interval that plots show, with zoom and pan: [`Extent`].
 
 use serde::{Deserialize, Serialize};
 
-/// The longest stretch of time that is shown unasked, s.
-const WINDOW: f64 = 12.0;
-/// The shortest of those of a run whose end is not known, s.
-const OPEN_WINDOW: f64 = 4.0;
-/// The shortest that is shown at all, s.
-const SHORTEST: f64 = 1e-5;
+/// Maximum length of the usual interval, s.
+const MAX_USUAL_S: f64 = 12.0;
+/// Minimum length of the usual interval of a run whose end is unknown, s.
+const MIN_OPEN_USUAL_S: f64 = 4.0;
+/// Minimum length of any interval, s.
+const MIN_LENGTH_S: f64 = 1e-5;
 
-/// How much time there is to show.
+/// The time intervals of a run. A choice of `None` stands for the usual interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extent {
-    /// From the start to the end of the run, s.
+    /// Interval from the start to the end of the run, s.
     pub whole: [f64; 2],
-    /// What is shown unasked, s: all of a short run, of a long one what lies around the present instant.
+    /// Interval shown by default, s: all of a short run, or the surroundings of the displayed instant of a long run.
     pub usual: [f64; 2],
 }
 
 impl Extent {
-    /// Of a run that ends at a time and of which an instant is shown, both s.
+    /// Returns the intervals of a run that ends at `end`; `now` is the displayed instant, both s.
     pub fn of(end: f64, now: f64) -> Self {
-        Self::within(WINDOW, end, now)
+        Self::within(MAX_USUAL_S, end, now)
     }
 
-    /// Of a run whose end is not known, up to which a time has passed, and of which an instant is shown; `planned` is how
-    /// long it was to take; all s. Unasked a stretch of one length is shown, so that curves move on and are not squeezed.
+    /// Returns the intervals of a run whose end is unknown. `planned` is the planned duration, `end` the time that has
+    /// passed and `now` the displayed instant, all s. The usual interval has a constant length, so that curves scroll
+    /// instead of shrinking.
     pub fn open_ended(planned: f64, end: f64, now: f64) -> Self {
-        let window = planned.clamp(OPEN_WINDOW, WINDOW);
+        let window = planned.clamp(MIN_OPEN_USUAL_S, MAX_USUAL_S);
         Self::within(window, end.max(window), now)
     }
 
     fn within(window: f64, end: f64, now: f64) -> Self {
-        let end = end.max(SHORTEST);
+        let end = end.max(MIN_LENGTH_S);
         let to = end.min((now + 0.5 * window).max(window));
         Self { whole: [0.0, end], usual: [(to - window).max(0.0), to] }
     }
 
-    /// What is shown where a person chose a range, or none.
+    /// Returns the interval to show for a choice of the user.
     pub fn shown(&self, chosen: Option<[f64; 2]>) -> [f64; 2] {
         let [from, to] = chosen.unwrap_or(self.usual);
-        // A range that was chosen of a longer run.
+        // An interval chosen for a longer run may lie beyond the end.
         if from < self.whole[1] && to > from { [from, to] } else { self.usual }
     }
 
-    /// Whether a range shows all there is.
+    /// Whether an interval contains the whole run.
     pub fn is_all(&self, [from, to]: [f64; 2]) -> bool {
         from <= self.whole[0] + 1e-9 && to >= self.whole[1] - 1e-9
     }
 
-    /// The choice that shows all; a second time, the usual one.
+    /// Toggles between the whole run and the usual interval; returns the new choice.
     pub fn all(&self, chosen: Option<[f64; 2]>) -> Option<[f64; 2]> {
         (chosen != Some(self.whole) && self.usual != self.whole).then_some(self.whole)
     }
 
-    /// A choice a few times as close, `factor` of them, about a time that stays where it is.
+    /// Returns the choice that magnifies the interval `shown` by `factor`; the time `about`, s, keeps its place.
     pub fn zoomed(&self, shown: [f64; 2], about: f64, factor: f64) -> Option<[f64; 2]> {
         let (now, most) = (shown[1] - shown[0], self.whole[1] - self.whole[0]);
-        let length = (now / factor.max(1e-6)).clamp(SHORTEST.min(most), most);
+        let length = (now / factor.max(1e-6)).clamp(MIN_LENGTH_S.min(most), most);
         if length >= most * (1.0 - 1e-9) {
             return (self.usual != self.whole).then_some(self.whole);
         }
@@ -66,15 +67,15 @@ impl Extent {
         Some(self.inside([from, from + length]))
     }
 
-    /// A choice that is moved by a time, s, as far as there is something to show.
+    /// Returns an interval shifted by a time, s, and limited to the run.
     pub fn panned(&self, [from, to]: [f64; 2], by: f64) -> [f64; 2] {
         self.inside([from + by, to + by])
     }
 
-    /// The choice from one time to another, in whichever order, s; none where they are too close to mean it.
+    /// Returns the interval between two times, s, in any order; `None` if they are closer than the minimum length.
     pub fn between(&self, a: f64, b: f64) -> Option<[f64; 2]> {
         let [from, to] = [a.min(b).max(self.whole[0]), a.max(b).min(self.whole[1])];
-        (to - from >= SHORTEST).then_some([from, to])
+        (to - from >= MIN_LENGTH_S).then_some([from, to])
     }
 
     fn inside(&self, [from, to]: [f64; 2]) -> [f64; 2] {

@@ -1,8 +1,8 @@
-//! Signals found by what a person types: part of a name, a symbol, a path or a unit.
+//! Text search for signals by parts of a name, symbol, path or unit.
 
 use crate::simulation::signals::Signal;
 
-/// The signals that answer to every word, the best answers first; all of them where nothing is typed.
+/// Returns the signals that match every word of `text`, best matches first; all signals if `text` is empty.
 pub fn search<'a>(signals: &'a [Signal], text: &str) -> Vec<&'a Signal> {
     let text = plain(text);
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -10,18 +10,19 @@ pub fn search<'a>(signals: &'a [Signal], text: &str) -> Vec<&'a Signal> {
         .iter()
         .filter_map(|signal| {
             let fields = [&signal.symbol, &signal.label, &signal.path, signal.unit].map(plain);
-            let score = |word: &str| fields.iter().map(|field| answer(field, word)).max().filter(|score| *score > 0);
+            let score =
+                |word: &str| fields.iter().map(|field| match_score(field, word)).max().filter(|score| *score > 0);
             let sum = words.iter().map(|word| score(word)).sum::<Option<u32>>()?;
             Some((sum, signal))
         })
         .collect();
-    // Of equal answers the order of the table counts.
+    // Stable sort: signals of equal score keep the order of the table.
     found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
     found.into_iter().map(|(_, signal)| signal).collect()
 }
 
-/// How well a field answers to a word; 0 for not at all.
-fn answer(field: &str, word: &str) -> u32 {
+/// Returns how well a field matches a word, from 0 (no match) to 100.
+fn match_score(field: &str, word: &str) -> u32 {
     let parts = || field.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|part| !part.is_empty());
     if field == word {
         return 100;
@@ -35,7 +36,7 @@ fn answer(field: &str, word: &str) -> u32 {
     if field.contains(word) {
         return 40;
     }
-    // Letters left out, but not the first: trq for torque.
+    // Abbreviations that omit letters, but not the first: trq for torque.
     let skips = |part: &str| {
         let mut letters = part.chars();
         part.starts_with(&word[..word.chars().next().map_or(0, char::len_utf8)])
@@ -44,7 +45,7 @@ fn answer(field: &str, word: &str) -> u32 {
     if word.chars().count() > 1 && parts().any(skips) { 20 } else { 0 }
 }
 
-/// As it can be typed on any keyboard: τ₁ is tau1, q̈ is qddot.
+/// Transliterates text to plain letters in lower case: τ₁ is tau1, q̈ is qddot.
 fn plain(text: impl AsRef<str>) -> String {
     let mut plain = String::new();
     for c in text.as_ref().chars().flat_map(char::to_lowercase) {
@@ -60,7 +61,7 @@ fn plain(text: impl AsRef<str>) -> String {
             '−' => plain.push('-'),
             '\u{307}' => plain.push_str("dot"),
             '\u{308}' => plain.push_str("ddot"),
-            // Letters that come with their dots: ẋ, ẏ.
+            // Letters that include their dot: ẋ, ẏ.
             'ẋ' => plain.push_str("xdot"),
             'ẏ' => plain.push_str("ydot"),
             c => plain.push(c),

@@ -1,11 +1,11 @@
-//! A figure as SVG: lines and words, nothing else.
+//! Writes a figure as SVG.
 
 use std::fmt::Write as _;
 
 use super::figure::{Figure, Item, Words};
 use crate::picture::scene::Rgba;
 
-/// The file's text.
+/// Returns the text of the SVG file.
 pub fn svg(figure: &Figure) -> String {
     let [width, height] = figure.size;
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
@@ -28,7 +28,7 @@ fn rect([left, top, right, bottom]: [f32; 4], paint: &str) -> String {
     format!("<rect x=\"{left:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{height:.2}\"{paint}/>")
 }
 
-/// A colour, for `fill` or `stroke`.
+/// Returns the attributes of a colour; `what` is `fill` or `stroke`.
 fn paint(what: &str, [r, g, b, a]: Rgba) -> String {
     let [r, g, b] = [r, g, b].map(|x| (255.0 * x).round() as u8);
     let opacity = if a < 1.0 { format!(" {what}-opacity=\"{a:.3}\"") } else { String::new() };
@@ -56,7 +56,7 @@ fn element(item: &Item) -> String {
         Item::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
         Item::Text { at: [x, y], anchor: [across, down], words } => {
             let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));
-            // The base line, from the top of the type.
+            // The baseline, 0.93 of the font size below the top of the text; a line is 1.16 of the font size high.
             let base = y + size * (0.93 - 1.16 * down);
             let anchor = if *across == 0.0 {
                 "start"

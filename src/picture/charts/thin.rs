@@ -1,9 +1,10 @@
-//! Fewer points for the same line, as far as an eye can tell.
+//! Simplification of polylines within a tolerance.
 
-/// The points of a line that those left out lie no further than `tolerance` from; the first and the last are kept.
+/// Returns a simplified polyline; no omitted point is further than `tolerance` from it. The first and last points are
+/// kept.
 ///
-/// From each point that is kept a wedge of directions narrows with every point passed by, to those whose ray comes
-/// close enough to all of them; a point outside it, or one that turns back, begins the next stretch. One pass.
+/// Each kept point has a wedge of directions whose rays pass all later points within the tolerance. The wedge narrows
+/// with every point. A point outside the wedge, or one that turns back, starts the next segment. Takes one pass.
 pub fn thinned(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
     let mut kept = Vec::with_capacity(points.len().min(256));
     let Some((&first, rest)) = points.split_first() else { return kept };
@@ -24,34 +25,34 @@ pub fn thinned(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
     kept
 }
 
-/// Directions from a point, as angles from the first of them.
+/// Wedge of directions from a point; angles, rad, are relative to the direction of the first later point.
 struct Wedge {
     from: [f32; 2],
-    middle: Option<[f32; 2]>,
-    least: f32,
-    most: f32,
+    reference: Option<[f32; 2]>,
+    min_angle: f32,
+    max_angle: f32,
     furthest: f32,
 }
 
 impl Wedge {
     fn from(from: [f32; 2]) -> Self {
-        Self { from, middle: None, least: -1.0, most: 1.0, furthest: 0.0 }
+        Self { from, reference: None, min_angle: -1.0, max_angle: 1.0, furthest: 0.0 }
     }
 
-    /// Whether a line from here to the point passes by all before it.
+    /// Whether the segment to the point passes all earlier points within the tolerance; if so, narrows the wedge.
     fn takes(&mut self, [x, y]: [f32; 2], tolerance: f32) -> bool {
         let [x, y] = [x - self.from[0], y - self.from[1]];
         let away = x.hypot(y);
         if away <= tolerance {
-            // As good as here, unless the line has been further off.
+            // The point coincides with the start within the tolerance; accepted unless the line has been further off.
             return self.furthest <= tolerance;
         }
-        let [along, up] = *self.middle.get_or_insert([x / away, y / away]);
+        let [along, up] = *self.reference.get_or_insert([x / away, y / away]);
         let angle = f32::atan2(along * y - up * x, along * x + up * y);
-        let taken = angle >= self.least && angle <= self.most && away >= self.furthest - tolerance;
+        let taken = angle >= self.min_angle && angle <= self.max_angle && away >= self.furthest - tolerance;
         if taken {
             let half = (tolerance / away).asin();
-            (self.least, self.most) = (self.least.max(angle - half), self.most.min(angle + half));
+            (self.min_angle, self.max_angle) = (self.min_angle.max(angle - half), self.max_angle.min(angle + half));
             self.furthest = self.furthest.max(away);
         }
         taken

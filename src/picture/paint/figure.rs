@@ -1,4 +1,4 @@
-//! The items of a figure painted by egui.
+//! Paints the items of a figure with egui.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
@@ -6,7 +6,7 @@ use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use super::{bold, colour, plain};
 use crate::picture::charts::figure::{Axes, Figure, Item};
 
-/// Paints items whose places are counted from an origin.
+/// Paints items; their coordinates are relative to `origin`.
 pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[Item]) {
     let [left, top, right, bottom] = axes.sides;
     let at = |[x, y]: [f32; 2]| origin + vec2(x, y);
@@ -43,7 +43,7 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[Item]) {
     }
 }
 
-/// Paints a whole figure, its background too.
+/// Paints a whole figure with its background.
 pub fn whole(painter: &Painter, figure: &Figure) {
     let [width, height] = figure.size;
     painter.rect_filled(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height)), 0.0, colour(figure.background));

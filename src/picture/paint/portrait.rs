@@ -1,5 +1,5 @@
-//! A small picture of a machine from straight above, in a pose that shows its links apart. Kinematics alone makes it, so
-//! it costs next to nothing.
+//! A small picture of a machine, seen from above in a pose that separates its links. It needs kinematics only, so it is
+//! cheap.
 
 use std::f64::consts::PI;
 
@@ -11,37 +11,38 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::picture::scene::linkage::{Flat, Linkage};
 use crate::picture::scene::palette::{Palette, mix};
 
-/// How far into its limits each relative angle is bent: not half, where arms with limits on both sides are straight.
-const BENT: f64 = 0.62;
-/// An angle that no limit bounds, and that between drives that no angle joins, rad.
-const FREE: f64 = 1.0;
-/// Into how many parts a half turn is divided to find how the machine fills the picture best.
-const TURNS: usize = 24;
-/// Width over height that it is turned for.
-const SHAPE: f64 = 2.2;
+/// Position of each relative angle between its limits, from 0 to 1. At 0.5, arms with symmetric limits would be
+/// straight.
+const BEND_FRACTION: f64 = 0.62;
+/// Relative angle without limits, and angle between drives that no relative angle connects, rad.
+const FREE_ANGLE_RAD: f64 = 1.0;
+/// Number of orientations, over half a turn, that are tried to fill the picture best.
+const ORIENTATIONS: usize = 24;
+/// Ratio of width to height of the picture for which the orientation is chosen.
+const ASPECT_RATIO: f64 = 2.2;
 
-/// What is painted, m.
+/// A machine to be painted; lengths in m.
 pub struct Portrait {
     links: Vec<Flat>,
     pins: Vec<Vector>,
     tip: Vector,
     foot: f64,
-    /// Least and greatest coordinates.
+    /// Lower left and upper right corner of the bounding box.
     bounds: [Vector; 2],
 }
 
 impl Portrait {
-    /// Of a machine.
+    /// Computes the picture of a machine.
     pub fn of(machine: &Machine) -> Self {
         let linkage = Linkage::of(machine);
         let bent = bent(machine);
         let turned = |i: usize| {
-            let turn = PI * i as f64 / TURNS as f64;
+            let turn = PI * i as f64 / ORIENTATIONS as f64;
             let q: Vec<f64> = bent.iter().map(|q| q + turn).collect();
             Self::posed(machine, &linkage, &q)
         };
         let first = turned(0);
-        (1..TURNS).map(turned).fold(first, |best, other| if other.size() < best.size() { other } else { best })
+        (1..ORIENTATIONS).map(turned).fold(first, |best, other| if other.size() < best.size() { other } else { best })
     }
 
     fn posed(machine: &Machine, linkage: &Linkage, q: &[f64]) -> Self {
@@ -61,10 +62,10 @@ impl Portrait {
         Self { links, pins, tip, foot, bounds }
     }
 
-    /// The height of the picture that holds it, m.
+    /// Height of the smallest picture of the given ratio that holds the machine, m.
     fn size(&self) -> f64 {
         let size = self.bounds[1] - self.bounds[0];
-        size.im.max(size.re / SHAPE)
+        size.im.max(size.re / ASPECT_RATIO)
     }
 
     /// Paints it into a rectangle.
@@ -86,7 +87,7 @@ impl Portrait {
             let tone = p.drive(link.drive);
             let ends = link.ends.map(spot);
             let radius = long(link.radius).max(1.4);
-            // An edge in the colour of the ground keeps links apart that cross.
+            // An edge in the background colour separates links that cross.
             painter.line_segment(ends, Stroke::new(2.0 * radius + 1.6, colour(p.background)));
             painter.line_segment(ends, Stroke::new(2.0 * radius, colour(tone)));
             ends.into_iter().for_each(|end| disc(end, radius, tone));
@@ -102,19 +103,19 @@ impl Portrait {
     }
 }
 
-/// Drive angles, rad, with every relative angle well within its limits.
+/// Returns drive angles, rad, for which every relative angle is well within its limits.
 fn bent(machine: &Machine) -> Vec<f64> {
     let mut q = vec![None; machine.drives()];
     for start in 0..q.len() {
         if q[start].is_none() {
-            q[start] = Some(if start == 0 { 0.0 } else { q[start - 1].unwrap_or_default() + FREE });
+            q[start] = Some(if start == 0 { 0.0 } else { q[start - 1].unwrap_or_default() + FREE_ANGLE_RAD });
         }
-        // Each round fixes what hangs on what is known.
+        // Each pass sets the drives that are connected to known drives.
         for _ in 0..q.len() {
             for angle in machine.angles() {
                 let (low, high) = (*angle.limits.start(), *angle.limits.end());
                 let bounded = low.is_finite() && high.is_finite();
-                let by = if bounded { low + BENT * (high - low) } else { FREE } - angle.offset;
+                let by = if bounded { low + BEND_FRACTION * (high - low) } else { FREE_ANGLE_RAD } - angle.offset;
                 match (q[angle.from], q[angle.to]) {
                     (Some(from), None) => q[angle.to] = Some(from + by),
                     (None, Some(to)) => q[angle.from] = Some(to - by),

@@ -1,4 +1,4 @@
-//! The words of a scene: beside their points, in view, and clear of each other.
+//! Placement of the labels of a scene: beside their points, in view, and without overlaps.
 
 use std::sync::Arc;
 
@@ -9,49 +9,52 @@ use crate::picture::scene::camera::Camera;
 use crate::picture::scene::palette::faded;
 use crate::picture::scene::{Anchor, Label, Scene};
 
-/// How far words give way to others, up or down, points.
-const MOST: f32 = 36.0;
-/// Words that would go this little past the edge move back without going below, points.
-const SLIGHT: f32 = 4.0;
-/// How near words come to an edge of the view to the left or right.
-const EDGE: f32 = 8.0;
+/// Maximum vertical shift that avoids an overlap, points.
+const MAX_SHIFT_PT: f32 = 36.0;
+/// Labels that exceed the right edge by at most this much are shifted left only, not down as well, points.
+const MAX_OVERHANG_PT: f32 = 4.0;
+/// Minimum distance of centred labels from the left and right edges of the view, points.
+const EDGE_DISTANCE_PT: f32 = 8.0;
 
-/// Where words go that have no room up or down: sideways too, points.
-const SIDEWAYS: [f32; 7] = [0.0, -30.0, 30.0, -60.0, 60.0, -100.0, 100.0];
-const STEP: f32 = 7.0;
-const STEPS: i32 = 12;
-/// How far words keep off the middle of a bar, points.
-const BAR: f32 = 7.0;
-/// How far words keep off a target's ring, points.
-const RING: f32 = 15.0;
-/// What it costs to lie on other words, out of view, and on a bar, in points that words would rather move.
-const ON_WORDS: f32 = 1e4;
-const OUT_OF_VIEW: f32 = 1e3;
-const ON_BAR: f32 = 60.0;
+/// Horizontal shifts that are tried if no vertical shift suffices, points.
+const SIDEWAYS_SHIFTS_PT: [f32; 7] = [0.0, -30.0, 30.0, -60.0, 60.0, -100.0, 100.0];
+/// Spacing of the vertical shifts that are tried with them, points.
+const SHIFT_STEP_PT: f32 = 7.0;
+/// Number of these vertical shifts, upwards and downwards each.
+const SHIFT_STEPS: i32 = 12;
+/// Minimum distance of labels from the centre line of a bar, points.
+const BAR_DISTANCE_PT: f32 = 7.0;
+/// Half the side of the square about the target's ring that labels avoid, points.
+const RING_DISTANCE_PT: f32 = 15.0;
+/// Costs of overlapping another label, leaving the view, and covering a bar, in points of shift.
+const OVERLAP_COST: f32 = 1e4;
+const OUT_OF_VIEW_COST: f32 = 1e3;
+const BAR_COST: f32 = 60.0;
 
-/// Words about one point; they stay together.
+/// Labels of one point and name; they are shifted together.
 struct Group<'a> {
-    /// Who gives way to whom: the higher to the lower.
+    /// Labels of higher rank avoid those of lower rank.
     rank: u8,
     words: Vec<(&'a Label, Arc<Galley>, Rect)>,
 }
 
-/// The higher ones give way to the lower ones, and those of the highest rank are left out where there is no room.
+/// Returns the rank of a label. Labels of higher rank avoid those of lower rank, and those of [`OPTIONAL_RANK`] are
+/// omitted if there is no space.
 fn rank(name: &str) -> u8 {
     match name {
-        // The pointer takes hold of points by their names.
+        // The user drags these points by their labels.
         "plan/names" | "b_ring/name" | "payload/mass" => 0,
         "target/words" => 1,
         "reaction/words" => 2,
         "axes/titles" | "axes/now/words" => 4,
-        "axes/words" => LEFT_OUT,
+        "axes/words" => OPTIONAL_RANK,
         _ => 3,
     }
 }
 
-const LEFT_OUT: u8 = 5;
+const OPTIONAL_RANK: u8 = 5;
 
-/// A scene with its words over the whole surface, without input.
+/// Paints a scene with its labels over the whole surface, without input.
 pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
@@ -60,7 +63,7 @@ pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     });
 }
 
-/// Paints the scene's labels, clear of what is taken already.
+/// Paints the labels of the scene outside the rectangles `taken`.
 pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
     let painter = ui.painter().with_clip_rect(spot.rect);
     for (label, galley, place) in placed(&painter, spot, scene, taken) {
@@ -68,7 +71,7 @@ pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
     }
 }
 
-/// Where the scene's labels stand: those that have room.
+/// Returns the rectangles of those labels of the scene that have space outside the rectangles `taken`.
 pub fn placed<'a>(
     painter: &Painter,
     spot: &Spot,
@@ -92,7 +95,7 @@ pub fn placed<'a>(
     let mut taken = taken.to_vec();
     let mut ring = scene.markers.iter().find(|marker| marker.name == "target").and_then(|ring| {
         let at = spot.screen(ring.at.map(f64::from))?;
-        Some(Rect::from_center_size(at, Vec2::splat(2.0 * RING)))
+        Some(Rect::from_center_size(at, Vec2::splat(2.0 * RING_DISTANCE_PT)))
     });
     let end = |at: [f32; 3]| spot.screen(at.map(f64::from));
     let bars: Vec<[Pos2; 2]> = scene.bars.iter().filter_map(|[a, b]| Some([end(*a)?, end(*b)?])).collect();
@@ -100,11 +103,11 @@ pub fn placed<'a>(
     for (at, mut group) in groups {
         group.place(at, spot.rect);
         let boxes: Vec<Rect> = group.words.iter().map(|(.., place)| *place).collect();
-        // Of what is out of view nothing is said, rather than half of it.
+        // Labels of points out of view are omitted unless they are fully visible.
         if !spot.rect.contains(at) && !boxes.iter().all(|place| spot.rect.contains_rect(*place)) {
             continue;
         }
-        // Names stand where the pointer finds them; all else keeps off the ring.
+        // Labels by which points are dragged may cover the ring of the target; all others avoid it.
         if group.rank > 0 {
             taken.extend(ring.take());
         }
@@ -112,14 +115,14 @@ pub fn placed<'a>(
             let mut moved = boxes.iter().map(|place| place.translate(vec2(0.0, shift)));
             moved.all(|place| spot.rect.contains_rect(place) && !on_bars(place, &bars))
         };
-        let shift = match clear(&boxes, &taken, spot.rect) {
+        let shift = match clearing_shift(&boxes, &taken, spot.rect) {
             Some(shift) if group.rank == 0 || is_good(shift) => vec2(0.0, shift),
             None if group.rank == 0 => Vec2::ZERO,
-            None if group.rank == LEFT_OUT => continue,
-            Some(shift) if group.rank == LEFT_OUT => vec2(0.0, shift),
-            _ => best(&boxes, &taken, &bars, spot.rect),
+            None if group.rank == OPTIONAL_RANK => continue,
+            Some(shift) if group.rank == OPTIONAL_RANK => vec2(0.0, shift),
+            _ => cheapest_shift(&boxes, &taken, &bars, spot.rect),
         };
-        // What would be seen in part only beside what covers it is left out.
+        // Labels that would be partly covered are omitted.
         let hidden = |place: &Rect| covered.iter().any(|cover| cover.intersects(place.translate(shift)));
         if group.rank > 1 && boxes.iter().any(hidden) {
             continue;
@@ -134,22 +137,22 @@ pub fn placed<'a>(
 }
 
 fn write(painter: &Painter, scene: &Scene, label: &Label, galley: Arc<Galley>, place: Rect) {
-    // A faint plate keeps words legible over bars and curves.
+    // A translucent background keeps the text legible over bars and curves.
     painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
     painter.galley(place.min, galley, colour(label.colour));
 }
 
 impl Group<'_> {
-    /// Beside their point, moved back into view where they would be cut off.
+    /// Places the labels beside their point `at`, moved into the view if they would be clipped.
     fn place(&mut self, at: Pos2, view: Rect) {
         let widest = self.words.iter().map(|(_, galley, _)| galley.size().x).fold(0.0, f32::max);
         for (label, galley, place) in &mut self.words {
             let [x, y] = label.offset;
             let over = at.x + x + widest - (view.right() - 10.0);
             let (align, shift) = match label.anchor {
-                // Below what they would cover.
+                // Lower, so as not to cover the point.
                 Anchor::Left if over > 0.0 && view.contains(at) => {
-                    (Align2::LEFT_CENTER, vec2(x - over, if over > SLIGHT { y + 30.0 } else { y }))
+                    (Align2::LEFT_CENTER, vec2(x - over, if over > MAX_OVERHANG_PT { y + 30.0 } else { y }))
                 }
                 Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
                 Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
@@ -157,19 +160,19 @@ impl Group<'_> {
             };
             *place = align.anchor_size(at + shift, galley.size());
             if label.anchor == Anchor::Centre && view.contains(at) {
-                let over =
-                    (place.right() - view.right() + EDGE).max(0.0) - (view.left() + EDGE - place.left()).max(0.0);
+                let over = (place.right() - view.right() + EDGE_DISTANCE_PT).max(0.0)
+                    - (view.left() + EDGE_DISTANCE_PT - place.left()).max(0.0);
                 *place = place.translate(vec2(-over, 0.0));
             }
         }
     }
 }
 
-/// Whether a place lies on a bar.
+/// Whether a rectangle touches a bar.
 fn on_bars(place: Rect, bars: &[[Pos2; 2]]) -> bool {
-    let place = place.expand(BAR);
+    let place = place.expand(BAR_DISTANCE_PT);
     bars.iter().any(|[a, b]| {
-        // What of the line from one end to the other is within both pairs of sides.
+        // Interval of the segment, from 0 to 1, that lies between both pairs of sides.
         let along = *b - *a;
         let mut within = [0.0_f32, 1.0];
         for (from, by, low, high) in
@@ -188,24 +191,27 @@ fn on_bars(place: Rect, bars: &[[Pos2; 2]]) -> bool {
     })
 }
 
-/// By how much boxes go up, down or aside so that they lie on nothing, or on as little as can be.
-fn best(boxes: &[Rect], taken: &[Rect], bars: &[[Pos2; 2]], view: Rect) -> Vec2 {
+/// Returns the shift of lowest cost, points: overlaps, parts out of view and covered bars cost more than distance.
+fn cheapest_shift(boxes: &[Rect], taken: &[Rect], bars: &[[Pos2; 2]], view: Rect) -> Vec2 {
     let cost = |shift: Vec2| {
         let each = boxes.iter().map(|place| {
             let place = place.translate(shift);
             let words = taken.iter().filter(|other| place.intersects(**other)).count() as f32;
-            let out = if view.contains_rect(place) { 0.0 } else { OUT_OF_VIEW };
-            words * ON_WORDS + out + if on_bars(place, bars) { ON_BAR } else { 0.0 }
+            let out = if view.contains_rect(place) { 0.0 } else { OUT_OF_VIEW_COST };
+            words * OVERLAP_COST + out + if on_bars(place, bars) { BAR_COST } else { 0.0 }
         });
         each.sum::<f32>() + shift.y.abs() + 0.6 * shift.x.abs()
     };
-    let ways = SIDEWAYS.iter().flat_map(|x| (-STEPS..=STEPS).map(move |i| vec2(*x, i as f32 * STEP)));
+    let ways = SIDEWAYS_SHIFTS_PT
+        .iter()
+        .flat_map(|x| (-SHIFT_STEPS..=SHIFT_STEPS).map(move |i| vec2(*x, i as f32 * SHIFT_STEP_PT)));
     let cheapest = ways.map(|shift| (cost(shift), shift)).min_by(|a, b| a.0.total_cmp(&b.0));
     cheapest.map_or(Vec2::ZERO, |(_, shift)| shift)
 }
 
-/// By how much boxes have to go up or down, at least, to be clear of what is taken and in view; none if there is no way.
-fn clear(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
+/// Returns the smallest vertical shift, points, for which the boxes are in view and overlap nothing of `taken`; `None`
+/// if there is none within [`MAX_SHIFT_PT`].
+fn clearing_shift(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
     let moved = |shift: f32| boxes.iter().map(move |place| place.translate(vec2(0.0, shift)));
     let is_free = |shift: f32| {
         let in_view = |place: Rect| place.top() >= view.top() && place.bottom() <= view.bottom();
@@ -219,7 +225,7 @@ fn clear(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
     let beside = pairs.filter(|(place, other)| place.x_range().intersects(other.x_range()));
     let shifts =
         beside.flat_map(|(place, other)| [other.bottom() - place.top() + 1.0, other.top() - place.bottom() - 1.0]);
-    let mut shifts: Vec<f32> = shifts.filter(|shift| shift.abs() <= MOST).collect();
+    let mut shifts: Vec<f32> = shifts.filter(|shift| shift.abs() <= MAX_SHIFT_PT).collect();
     shifts.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     shifts.into_iter().find(|shift| is_free(*shift))
 }

@@ -1,4 +1,4 @@
-//! The textures a scene is drawn into, and how that picture is copied onto the target of a window or figure.
+//! The textures that a scene is drawn into, and the copy of that picture to the target of a window or figure.
 
 use super::kit::{COLOUR, DEPTH};
 use super::shader::{Shader, embedded};
@@ -6,7 +6,7 @@ use super::shader::{Shader, embedded};
 /// Multisampled colour and depth, the picture they resolve to, and the picture's bind group.
 pub(super) struct Target {
     pub(super) size_px: [u32; 2],
-    /// None where a pixel has one sample only.
+    /// Multisampled colour; `None` with one sample per pixel.
     pub(super) samples: Option<wgpu::TextureView>,
     pub(super) depth: wgpu::TextureView,
     pub(super) picture: wgpu::Texture,
@@ -21,7 +21,7 @@ pub(super) struct Blit {
 }
 
 impl Blit {
-    /// `format` is that of the pass the picture goes to, which has one sample and no depth.
+    /// Creates the copy pipeline; `format` is the format of the target pass, which has one sample and no depth.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,

@@ -1,4 +1,4 @@
-//! What the renderers share: the frame's uniform, the pipeline they agree on, and lists of things in GPU memory.
+//! Shared parts of the renderers: the uniform of the frame, the pipeline layout, and lists of items in GPU memory.
 
 use std::num::NonZeroU64;
 
@@ -10,7 +10,7 @@ use super::shader::twin;
 use super::view::View;
 use crate::picture::scene::Rgba;
 
-/// Colours are sRGB values, written and blended as they are.
+/// Colours are sRGB values, which are written and blended without conversion.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -26,7 +26,7 @@ twin! {
     }
 }
 
-/// Writes through reused staging memory, so that a steady state allocates nothing.
+/// Writes buffers through reused staging memory; without growth nothing is allocated.
 pub(super) struct Upload<'a> {
     pub(super) device: &'a wgpu::Device,
     pub(super) encoder: &'a mut wgpu::CommandEncoder,
@@ -53,13 +53,13 @@ pub(super) struct Kit {
 /// The usual entry points.
 pub(super) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
 
-/// What makes one pipeline differ from the others.
+/// The parameters in which pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'a str,
     pub(super) module: &'a wgpu::ShaderModule,
     /// Entry points of the vertex and the fragment stage.
     pub(super) entries: [&'a str; 2],
-    /// What the shader leaves open.
+    /// Values of the shader's override constants.
     pub(super) constants: &'a [(&'a str, f64)],
     pub(super) vertices: Option<wgpu::VertexBufferLayout<'a>>,
     pub(super) topology: wgpu::PrimitiveTopology,
@@ -71,7 +71,7 @@ pub(super) struct Recipe<'a> {
 }
 
 impl<'a> Recipe<'a> {
-    /// Four corners an instance, which the shader finds by itself; they write no depth.
+    /// Returns the recipe of a quad per instance, whose corners the vertex shader computes; it writes no depth.
     pub(super) fn quads(
         label: &'a str,
         module: &'a wgpu::ShaderModule,
@@ -135,7 +135,7 @@ impl Kit {
         upload.write(&self.frame, bytemuck::bytes_of(&frame));
     }
 
-    /// A way to build pipelines that outlives this borrow.
+    /// Returns a function that builds pipelines; it does not borrow from `self`.
     pub(super) fn pipelines(&self) -> impl Fn(&wgpu::Device, Recipe) -> wgpu::RenderPipeline + Send + Sync + 'static {
         let (layout, samples) = (self.pipeline_layout.clone(), self.quality.samples());
         move |device, recipe| {
@@ -186,7 +186,7 @@ impl Kit {
     }
 }
 
-/// A list of `T` that a shader reads by instance: group 1, binding 0. Its memory grows and never shrinks.
+/// A list of `T` that a shader reads by instance: group 1, binding 0. The GPU buffer grows and never shrinks.
 pub(super) struct List<T> {
     pub(super) items: Vec<T>,
     label: &'static str,
@@ -215,7 +215,7 @@ impl<T: Pod> List<T> {
         (buffer, group)
     }
 
-    /// Copies the items over; those past the device's largest binding are dropped.
+    /// Copies the items to the GPU; items beyond the largest binding of the device are dropped.
     pub(super) fn upload(&mut self, kit: &Kit, upload: &mut Upload) {
         let most = upload.device.limits().max_storage_buffer_binding_size as usize / size_of::<T>();
         self.items.truncate(most);

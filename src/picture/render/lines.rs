@@ -6,7 +6,7 @@ use super::view::View;
 use crate::picture::scene::{IN_PLACE, Line, Scene, place};
 
 twin! {
-    /// One segment, with the vertices beside it.
+    /// One segment from `a` to `b`, with the vertices before and after it.
     struct Segment {
         a: [f32; 3],
         width: f32,
@@ -27,10 +27,10 @@ struct Pipelines {
 
 pub(super) struct Lines {
     shader: Shader<Pipelines>,
-    /// Depth-tested ones first.
+    /// Segments; the depth-tested ones come first.
     list: List<Segment>,
     tested: u32,
-    /// The vertices of the line in hand, without repetitions.
+    /// Vertices of the current line, without repetitions.
     path: Vec<[f32; 3]>,
 }
 

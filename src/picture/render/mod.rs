@@ -1,11 +1,11 @@
 //! Draws a [`Scene`] on the GPU: in a window's pass, or into a picture ([`offscreen`]).
 //!
-//! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
-//! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
-//! areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by egui,
-//! which has the fonts.
+//! The renderer depends on scenes, not on mechanics. It draws into its own multisampled target and copies the result
+//! pixel for pixel, so a window, a test and a recording show the same picture. Drawing order: background, opaque
+//! solids, areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by
+//! egui, which has the fonts.
 //!
-//! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
+//! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended without conversion.
 
 mod blit;
 mod kit;
@@ -27,7 +27,7 @@ use crate::picture::scene::Scene;
 use kit::Upload;
 use wgpu::util::StagingBelt;
 
-/// Pipelines and memory for drawing one scene at a time.
+/// Pipelines and buffers that draw one scene at a time.
 pub struct Renderer {
     kit: kit::Kit,
     belt: StagingBelt,
@@ -41,12 +41,13 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// `target_format` is that of the pass [`paint`](Self::paint) draws in; the pass has one sample and no depth.
+    /// Creates a renderer of fine quality. `target_format` is the format of the pass that [`paint`](Self::paint) draws
+    /// in; the pass has one sample and no depth.
     pub fn new(device: &wgpu::Device, target_format: wgpu::TextureFormat) -> Self {
         Self::drawing(device, target_format, Quality::Fine)
     }
 
-    /// The same, as finely as asked for.
+    /// Creates a renderer of the given quality; see [`new`](Self::new).
     pub fn drawing(device: &wgpu::Device, target_format: wgpu::TextureFormat, quality: Quality) -> Self {
         let kit = kit::Kit::new(device, quality);
         Self {
@@ -62,8 +63,8 @@ impl Renderer {
         }
     }
 
-    /// Records the drawing of `scene` into the renderer's own picture. The encoder must be submitted before the next
-    /// call. Sizes are brought into 1..=the device's largest texture.
+    /// Records the commands that draw `scene` into the renderer's own picture. The encoder must be submitted before the
+    /// next call. Sizes are clamped to 1..=the largest texture size of the device.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -91,7 +92,7 @@ impl Renderer {
 
         let [r, g, b, a] = scene.background.map(f64::from);
         let background = wgpu::Color { r: r * a, g: g * a, b: b * a, a };
-        // Of several samples only what they come to is kept.
+        // With several samples per pixel, only the resolved picture is stored.
         let store = if target.samples.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -121,7 +122,7 @@ impl Renderer {
         self.belt.finish_and_recall_on_submit(encoder);
     }
 
-    /// Copies the picture into a pass's viewport, pixel for pixel where the sizes agree.
+    /// Copies the picture into the viewport of a pass, pixel for pixel if the sizes agree.
     pub fn paint(&self, pass: &mut wgpu::RenderPass) {
         if let Some(target) = &self.target {
             self.blit.paint(pass, target);
@@ -134,7 +135,7 @@ impl Renderer {
     }
 }
 
-/// The layouts of all structs that Rust and WGSL share.
+/// Memory layouts of all structs that Rust and WGSL share.
 pub const TWINS: [Twin; 7] = [
     kit::Frame::TWIN,
     solids::Vertex::TWIN,

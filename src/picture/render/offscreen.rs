@@ -1,48 +1,48 @@
-//! Pictures without a window.
+//! Rendering without a window.
 
 use std::io;
 
 use super::{Renderer, View};
 use crate::picture::scene::Scene;
 
-/// Why there is nothing to draw with.
+/// Reasons why no GPU adapter can be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoAdapter {
-    /// No driver offers a GPU, or software in its place.
+    /// No driver offers a GPU or a software adapter.
     #[error(
         "no GPU adapter found; one in software is enough and comes, on Debian and its kin, with `apt-get install \
          mesa-vulkan-drivers` ({0})"
     )]
     Missing(String),
-    /// There is one, but it cannot do what is needed.
+    /// There is an adapter, but it lacks a required feature.
     #[error(
         "GPU adapter {name} cannot be used: {why}; a software one comes with `apt-get install mesa-vulkan-drivers`"
     )]
     Unfit {
-        /// What the driver calls it.
+        /// Name of the adapter.
         name: String,
-        /// What it lacks.
+        /// Message of the failed device request.
         why: String,
     },
 }
 
-/// Why a picture could not be made.
+/// Reasons why a picture cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoPicture {
-    /// Sides run from 1 pixel to what the GPU holds.
+    /// A side is 0 pixels, or longer than the largest texture.
     #[error("a picture of {width} x {height} pixels cannot be drawn: sides run from 1 to {most}")]
     Size {
-        /// Width asked for.
+        /// Requested width.
         width: u32,
-        /// Height asked for.
+        /// Requested height.
         height: u32,
-        /// Longest side.
+        /// Longest possible side.
         most: u32,
     },
-    /// Only four-byte colours are read back.
+    /// Format other than 8-bit RGBA or BGRA.
     #[error("pixels of format {0} cannot be read back: Rgba8Unorm or Bgra8Unorm is expected")]
     Format(String),
-    /// The driver gave up.
+    /// The device was lost, or the pixels could not be mapped.
     #[error("the GPU was lost while a picture was read back: {0}")]
     Lost(String),
 }
@@ -50,11 +50,11 @@ pub enum NoPicture {
 /// Pixels in rows from the top: red, green, blue and straight alpha, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows of pixels.
+    /// Number of rows.
     pub height: u32,
-    /// 4 width height bytes.
+    /// `4 width height` bytes.
     pub rgba: Vec<u8>,
 }
 
@@ -84,7 +84,7 @@ impl Picture {
     }
 }
 
-/// A texture of a size in pixels that can be drawn on and read back.
+/// Creates a texture, size in pixels, that can be drawn on and read back.
 pub fn surface(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("canvas"),
@@ -98,20 +98,21 @@ pub fn surface(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::T
     })
 }
 
-/// A GPU without a window, and a renderer on it.
+/// A GPU device without a window, and a renderer on it.
 pub struct Gpu {
     adapter: wgpu::Adapter,
     device: wgpu::Device,
     queue: wgpu::Queue,
     renderer: Renderer,
-    /// Where textures are copied to be read; grows.
+    /// Buffer through which textures are read back; it grows.
     staging: Option<wgpu::Buffer>,
 }
 
 impl Gpu {
-    /// Takes the adapter that the system prefers.
+    /// Opens the adapter that the system prefers.
     pub fn new() -> Result<Self, NoAdapter> {
-        // Vulkan, Metal or DirectX 12: pictures are held to the byte, so no fallback that draws a little differently.
+        // Vulkan, Metal or DirectX 12. Tests compare pictures to the byte, so no fallback that draws slightly
+        // differently.
         let backends = wgpu::Backends::PRIMARY;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
@@ -125,7 +126,7 @@ impl Gpu {
         Ok(Self { adapter, device, queue, renderer, staging: None })
     }
 
-    /// What the driver calls itself.
+    /// Returns the name of the adapter.
     pub fn name(&self) -> String {
         self.adapter.get_info().name
     }
@@ -135,7 +136,7 @@ impl Gpu {
         &self.adapter
     }
 
-    /// The device, for drawing beside the scene.
+    /// The device, for other drawing than scenes.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
@@ -145,7 +146,7 @@ impl Gpu {
         &self.queue
     }
 
-    /// Draws a scene and waits for the pixels.
+    /// Draws a scene and waits for its pixels.
     pub fn picture(&mut self, scene: &Scene, view: &View) -> Result<Picture, NoPicture> {
         let ([width, height], most) = (view.size_px, self.device.limits().max_texture_dimension_2d);
         if width.min(height) == 0 || width.max(height) > most {
@@ -159,7 +160,7 @@ impl Gpu {
         texture.map_or(Err(NoPicture::Size { width, height, most }), |texture| self.readback(&texture))
     }
 
-    /// Waits for the pixels of any texture with usage `COPY_SRC`, four bytes a pixel, premultiplied alpha.
+    /// Reads back any texture with usage `COPY_SRC`, four bytes per pixel and premultiplied alpha.
     pub fn readback(&mut self, texture: &wgpu::Texture) -> Result<Picture, NoPicture> {
         use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb};
         let swap = match texture.format() {

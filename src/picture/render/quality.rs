@@ -1,17 +1,18 @@
-//! How finely a scene is drawn.
+//! Quality of drawing.
 
-/// How finely a scene is drawn. Where the processor draws, what moves is drawn in draft, and finely once it rests.
+/// Quality of drawing. In software rendering, scenes are drawn in draft quality while they change, and in fine quality
+/// once they rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Four samples a pixel.
+    /// Four samples per pixel.
     #[default]
     Fine,
-    /// One sample a pixel, and areas in larger cells.
+    /// One sample per pixel, and a coarser grid for areas.
     Draft,
 }
 
 impl Quality {
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub(super) fn samples(self) -> u32 {
         match self {
             Self::Fine => 4,
@@ -19,7 +20,7 @@ impl Quality {
         }
     }
 
-    /// Cells a side of an area's grid: in draft an edge of half a turn is half a pixel off.
+    /// Cells per side of the grid of an area. In draft quality, an edge of half a turn is half a pixel off.
     pub(super) fn cells(self) -> u16 {
         match self {
             Self::Fine => 64,

@@ -1,19 +1,19 @@
-//! Shaders: embedded in the binary, and in debug builds reloaded when their file changes.
+//! Shaders, embedded in the binary; debug builds reload them when their file changes.
 
 use std::ops::Deref;
 
-/// The layout of a struct that Rust and WGSL share; a test holds it against the shader.
+/// Memory layout of a struct that Rust and WGSL share; a test compares it with the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Twin {
-    /// Name, the same on both sides.
+    /// Name in Rust and in WGSL.
     pub name: &'static str,
     /// Size with padding, bytes.
     pub size: usize,
-    /// Names and offsets in bytes, in order. Padding begins with `_` and has no twin.
+    /// Names and offsets in bytes, in order. Names of padding begin with `_` and do not exist in WGSL.
     pub fields: &'static [(&'static str, usize)],
 }
 
-/// Defines a struct that is copied to the GPU byte by byte, and its layout.
+/// Defines a struct that is copied to the GPU byte by byte, with its [`Twin`].
 macro_rules! twin {
     ($(#[$doc:meta])* struct $name:ident { $($field:ident: $type:ty,)* }) => {
         $(#[$doc])*
@@ -31,7 +31,7 @@ macro_rules! twin {
 }
 pub(crate) use twin;
 
-/// The text of `shaders/NAME.wgsl`, as it was at build time.
+/// Expands to the name and the text at build time of `shaders/NAME.wgsl`.
 macro_rules! embedded {
     ($name:literal) => {
         ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")))
@@ -59,7 +59,7 @@ impl<P> Shader<P> {
         Self { pipelines }
     }
 
-    /// Takes up a changed file; where it does not validate, the last good pipelines stay and one line says why.
+    /// Reloads a changed file; if it does not validate, the last valid pipelines remain and one line says why.
     #[cfg(debug_assertions)]
     pub(crate) fn reload(&mut self, device: &wgpu::Device) {
         let Some(text) = self.watch.changed() else { return };
@@ -95,7 +95,7 @@ mod watch {
     use std::path::PathBuf;
     use std::time::{Duration, Instant, SystemTime};
 
-    /// Looks at a shader's file, at most twice a second.
+    /// Polls the file of a shader, at most twice a second.
     pub(super) struct Watch {
         pub(super) name: &'static str,
         path: PathBuf,
@@ -110,7 +110,7 @@ mod watch {
             Self { name, path, text: text.to_owned(), modified: None, looked: None }
         }
 
-        /// The new text, once, if it is not the last one. A missing file is no change: the binary may have moved.
+        /// Returns the text of the file once after each change. A missing file is no change: the binary may have moved.
         pub(super) fn changed(&mut self) -> Option<String> {
             if self.looked.is_some_and(|at| at.elapsed() < Duration::from_millis(500)) {
                 return None;

@@ -5,7 +5,7 @@ use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 
 twin! {
-    /// A shadow of a bar.
+    /// Shadow of a bar.
     struct Shadow {
         root: [f32; 2],
         tip: [f32; 2],

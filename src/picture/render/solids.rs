@@ -1,4 +1,4 @@
-//! Bars, joints and base: instanced meshes in a calm light.
+//! Bars, joints and base: instanced meshes with diffuse lighting.
 
 use std::mem::offset_of;
 use std::ops::Range;
@@ -21,7 +21,7 @@ twin! {
 }
 
 twin! {
-    /// A solid: where it is and what colour it has.
+    /// Pose and colour of a solid.
     struct Instance {
         world_from_mesh: [[f32; 4]; 4],
         colour: [f32; 4],
@@ -43,26 +43,26 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 2] = [
 
 struct Pipelines {
     opaque: wgpu::RenderPipeline,
-    /// A hairline of background around each opaque solid.
+    /// Thin outline in the background colour around each opaque solid.
     casing: wgpu::RenderPipeline,
-    /// Depth of the foremost translucent surface, so that a ghost shows one layer and not its own inside.
+    /// Depth of the nearest translucent surface, so that only that surface of a translucent solid is drawn.
     front: wgpu::RenderPipeline,
     translucent: wgpu::RenderPipeline,
-    /// Every layer of open surfaces, from both sides; they write no depth.
+    /// Open surfaces, all layers and both sides; they write no depth.
     shell: wgpu::RenderPipeline,
 }
 
 /// The meshes of a model in one pair of buffers.
 struct Meshes {
-    /// Held, so that another model cannot come to lie at the same address.
+    /// Kept alive, so that no other model can have the same address.
     model: Arc<Model>,
     vertices: wgpu::Buffer,
     triangles: wgpu::Buffer,
-    /// Each mesh's part of the index buffer, and its first vertex.
+    /// Index range and first vertex of each mesh.
     parts: Vec<(Range<u32>, i32)>,
 }
 
-/// Instances of one mesh that follow each other.
+/// Consecutive instances of one mesh.
 struct Run {
     mesh: usize,
     instances: Range<u32>,
@@ -72,14 +72,14 @@ pub(super) struct Solids {
     shader: Shader<Pipelines>,
     meshes: Option<Meshes>,
     list: List<Instance>,
-    /// Numbers of the solids to draw: opaque ones, shells, translucent ones, and by mesh.
+    /// Indices of the solids in drawing order: opaque, shells, translucent, and within these by mesh.
     order: Vec<usize>,
     runs: Vec<Run>,
     opaque_runs: usize,
     shell_runs: usize,
 }
 
-/// In which pass a solid is drawn.
+/// Drawing order of solids.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Layer {
     Opaque,
@@ -203,14 +203,14 @@ impl Solids {
 }
 
 impl Meshes {
-    /// Takes over the buffers of `old` where they are large enough.
+    /// Copies the meshes of a model to the GPU; reuses the buffers of `old` if they are large enough.
     fn new(device: &wgpu::Device, queue: &wgpu::Queue, model: &Arc<Model>, old: Option<Self>) -> Self {
         let (mut vertices, mut triangles, mut parts) = (Vec::new(), Vec::<[u32; 3]>::new(), Vec::new());
         for mesh in &model.meshes {
             let (first_vertex, first_index) = (vertices.len(), 3 * triangles.len() as u32);
             let corners = mesh.positions.iter().zip(&mesh.normals);
             vertices.extend(corners.map(|(&position, &normal)| Vertex { position, normal, ..Vertex::zeroed() }));
-            // A triangle that names a missing vertex would read another mesh's.
+            // A triangle with an index out of range would read the vertices of another mesh.
             let here = (vertices.len() - first_vertex) as u32;
             triangles.extend(mesh.triangles.iter().filter(|t| t.iter().all(|&k| k < here)));
             parts.push((first_index..3 * triangles.len() as u32, first_vertex as i32));

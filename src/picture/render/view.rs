@@ -1,6 +1,6 @@
-//! From where a scene is seen.
+//! Projection and size of a picture.
 
-/// From where a scene is seen, and how large.
+/// Projection and size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Clip space from world space, column-major, depth 0..1.
@@ -9,12 +9,12 @@ pub struct View {
     pub eye_direction: [f32; 3],
     /// Width and height, physical pixels.
     pub size_px: [u32; 2],
-    /// Physical pixels in a logical one: widths and radii in the scene are logical.
+    /// Physical pixels per logical pixel; widths and radii of the scene are in logical pixels.
     pub pixels_per_point: f32,
 }
 
 impl View {
-    /// Where a world point lies on the screen in physical pixels, y down; `None` at or behind the eye.
+    /// Projects a world point to the screen, physical pixels, y down; `None` at or behind the eye.
     pub fn project(&self, [x, y, z]: [f32; 3]) -> Option<[f32; 2]> {
         let m = &self.clip_from_world;
         let clip = |row: usize| m[0][row] * x + m[1][row] * y + m[2][row] * z + m[3][row];
@@ -23,7 +23,7 @@ impl View {
         (w > 0.0).then(|| [(0.5 + 0.5 * clip(0) / w) * width, (0.5 - 0.5 * clip(1) / w) * height])
     }
 
-    /// Distance on the screen, physical pixels; 0 where a point is behind the eye.
+    /// Distance of two points on the screen, physical pixels; 0 if one is behind the eye.
     pub(super) fn pixels_between(&self, a: [f32; 3], b: [f32; 3]) -> f32 {
         match (self.project(a), self.project(b)) {
             (Some(a), Some(b)) => (b[0] - a[0]).hypot(b[1] - a[1]),

@@ -7,7 +7,7 @@ use bytemuck::Zeroable as _;
 use wgpu::util::DeviceExt as _;
 
 twin! {
-    /// An area's coefficients; `u1`, `u2` are the columns of u.
+    /// Coefficients of an area; `u1` and `u2` are the columns of u.
     struct Area {
         c: [f32; 3],
         turn: f32,
@@ -31,7 +31,7 @@ twin! {
 pub(super) struct Workspace {
     shader: Shader<wgpu::RenderPipeline>,
     list: List<Area>,
-    /// Two triangles a cell: each vertex of the grid is evaluated once.
+    /// Vertex indices, two triangles per cell; each vertex of the grid is evaluated once.
     triangles: wgpu::Buffer,
     corners: u32,
 }
@@ -80,7 +80,7 @@ impl Workspace {
         self.list.items.extend(scene.areas.iter().map(|area| {
             let &scene::Area { name: _, c, u, v, a_min, a_max, turn, at: [x, y], z, colour, shade } = area;
             let [u1, u2] = [0, 1].map(|i| u.map(|u_k| u_k[i]));
-            // Without a shade the fill turns into itself.
+            // Without a shade, both ends of the colour scale are the colour of the area.
             let (shade, [empty, full], measure) =
                 shade.map_or((colour, [0.0, 1.0], 0), |s| (s.colour, [s.empty, s.full], s.measure as u32));
             Area { c, turn, u1, z, u2, x, v, y, a_min, a_max, colour, shade, full, empty, measure, ..Area::zeroed() }

@@ -1,47 +1,47 @@
-//! A box with three labelled axes: a faint grid on the walls that are behind, ticks on the edges that are in front.
+//! A box with three labelled axes: a grid on the rear walls, and ticks on the front edges.
 
 use super::palette::{Palette, faded};
 use super::{Anchor, Changes, Label, Line, Rgba, Scene};
 use crate::picture::numbers::signed;
 
-/// One direction of the box: what it shows and over which range.
+/// One axis of the box: its quantity and interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit: `b, rad`.
     pub title: &'static str,
     /// Colour of the title.
     pub colour: Rgba,
-    /// Where the box begins and ends, in the units of the scene.
+    /// Coordinates of both ends of the box, in the units of the scene.
     pub ends: [f64; 2],
-    /// The values that these ends stand for.
+    /// Values at these ends.
     pub values: [f64; 2],
-    /// Values are marked at multiples of this.
+    /// Spacing of the ticks; ticks are at multiples of this.
     pub step: f64,
-    /// Digits after the point.
+    /// Decimals of the tick labels.
     pub decimals: usize,
-    /// A value that is set off, and its colour.
+    /// Current value, which is highlighted, and its colour.
     pub now: Option<(f64, Rgba)>,
 }
 
-/// The mark of now on each axis.
+/// Names of the marks of the current values on the axes.
 const NOW: [&str; 3] = ["axes/now/1", "axes/now/2", "axes/now/3"];
 
-/// The most marks on one axis.
-const MARKS: usize = 40;
+/// Maximum number of ticks on an axis.
+const MAX_TICKS: usize = 40;
 
 impl Axis {
-    /// Where a value lies.
+    /// Returns the coordinate of a value in the scene.
     pub fn place(&self, value: f64) -> f64 {
         let share = (value - self.values[0]) / (self.values[1] - self.values[0]);
         self.ends[0] + share * (self.ends[1] - self.ends[0])
     }
 
-    /// The values to mark.
+    /// Returns the values of the ticks.
     pub fn marks(&self) -> impl Iterator<Item = f64> + use<> {
         let ([low, high], step) = (self.values, self.step);
         let slack = 1e-9 * step;
         let first = ((low - slack) / step).ceil();
-        (0..MARKS).map(move |i| (first + i as f64) * step).take_while(move |v| *v <= high + slack)
+        (0..MAX_TICKS).map(move |i| (first + i as f64) * step).take_while(move |v| *v <= high + slack)
     }
 
     fn length(&self) -> f64 {
@@ -49,12 +49,12 @@ impl Axis {
     }
 }
 
-/// A box as an eye in a direction sees it.
+/// A box seen from a direction.
 struct Sight<'a> {
     axes: &'a [Axis; 3],
-    /// Sides of the walls whose grids are seen: behind, behind, and floor or ceiling.
+    /// Coordinates of the three rear walls, which carry the grids; the third is floor or ceiling.
     back: [f64; 3],
-    /// The sides opposite.
+    /// Coordinates of the opposite walls.
     front: [f64; 3],
     right: [f64; 3],
     up: [f64; 3],
@@ -71,12 +71,13 @@ impl<'a> Sight<'a> {
         Self { axes, back: [0, 1, 2].map(|i| side(i, true)), front: [0, 1, 2].map(|i| side(i, false)), right, up }
     }
 
-    /// How far to the right on the screen.
+    /// Component of a point to the right on the screen.
     fn rightwards(&self, p: [f64; 3]) -> f64 {
         super::pointer::dot(self.right, p)
     }
 
-    /// The edge on which axis k is marked, with 0 for its own coordinate, and the way off the box.
+    /// Returns the edge that carries the ticks of axis k, with 0 as its own coordinate, and the direction out of the
+    /// box.
     fn edge(&self, k: usize) -> ([f64; 3], [f64; 3]) {
         let middle = [0, 1, 2].map(|i| 0.5 * (self.axes[i].ends[0] + self.axes[i].ends[1]));
         let mut at = match k {
@@ -89,12 +90,12 @@ impl<'a> Sight<'a> {
         };
         at[k] = 0.0;
         let mut out = [0, 1, 2].map(|i| if i == k { 0.0 } else { (at[i] - middle[i]) / self.axes[i].length() });
-        // Words stand beside the floor, not below it.
+        // Labels are placed beside the floor, not below it.
         out[2] *= if k == 2 { 0.0 } else { 0.6 };
         (at, out)
     }
 
-    /// A direction as a unit vector of the screen, y down.
+    /// Projects a direction to a unit vector of the screen, y down.
     fn on_screen(&self, out: [f64; 3]) -> [f64; 2] {
         let (x, y) = (super::pointer::dot(self.right, out), -super::pointer::dot(self.up, out));
         let length = x.hypot(y).max(1e-9);
@@ -102,12 +103,11 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Draws a box as seen from a direction, a unit vector from the scene towards the eye; it stands still, or slides
-/// along.
+/// Draws a box seen from `eye`, a unit vector from the scene towards the eye; `stands` says whether the box may change.
 pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: Changes) {
     let sight = Sight::new(axes, eye);
     let (mut grid, mut edges, mut ticks) = (Vec::new(), Vec::new(), Vec::new());
-    // Each wall by the axis it stands across: lines along one of its axes at the marks of the other.
+    // Each wall is numbered by its normal axis; grid lines run along one of its axes at the ticks of the other.
     for wall in 0..3 {
         for (across, along) in [((wall + 1) % 3, (wall + 2) % 3), ((wall + 2) % 3, (wall + 1) % 3)] {
             let ends_at = |place: f64| {
@@ -134,7 +134,7 @@ pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3
     scene.lines.splice(first..first, box_lines);
 }
 
-/// Marks, their values, the title and the value of now on the edge of axis k.
+/// Draws the ticks of axis k with their labels, the title and the current value.
 fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, sight: &Sight, k: usize, axis: &Axis) {
     let (edge, out) = sight.edge(k);
     let [dx, dy] = sight.on_screen(out);
@@ -154,7 +154,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     let upright = k == 2;
     for value in axis.marks() {
         ticks.push(tick(value, 0.012));
-        // The value of now takes the place of a mark.
+        // The label of the current value replaces a nearby tick label.
         let room = if upright { 0.07 } else { 0.062 };
         if axis.now.is_some_and(|(now, _)| (now - value).abs() < room * (axis.values[1] - axis.values[0])) {
             continue;
@@ -168,13 +168,13 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
         scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, 3), colour, 12.5));
     }
-    // The title stands over the upright axis, and beyond the far ends of the others.
+    // The title is above the vertical axis, and beyond the rear ends of the others.
     let (at, offset) = match upright {
         true => (place(axis.values[1], 0.0), [0.0, -18.0]),
         false => {
             let far = usize::from(sight.back[k] == axis.ends[1]);
             let beyond = axis.values[far] + 0.1 * (axis.values[far] - axis.values[1 - far]);
-            // Where the upright axis begins, its own marks need the room.
+            // At the foot of the vertical axis, its tick labels need the space.
             let shared = sight.edge(2).0[k] == sight.back[k];
             (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))
         }
@@ -182,15 +182,15 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
 }
 
-/// The range of `width`, about `home` where it can be, that holds a range with a `margin` to its ends; of a range that
-/// is wider, its lower part.
+/// Returns an interval of length `width` that contains the given interval with a `margin` on both sides, as near to
+/// centred on `home` as possible. If the given interval is too long, the result contains its lower part.
 pub fn covering([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
     let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);
     [middle - 0.5 * width, middle + 0.5 * width]
 }
 
-/// The range of `width` in which a value is shown: about `home` while the value keeps `margin` from its ends, else
-/// moved along with it, so that nothing ever jumps.
+/// Returns an interval of length `width` that contains a value. It is centred on `home` while the value is at least
+/// `margin` inside, otherwise it is shifted with the value; so it moves continuously.
 pub fn sliding(value: f64, home: f64, width: f64, margin: f64) -> [f64; 2] {
     let free = (0.5 * width - margin).max(0.0);
     let off = value - home;

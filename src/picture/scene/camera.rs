@@ -1,52 +1,53 @@
-//! From where the scene is seen: a flat view from above, or an orbit around a point. Pure values that know no window.
+//! Cameras: an orthographic view from above, or a perspective view that orbits a point. Plain values, independent of
+//! any window.
 
 use nalgebra::{Matrix4, Point3, Vector3};
 
-/// A flat or a spatial view.
+/// An orthographic or a perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Camera {
-    /// Straight down on the plane of motion.
+    /// Orthographic, straight down on the plane of motion.
     Flat(Flat),
-    /// In perspective, around a point.
+    /// In perspective, orbiting a point.
     Orbit(Orbit),
 }
 
-/// Straight down on the plane of motion.
+/// Orthographic camera that looks straight down on the plane of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flat {
-    /// Middle of the picture, m.
+    /// Point at the centre of the picture, m.
     pub centre: [f64; 2],
     /// Half the height of the picture, m.
     pub half_height: f64,
 }
 
-/// In perspective, around a point.
+/// Perspective camera that orbits a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// Middle of the picture, m.
+    /// Point at the centre of the picture, m.
     pub centre: [f64; 3],
-    /// Distance of the eye, m.
+    /// Distance of the eye from the centre, m.
     pub distance: f64,
-    /// Direction of the eye about z from −y, rad.
+    /// Azimuth of the eye about z, from −y, rad.
     pub yaw: f64,
-    /// Height of the eye over the plane, rad; π/2 is straight above.
+    /// Elevation of the eye over the plane, rad; π/2 is straight above.
     pub pitch: f64,
 }
 
-/// Field of view across the shorter side of the picture, rad.
-const FIELD: f64 = 0.6;
+/// Field of view over the shorter side of the picture, rad.
+const FIELD_OF_VIEW_RAD: f64 = 0.6;
 
 /// A line of sight: a point and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// m.
+    /// Point on the line, m.
     pub from: [f64; 3],
     /// Unit vector away from the eye.
     pub along: [f64; 3],
 }
 
 impl Ray {
-    /// Where it meets the plane at height z, m; `None` if it runs along it or away from it.
+    /// Returns the intersection (x, y) with the plane at height z, m; `None` if parallel or pointing away.
     pub fn at_height(&self, z: f64) -> Option<[f64; 2]> {
         let t = (z - self.from[2]) / self.along[2];
         (t.is_finite() && t > 0.0).then(|| [0, 1].map(|i| self.from[i] + t * self.along[i]))
@@ -54,17 +55,17 @@ impl Ray {
 }
 
 impl Camera {
-    /// A flat view that shows a circle about B, a little more to where the arm works.
+    /// Returns a flat view of an arm with the given reach, m; the centre is shifted from B towards the usual work area.
     pub fn flat(reach: f64) -> Self {
         Self::Flat(Flat { centre: [0.12 * reach, 0.28 * reach], half_height: 0.82 * reach })
     }
 
-    /// A view from the front and above.
+    /// Returns a view of an arm with the given reach, m, from the front and above.
     pub fn orbit(reach: f64) -> Self {
         Self::Orbit(Orbit { centre: [0.1 * reach, 0.2 * reach, 0.0], distance: 2.3 * reach, yaw: 0.45, pitch: 0.75 })
     }
 
-    /// Whether it looks straight down.
+    /// Whether the camera is orthographic from above.
     pub fn is_flat(&self) -> bool {
         matches!(self, Self::Flat(_))
     }
@@ -81,20 +82,20 @@ impl Camera {
         }
     }
 
-    /// Clip space from world space, depth 0..1, for a picture of the given width over height.
+    /// Returns the transformation from world to clip space, depth 0..1; `aspect` is the ratio of width to height.
     pub fn clip_from_world(&self, aspect: f64) -> [[f32; 4]; 4] {
         self.matrix(aspect).map(|x| x as f32).into()
     }
 
     fn matrix(&self, aspect: f64) -> Matrix4<f64> {
-        let aspect = sound(aspect);
+        let aspect = valid_aspect(aspect);
         let projection = match self {
             Self::Flat(f) => {
                 let (h, w) = (f.half_height, f.half_height * aspect);
                 Matrix4::new_orthographic(-w, w, -h, h, -10.0 * h, 10.0 * h)
             }
             Self::Orbit(o) => {
-                let field = 2.0 * ((0.5 * FIELD).tan() / aspect.min(1.0)).atan();
+                let field = 2.0 * ((0.5 * FIELD_OF_VIEW_RAD).tan() / aspect.min(1.0)).atan();
                 Matrix4::new_perspective(aspect, field, 0.02 * o.distance, 20.0 * o.distance)
             }
         };
@@ -113,13 +114,13 @@ impl Camera {
         }
     }
 
-    /// Where a point lies in the picture: 0..1 from the left and from the top; `None` behind the eye.
+    /// Projects a point, m, to the picture: 0..1 from the left and from the top; `None` behind the eye.
     pub fn project(&self, point: [f64; 3], aspect: f64) -> Option<[f64; 2]> {
         let clip = self.matrix(aspect) * Point3::from(point).to_homogeneous();
         (clip.w > 0.0).then(|| [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w])
     }
 
-    /// The line of sight through a place in the picture, 0..1 from the left and from the top.
+    /// Returns the line of sight through a point of the picture, 0..1 from the left and from the top.
     pub fn ray(&self, place: [f64; 2], aspect: f64) -> Option<Ray> {
         let inverse = self.matrix(aspect).try_inverse()?;
         let unproject = |depth: f64| {
@@ -131,15 +132,15 @@ impl Camera {
         Some(Ray { from: near.into(), along: along.into() })
     }
 
-    /// Size of a metre at the middle of the picture, as a share of the picture's height.
+    /// Size of a metre at the centre of the picture, as a fraction of the height of the picture.
     pub fn scale(&self, aspect: f64) -> f64 {
         match self {
             Self::Flat(f) => 0.5 / f.half_height,
-            Self::Orbit(o) => 0.5 * sound(aspect).min(1.0) / (o.distance * (0.5 * FIELD).tan()),
+            Self::Orbit(o) => 0.5 * valid_aspect(aspect).min(1.0) / (o.distance * (0.5 * FIELD_OF_VIEW_RAD).tan()),
         }
     }
 
-    /// Turns around the middle by angles, rad; a flat view does not turn.
+    /// Rotates about the centre by angles, rad; has no effect on a flat view.
     pub fn turn(&mut self, yaw: f64, pitch: f64) {
         if let Self::Orbit(o) = self {
             o.yaw = (o.yaw + yaw).rem_euclid(std::f64::consts::TAU);
@@ -147,7 +148,7 @@ impl Camera {
         }
     }
 
-    /// Shifts the picture by shares of its height, to the right and down.
+    /// Shifts the picture to the right and down, by fractions of its height.
     pub fn pan(&mut self, right: f64, down: f64, aspect: f64) {
         let metres = 1.0 / self.scale(aspect);
         match self {
@@ -164,7 +165,7 @@ impl Camera {
         }
     }
 
-    /// Brings everything nearer by a factor, keeping the place (0..1 from left and top) where it is.
+    /// Magnifies by a factor; the point `place` of the picture (0..1 from left and top) stays fixed.
     pub fn zoom(&mut self, factor: f64, place: [f64; 2], aspect: f64) {
         let (x, y) = ((place[0] - 0.5) * aspect, place[1] - 0.5);
         self.pan(-x, -y, aspect);
@@ -176,13 +177,13 @@ impl Camera {
     }
 }
 
-/// Width over height, whatever came in.
-fn sound(aspect: f64) -> f64 {
+/// Returns the aspect ratio, or 1 if it is not a positive finite number.
+fn valid_aspect(aspect: f64) -> f64 {
     if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
 
 impl Orbit {
-    /// Unit vector from the middle towards the eye.
+    /// Unit vector from the centre towards the eye.
     fn back(&self) -> Vector3<f64> {
         let (c, s) = (self.pitch.cos(), self.pitch.sin());
         Vector3::new(self.yaw.sin() * c, -self.yaw.cos() * c, s)

@@ -1,17 +1,17 @@
-//! Dexterity as a shade of the workspace: three measures of a pose, the same for every b.
+//! Dexterity as a colour scale of the workspace: three measures of a pose, which do not depend on b.
 
 use super::palette::{Palette, faded, mix};
 use super::{Measure, Rgba};
 use crate::planning::reactionless::PlaneMap;
 
-/// Poses a side of the first search.
-const GRID: i32 = 24;
+/// Intervals per side of the initial search grid.
+const GRID_INTERVALS: i32 = 24;
 
 impl Measure {
-    /// All of them, in the order in which key J shows them.
+    /// All measures, in the order in which key J shows them.
     pub const ALL: [Self; 3] = [Self::Det, Self::Manipulability, Self::TorquePerForce];
 
-    /// The measure after one, or after none; none after the last.
+    /// Returns the next measure; `None` stands for no measure, before the first and after the last.
     pub fn after(now: Option<Self>) -> Option<Self> {
         match now {
             None => Some(Self::Det),
@@ -19,7 +19,7 @@ impl Measure {
         }
     }
 
-    /// Its symbol in the legend.
+    /// Symbol in the legend.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Det => "|det|",
@@ -36,7 +36,7 @@ impl Measure {
         }
     }
 
-    /// What it means.
+    /// Explanation in a sentence.
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Det => {
@@ -49,7 +49,7 @@ impl Measure {
         }
     }
 
-    /// Of a pose.
+    /// Returns the measure of the pose (a_1, a_2), rad.
     pub fn of(self, map: &PlaneMap, a: [f64; 2]) -> f64 {
         let dexterity = map.dexterity(a);
         match self {
@@ -59,28 +59,29 @@ impl Measure {
         }
     }
 
-    /// Where a shade begins and ends: the least and greatest within the limits; from 0 for det, whose sheets may meet.
+    /// Returns the ends of the colour scale: minimum and maximum within the joint limits. The scale of det starts at 0,
+    /// because sheets may meet.
     pub fn range(self, map: &PlaneMap) -> [f64; 2] {
         let least = if self == Self::Det { 0.0 } else { -greatest(map, |a| -self.of(map, a)) };
         let most = greatest(map, |a| self.of(map, a));
-        // A measure that does not change is full everywhere.
+        // A constant measure has the upper colour everywhere.
         if most > least { [least, most] } else { [least - 1.0, most.max(least)] }
     }
 }
 
-/// The greatest of something within the limits.
+/// Returns the maximum of a function of (a_1, a_2) within the joint limits, by grid search and refinement.
 fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
     let [l1, l2] = map.limits();
     let at = |i: i32, j: i32| {
         let share = |l: crate::planning::reactionless::AngleLimit, i: i32| {
-            l.min + f64::from(i) / f64::from(GRID) * (l.max - l.min)
+            l.min + f64::from(i) / f64::from(GRID_INTERVALS) * (l.max - l.min)
         };
         [share(l1, i), share(l2, j)]
     };
-    let poses = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| at(i, j)));
+    let poses = (0..=GRID_INTERVALS).flat_map(|i| (0..=GRID_INTERVALS).map(move |j| at(i, j)));
     let Some(mut best) = poses.max_by(|s, t| value(*s).total_cmp(&value(*t))) else { return 0.0 };
-    // Then about the best one, in steps that halve.
-    let mut step = [l1, l2].map(|l| (l.max - l.min) / f64::from(GRID));
+    // Pattern search around the best grid point, with halved steps.
+    let mut step = [l1, l2].map(|l| (l.max - l.min) / f64::from(GRID_INTERVALS));
     for _ in 0..40 {
         let around = (0..9)
             .map(|k| map.clamp([best[0] + f64::from(k % 3 - 1) * step[0], best[1] + f64::from(k / 3 - 1) * step[1]]));
@@ -90,10 +91,10 @@ fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
     value(best)
 }
 
-/// The fill where a measure is least and where it is greatest: amber, and pale.
+/// Returns the fill colours at the minimum and maximum of a measure: amber, and pale amber.
 pub fn colours(palette: &Palette) -> [Rgba; 2] {
     let pale = |share| mix(palette.amber, [1.0, 0.98, 0.92, 1.0], share);
-    // The brighter of fill and background says where there is more.
+    // On a dark background, brighter means more.
     let dark = palette.background.iter().take(3).sum::<f32>() < 1.5;
     match dark {
         true => [faded(palette.amber, 0.2), faded(pale(0.45), 0.62)],

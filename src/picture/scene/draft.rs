@@ -1,5 +1,4 @@
-//! The machine as it is designed: its links with their centres of mass and ends to take hold of, and its counterweights
-//! with what they weigh.
+//! The design view of a machine: links with draggable centres of mass and ends, and counterweights with their masses.
 
 use std::f64::consts::TAU;
 
@@ -14,46 +13,47 @@ use crate::mechanics::machine::{Length, Machine};
 use crate::mechanics::planar::{Units, Vector, unit};
 use crate::simulation::frame::Frame;
 
-/// Half of the cross in a centre of mass, as a part of the reach.
-const CROSS: f64 = 0.0105;
-/// Corners of a circle.
-const CORNERS: u32 = 64;
-/// How much paler a link is drawn that the pointer is not on.
-const PALE: f32 = 0.42;
-/// How near to a handle the pointer takes hold of it, px.
-const NEAR_END: f64 = 11.0;
-/// How far beyond the end of a link its length is written, px.
-const BESIDE: f32 = 14.0;
+/// Half the size of the cross at a centre of mass, as a fraction of the reach.
+const CROSS_HALF_SIZE: f64 = 0.0105;
+/// Number of vertices of a circle.
+const CIRCLE_VERTICES: u32 = 64;
+/// Fraction of the background colour in links that are not under the pointer.
+const DIMMING: f32 = 0.42;
+/// Distance within which the pointer picks the end of a link, px.
+const END_PICK_PX: f64 = 11.0;
+/// Distance of the label of the length from the end of a link, px.
+const LENGTH_LABEL_PX: f32 = 14.0;
 
-/// What stays the same from frame to frame.
+/// The parts of the design view that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    /// Of each link.
+    /// All links, in the order of the machine.
     links: Vec<Link>,
     weights: Vec<Weight>,
 }
 
 #[derive(Clone, Debug)]
 struct Link {
-    /// Its centre of mass, m along and across it.
+    /// Centre of mass, along and across the link, m.
     com: Vector,
-    /// m.
+    /// Length, m.
     length: f64,
-    /// The name of its length, if others share it.
+    /// Name of its length, if it is a named one that several links may share.
     shared: Option<String>,
 }
 
 #[derive(Clone, Debug)]
 struct Weight {
-    /// Its link, counted from 0.
+    /// Index of its link, from 0.
     link: usize,
-    /// m along it.
+    /// Position along the link, m.
     at: f64,
+    /// Mass, kg.
     mass: f64,
 }
 
 impl Draft {
-    /// Of a machine.
+    /// Prepares a machine for drawing.
     pub fn of(machine: &Machine) -> Self {
         let spec = machine.spec();
         let links = spec.links.iter().zip(machine.resolved_links()).map(|(link, part)| Link {
@@ -71,7 +71,7 @@ impl Draft {
         Self { links: links.collect(), weights: weights.collect() }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of the design view.
     pub fn scene(&self, (linkage, grid): (&Linkage, &Grid), frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
         let mut scene = Scene::new(palette.background, linkage.model.clone());
@@ -80,7 +80,7 @@ impl Draft {
         scene
     }
 
-    /// The same but for the grid.
+    /// Draws everything except the grid.
     fn draw(&self, scene: &mut Scene, linkage: &Linkage, frame: &Frame, options: &ViewOptions) {
         let palette = palette(options.theme);
         let e = frame.q.units();
@@ -89,13 +89,13 @@ impl Draft {
         let mut solids = linkage.solids(&e, frame.base, false, &palette);
         for (i, bar) in linkage.bars().iter().enumerate() {
             for solid in solids.iter_mut().filter(|solid| solid.name == *bar.item() && !is_lit(i)) {
-                solid.colour = mix(solid.colour, palette.background, PALE);
+                solid.colour = mix(solid.colour, palette.background, DIMMING);
             }
         }
         scene.solids.extend(solids);
         for handle in self.handles() {
             let Some(at) = self.place(handle, linkage, frame) else { continue };
-            let arm = (CROSS * linkage.reach()) as f32;
+            let arm = (CROSS_HALF_SIZE * linkage.reach()) as f32;
             draw_handle(scene, &palette, (handle, self.kilograms(handle)), (at, arm), options.hot == Some(handle));
         }
         self.draw_choice(scene, linkage, &palette, frame, &options.weights);
@@ -104,7 +104,7 @@ impl Draft {
         }
     }
 
-    /// What a counterweight weighs.
+    /// Mass of a counterweight, kg; 0 for other handles.
     fn kilograms(&self, handle: Handle) -> f64 {
         match handle {
             Handle::Weight(i) => self.weights.get(i).map_or(0.0, |weight| weight.mass),
@@ -112,14 +112,14 @@ impl Draft {
         }
     }
 
-    /// Counterweights to choose from, as circles.
+    /// Draws the counterweights to choose from, as circles.
     fn draw_choice(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, weights: &[Offered]) {
         let e = frame.q.units();
         let circle = |Offered { link, at, radius }: &Offered| {
             let (root, along, _) = linkage.bars().get(*link)?.pose(&e);
             let middle = frame.base.at + root + along * *at;
-            let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CORNERS)) * *radius;
-            Some((0..=CORNERS).map(|i| point(corner(i), linkage.top())).collect::<Vec<_>>())
+            let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * *radius;
+            Some((0..=CIRCLE_VERTICES).map(|i| point(corner(i), linkage.top())).collect::<Vec<_>>())
         };
         let circles: Vec<_> = weights.iter().filter_map(circle).collect();
         if !circles.is_empty() {
@@ -127,7 +127,7 @@ impl Draft {
         }
     }
 
-    /// How long a link is, beyond its end, with a line along it.
+    /// Draws a line along a link, and its length beyond its end.
     fn draw_length(
         &self,
         scene: &mut Scene,
@@ -143,12 +143,12 @@ impl Draft {
         scene.lines.push(Line::new("design/length", [vec![from, to]], 1.2, palette.ink).dashed(2.0, 3.0).on_top());
         let name = link.shared.as_deref().map_or(String::new(), |name| format!("{name} "));
         let text = format!("{name}{:.3} m", link.length);
-        let way = [along.re as f32, -along.im as f32].map(|x| x * BESIDE);
+        let way = [along.re as f32, -along.im as f32].map(|x| x * LENGTH_LABEL_PX);
         let anchor = if way[0] >= 0.0 { Anchor::Left } else { Anchor::Right };
         scene.labels.push(Label::new("design/length/m", to, way, text, palette.ink, 12.0, anchor));
     }
 
-    /// The link that a handle belongs to.
+    /// Returns the index of the link that a handle belongs to.
     pub fn link_of(&self, handle: Handle) -> Option<usize> {
         match handle {
             Handle::Link(i) | Handle::Mass(i) | Handle::End(i) => (i < self.links.len()).then_some(i),
@@ -163,7 +163,7 @@ impl Draft {
         ends.chain((0..links).map(Handle::Mass)).chain((0..weights).map(Handle::Weight))
     }
 
-    /// Where a handle is in the scene.
+    /// Returns the position of a handle in the scene, m.
     fn place(&self, handle: Handle, linkage: &Linkage, frame: &Frame) -> Option<[f64; 3]> {
         let on = match handle {
             Handle::Mass(i) => self.links.get(i)?.com,
@@ -176,19 +176,20 @@ impl Draft {
         Some([at.re, at.im, linkage.top()])
     }
 
-    /// The handle under the pointer: of centres of mass and counterweights the nearest, then ends of links.
+    /// Returns the handle under the pointer: the nearest centre of mass or counterweight, otherwise the nearest end of
+    /// a link.
     pub fn pick(&self, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let near = |handle: Handle| {
             let at = self.place(handle, linkage, frame)?;
-            let most = if matches!(handle, Handle::End(_)) { NEAR_END } else { 0.6 * NEAR };
-            // What lies on an end comes before it.
+            let most = if matches!(handle, Handle::End(_)) { END_PICK_PX } else { 0.6 * NEAR };
+            // Handles that coincide with an end take precedence over it.
             let behind = if matches!(handle, Handle::End(_)) { NEAR } else { 0.0 };
             pointer.distance(at).filter(|d| *d < most).map(|d| (Pick::of(handle, at), d + behind))
         };
         self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
     }
 
-    /// What pulling at a handle asks for: it stays on the axis of its link.
+    /// Returns the change that dragging a handle to the pointer requests; the handle stays on the axis of its link.
     pub fn aim(&self, pick: &Pick, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         let link = self.link_of(pick.handle)?;
         let [x, y] = pointer.ray()?.at_height(linkage.top())?;
@@ -197,14 +198,14 @@ impl Draft {
         match pick.handle {
             Handle::Mass(_) => Some(Aim::Mass { link, to }),
             Handle::Weight(weight) => Some(Aim::Weight { weight, to }),
-            Handle::End(_) => Some(Aim::Length { link, to: to.max(SHORTEST) }),
+            Handle::End(_) => Some(Aim::Length { link, to: to.max(MIN_LENGTH_M) }),
             _ => None,
         }
     }
 }
 
-/// No link is pulled shorter than this, m.
-const SHORTEST: f64 = 1e-3;
+/// Minimum length to which a link can be dragged, m.
+const MIN_LENGTH_M: f64 = 1e-3;
 
 fn draw_handle(
     scene: &mut Scene,
@@ -217,7 +218,7 @@ fn draw_handle(
     let edge = if hot { palette.amber } else { palette.ink };
     match handle {
         Handle::Mass(_) => {
-            // A cross in a ring, as drawings mark a centre of mass.
+            // A cross in a ring, the usual symbol of a centre of mass.
             let (size, arm) = if hot { (9.0, 1.4 * arm) } else { (7.0, arm) };
             let ring = Marker::disc("design/masses", at, size, faded(edge, 0.0)).edged(edge, 1.8);
             scene.markers.push(ring);

@@ -1,38 +1,39 @@
-//! How much the motion of a base is exaggerated, so that it can be seen.
+//! Exaggeration of the motion of a base, so that small motions are visible.
 
 use crate::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
 use crate::picture::numbers::round_up;
 use crate::picture::scene::course::target_handle;
 use crate::simulation::frame::Frame;
 
-/// Height of a picture of the whole machine, as parts of its reach.
-const PICTURE: f64 = 1.64;
+/// Height of a picture of the whole machine, as a multiple of its reach.
+const PICTURE_HEIGHT: f64 = 1.64;
 
-/// The part of the picture's height that the greatest motion should at least have.
-const SEEN: f64 = 0.025;
+/// Minimum size of the largest motion, as a fraction of the height of the picture.
+const VISIBLE_MOTION: f64 = 0.025;
 
-/// Motion below this part of the reach is rounding, and shown as it is.
-const NOISE: f64 = 1e-10;
+/// Motion below this fraction of the reach is rounding error and is not exaggerated.
+const NOISE_LEVEL: f64 = 1e-10;
 
-/// The most that motion is exaggerated.
-const MOST: f64 = 1e6;
+/// Maximum factor of exaggeration.
+const MAX_FACTOR: f64 = 1e6;
 
-/// The least of 1, 2, 5, 10 … with which the greatest motion of a run, m and rad, is seen on a machine of a reach, m.
+/// Returns the smallest factor of 1, 2, 5, 10 … that makes the largest motion of a run visible. The arguments are the
+/// largest displacement, m, the largest rotation, rad, and the reach of the machine, m.
 pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
     let motion = shift + angle * reach;
-    if !(motion > NOISE * reach && motion.is_finite()) {
+    if !(motion > NOISE_LEVEL * reach && motion.is_finite()) {
         return 1.0;
     }
-    let wanted = SEEN * PICTURE * reach / motion;
-    if wanted <= 1.0 { 1.0 } else { round_up(wanted).min(MOST) }
+    let wanted = VISIBLE_MOTION * PICTURE_HEIGHT * reach / motion;
+    if wanted <= 1.0 { 1.0 } else { round_up(wanted).min(MAX_FACTOR) }
 }
 
-/// How the motion of a base is drawn.
+/// Rule by which the motion of a base is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exaggeration {
-    /// So many times as far as it moves.
+    /// Displacement and rotation are multiplied by this factor.
     Times(f64),
-    /// Turned against the moment on it, as if it stood on a soft mount, rad/(N m).
+    /// The base is rotated by minus this compliance, rad/(N m), times the moment n_B, as if on a soft mount.
     Mount(f64),
 }
 
@@ -43,7 +44,7 @@ impl Default for Exaggeration {
 }
 
 impl Exaggeration {
-    /// How many times as far as it moves the base is drawn to move.
+    /// Factor by which the motion of the base is exaggerated.
     pub fn times(self) -> f64 {
         match self {
             Self::Times(times) => times,
@@ -60,26 +61,26 @@ impl Exaggeration {
     }
 }
 
-/// An instant as it is drawn: where things are in the picture, and the frame beside them. Only the frame is spoken of:
-/// what makes words is given the frame and never this.
+/// An instant with exaggeration: drawn positions, and the frame with the true values. Texts use only the frame, never
+/// the drawn positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a> {
-    /// What is true.
+    /// True values.
     pub frame: &'a Frame,
-    /// Where the base is drawn.
+    /// Drawn pose of the base.
     pub base: Pose2,
-    /// The drive angles that are drawn, rad.
+    /// Drawn drive angles, rad.
     pub q: DriveAngles,
-    /// Where the end effector is drawn, m.
+    /// Drawn position of the end effector, m.
     pub end_effector: Vector,
-    /// Where the centre of mass is drawn, m.
+    /// Drawn position of the centre of mass, m.
     pub com: Vector,
-    /// Where the target's handle is drawn, m.
+    /// Drawn position of the target's handle, m.
     pub target: Vector,
 }
 
 impl<'a> Shown<'a> {
-    /// A frame, drawn so: drives, end effector and centre of mass go with the base.
+    /// Applies an exaggeration to a frame; drives, end effector and centre of mass move with the base.
     pub fn of(frame: &'a Frame, exaggeration: Exaggeration) -> Self {
         let base = exaggeration.base(frame);
         let more = base.angle - frame.base.angle;
@@ -91,22 +92,22 @@ impl<'a> Shown<'a> {
         let mut q = frame.q;
         q.0.iter_mut().for_each(|q| *q += more);
         let target = match exaggeration {
-            // It stays where it was set, however far the base moves.
+            // The target stays where it was set, however far the base moves.
             Exaggeration::Times(_) => target_handle(frame),
-            // Here nothing moves but the picture, and all of it.
+            // The base itself is at rest; the whole picture is rotated.
             Exaggeration::Mount(_) => target_handle(frame) * unit(more),
         };
         Self { frame, base, q, end_effector: moved(frame.end_effector), com: moved(frame.com), target }
     }
 
-    /// A place of the picture as seen from the base, m: where it would be, had the base not moved.
+    /// Converts a drawn position, m, to the frame of the base, as if the base had not moved.
     pub fn in_base(&self, place: Vector) -> Vector {
         (place - self.base.at) * unit(-self.base.angle)
     }
 }
 
 impl<'a> From<&'a Frame> for Shown<'a> {
-    /// As it is.
+    /// Returns the frame without exaggeration.
     fn from(frame: &'a Frame) -> Self {
         Self::of(frame, Exaggeration::default())
     }

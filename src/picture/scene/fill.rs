@@ -1,12 +1,12 @@
-//! A plane area inside closed loops, holes left out, as a mesh: bands from vertex to vertex upwards, in each the stretches
-//! between an odd edge and the next.
+//! Triangulation of a plane area inside closed loops, with holes, by the even-odd rule. The area is divided into
+//! horizontal bands between consecutive vertex heights; each band consists of trapezoids between pairs of edges.
 
 use super::Mesh;
 
-/// Of loops whose last point goes back to the first, m; flat at z = 0, seen from both sides.
+/// Returns the mesh inside closed loops, m, whose last point connects to the first; at z = 0, visible from both sides.
 pub fn mesh(loops: &[Vec<[f64; 2]>]) -> Mesh {
     let mut mesh = Mesh { shell: true, ..Mesh::default() };
-    // Upwards; level edges bound no band.
+    // Edges directed upwards, without horizontal ones.
     let edges = loops.iter().flat_map(|line| (0..line.len()).map(|i| [line[i], line[(i + 1) % line.len()]]));
     let mut edges: Vec<[[f64; 2]; 2]> =
         edges.filter(|[a, b]| a[1] != b[1]).map(|[a, b]| if a[1] < b[1] { [a, b] } else { [b, a] }).collect();
@@ -28,7 +28,7 @@ pub fn mesh(loops: &[Vec<[f64; 2]>]) -> Mesh {
             let first = mesh.positions.len() as u32;
             mesh.positions.extend(corners.map(|[x, y]| [x as f32, y as f32, 0.0]));
             mesh.normals.extend([[0.0, 0.0, 1.0]; 4]);
-            // A corner where two edges meet leaves one triangle.
+            // Where two edges meet, the trapezoid is a triangle.
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| first + i);
             mesh.triangles.extend((corners[0] != corners[1]).then_some([a, b, c]));
             mesh.triangles.extend((corners[2] != corners[3]).then_some([a, c, d]));
@@ -37,7 +37,7 @@ pub fn mesh(loops: &[Vec<[f64; 2]>]) -> Mesh {
     mesh
 }
 
-/// Where an edge is at a height; at its ends exactly these, so that bands meet without gaps.
+/// Returns x of an edge at height y; exact at its end points, so that bands meet without gaps.
 fn at([from, to]: &[[f64; 2]; 2], y: f64) -> f64 {
     match y {
         y if y <= from[1] => from[0],

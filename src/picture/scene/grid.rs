@@ -1,4 +1,4 @@
-//! [`Grid`]: squares under a machine that tell its size.
+//! [`Grid`]: a square grid under a machine, as a scale.
 
 use super::linkage::Linkage;
 use super::palette::{Palette, faded};
@@ -6,23 +6,23 @@ use super::{Line, Scene, Strips, point};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::round_up;
 
-/// The most squares over the reach of a machine.
-const SQUARES: f64 = 15.0;
+/// Maximum number of squares over the reach of a machine.
+const MAX_SQUARES: f64 = 15.0;
 
-/// What stays the same from frame to frame.
+/// A square grid under a machine.
 #[derive(Clone, Debug)]
 pub struct Grid {
     width: f64,
     lines: Strips,
-    /// Those through the origin.
+    /// The lines through the origin.
     axes: Strips,
 }
 
 impl Grid {
-    /// Under a machine.
+    /// Returns the grid under a machine.
     pub fn of(linkage: &Linkage) -> Self {
         let z = linkage.floor() - 0.004 * linkage.reach();
-        let width = round_up(linkage.reach() / SQUARES);
+        let width = round_up(linkage.reach() / MAX_SQUARES);
         let n = (1.7 * linkage.reach() / width).ceil() as i32;
         let far = f64::from(n) * width;
         let at = |i: i32| {
@@ -39,7 +39,7 @@ impl Grid {
         self.width
     }
 
-    /// Draws it.
+    /// Draws the grid.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette) {
         let lines = Line::new("grid", self.lines.clone(), 1.0, faded(palette.line, 0.55));
         let axes = Line::new("grid/axes", self.axes.clone(), 1.0, palette.line);

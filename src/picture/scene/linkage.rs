@@ -1,6 +1,6 @@
-//! The body of a machine: bars, pins, counterweights and the drives, as meshes that never change while it moves.
+//! The body of a machine: bars, pins, counterweights and drives, as meshes that do not change while it moves.
 //!
-//! Links that share a pin follow different drives, so a layer for each drive keeps them apart.
+//! Links that share a pin follow different drives, so each drive has a layer of its own and links do not intersect.
 
 use std::sync::Arc;
 
@@ -10,14 +10,14 @@ use super::{Changes, Mesh, Model, Name, Rgba, Shadow, Solid, posed};
 use crate::mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 
-/// A machine's meshes, and how a pose places them.
+/// The meshes of a machine, and their placement in a pose.
 #[derive(Clone, Debug)]
 pub struct Linkage {
-    /// What the solids refer to.
+    /// Meshes that the solids refer to.
     pub model: Arc<Model>,
     bars: Vec<Bar>,
     pins: Vec<Pin>,
-    /// Of all pins: they are as long as their layers want.
+    /// Mesh of all pins; each is stretched to the length between its layers.
     pin: usize,
     hole: usize,
     motors: Vec<Motor>,
@@ -31,48 +31,48 @@ pub struct Linkage {
 /// A link with its counterweight.
 #[derive(Clone, Debug)]
 pub struct Bar {
-    /// The link's name.
+    /// Name of the link.
     pub name: String,
     item: Name,
-    /// Mesh, along x from the link's root.
+    /// Index of the mesh, which extends along x from the root of the link.
     pub mesh: usize,
-    /// Drive it follows, counted from 0.
+    /// Index of the drive that it follows, from 0.
     pub drive: usize,
-    /// Whether it carries the end effector or a link that does.
+    /// Whether it lies on the chain from the base to the end effector.
     pub carries_tip: bool,
     root: Chain,
     sign: f64,
-    /// Where the next one or the end effector is, m along it.
+    /// Length, m: position of the next link or the end effector.
     length: f64,
-    /// From where to where it is drawn, m along it.
+    /// Interval along the link in which it is drawn, m.
     span: [f64; 2],
     /// Half its width, m.
     radius: f64,
-    /// Where its counterweights are, m along it, and their radii, m.
+    /// Position along the link and radius of each counterweight, m.
     weights: Vec<[f64; 2]>,
     z: f64,
 }
 
-/// A link from straight above.
+/// A link seen from straight above.
 pub struct Flat {
-    /// Its ends as drawn, m.
+    /// Its drawn ends, m.
     pub ends: [Vector; 2],
     /// Half its width, m.
     pub radius: f64,
-    /// Its counterweights: where, m, and their radii, m.
+    /// Position and radius of each counterweight, m.
     pub weights: Vec<(Vector, f64)>,
-    /// Drive it follows, counted from 0.
+    /// Index of the drive that it follows, from 0.
     pub drive: usize,
 }
 
 #[derive(Clone, Debug)]
 struct Pin {
     at: Chain,
-    /// The links that it joins.
+    /// Indices of the links that it connects.
     links: Vec<usize>,
-    /// From where to where, m.
+    /// Heights of its lower and upper end, m.
     z: [f64; 2],
-    /// How many times as long as the mesh.
+    /// Ratio of its length to that of the mesh.
     stretch: f64,
 }
 
@@ -81,15 +81,15 @@ struct Motor {
     name: Name,
     mesh: usize,
     drive: usize,
-    /// The pin that it turns; none: it stands on the base.
+    /// The pin that it turns; `None` if it is mounted on the base.
     at: Option<Chain>,
     z: f64,
 }
 
-/// Half the length and half the width of a plate that moves, parts of the reach.
+/// Half length and half width of the plate of a moving base, as fractions of the reach.
 pub const PLATE: [f64; 2] = [0.2, 0.105];
 
-/// Parts of the machine's reach.
+/// Dimensions as fractions of the reach of the machine.
 const BAR_RADIUS: f64 = 0.0135;
 const THIN_BAR_RADIUS: f64 = 0.0085;
 const BAR_HEIGHT: f64 = 0.016;
@@ -97,12 +97,12 @@ const GAP: f64 = 0.004;
 const WEIGHT_RADIUS: f64 = 0.05;
 const DRIVE_RADIUS: f64 = 0.042;
 
-/// How far a shadow is from what is a metre above it, and how dark it is under what lies on the floor.
-const SHADE: Vector = Vector::new(0.45, -0.6);
-const SHADOW: f64 = 0.5;
+/// Horizontal shift of a shadow per height of the bar above the floor, and opacity of the shadow of a bar on the floor.
+const SHADOW_SHIFT: Vector = Vector::new(0.45, -0.6);
+const SHADOW_OPACITY: f64 = 0.5;
 
 impl Linkage {
-    /// The body of a machine.
+    /// Builds the body of a machine.
     pub fn of(machine: &Machine) -> Self {
         let reach = reach_of(machine);
         let (height, gap) = (BAR_HEIGHT * reach, GAP * reach);
@@ -122,7 +122,8 @@ impl Linkage {
             let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
             let mut discs: Vec<[f64; 2]> = weights.map(|w| [w.at, w.radius.max(1.5 * radius)]).collect();
             if discs.is_empty() && (link.com < from || link.com > to) {
-                // A disc of the CM's side suggests the counterweight; its area goes with the link's mass.
+                // If the centre of mass is beyond the ends, a disc there suggests a counterweight; area ∝ mass of the
+                // link.
                 discs.push([link.com, (reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()).max(1.5 * radius)]);
             }
             let span = discs.iter().fold([from, to], |[from, to], [at, _]| [from.min(*at), to.max(*at)]);
@@ -166,7 +167,7 @@ impl Linkage {
                 None => 1.0 + 0.12 * f64::from(on_base),
             };
             let below = match at {
-                // Under the link that carries it.
+                // Below the link that carries the motor.
                 Some(_) => machine.motors().on(k).map_or(0.0, layer) - 0.92 * drive_height,
                 None => {
                     on_base += 1;
@@ -179,7 +180,7 @@ impl Linkage {
         };
         let motors: Vec<Motor> = (0..n).map(motor).collect();
         let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
-        // Of a base that moves.
+        // Plate of a moving base.
         let [length, width] = PLATE.map(|part| part * reach);
         let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
         let top = layer(n - 1) + height;
@@ -199,12 +200,12 @@ impl Linkage {
         }
     }
 
-    /// The farthest the end effector gets from B, m.
+    /// Maximum distance of the end effector from B, m.
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Height of the plane on which the links stand, m.
+    /// Height of the plane just below the lowest links, m.
     pub fn floor(&self) -> f64 {
         -GAP * self.reach
     }
@@ -214,7 +215,7 @@ impl Linkage {
         self.top
     }
 
-    /// Height of what the drives stand on, m.
+    /// Height of the plate under the drives, m.
     pub fn bottom(&self) -> f64 {
         let on_base = self.motors.iter().filter(|motor| motor.at.is_none());
         on_base.fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
@@ -225,7 +226,7 @@ impl Linkage {
         2.0 * DRIVE_RADIUS * self.reach
     }
 
-    /// Takes one more mesh; which it is.
+    /// Adds a mesh and returns its index.
     pub fn add(&mut self, mesh: Mesh) -> usize {
         let meshes = &mut Arc::make_mut(&mut self.model).meshes;
         meshes.push(mesh);
@@ -237,7 +238,7 @@ impl Linkage {
         &self.bars
     }
 
-    /// Where each pin is on a base that stands still, m, and the links that it joins.
+    /// Returns the position of each pin for a fixed base, m, and the links that it connects.
     pub fn joints(&self, e: &Units) -> impl Iterator<Item = ([f64; 3], &[usize])> {
         let e = *e;
         self.pins.iter().map(move |pin| {
@@ -246,7 +247,7 @@ impl Linkage {
         })
     }
 
-    /// The links from straight above on a base that stands still, the lowest first.
+    /// Returns the links seen from above for a fixed base, the lowest first.
     pub fn flat(&self, e: &Units) -> Vec<Flat> {
         let mut bars: Vec<&Bar> = self.bars.iter().collect();
         bars.sort_by(|a, b| a.z.total_cmp(&b.z));
@@ -262,7 +263,7 @@ impl Linkage {
         bars.into_iter().map(flat).collect()
     }
 
-    /// Everything, in the colours of the palette, on a base in a pose.
+    /// Returns all solids of the machine on a base in the given pose; `moves` says whether the base can move.
     pub fn solids(&self, e: &Units, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
         let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
         let upright = |name: Name, mesh, at: Vector, z, colour, changes| {
@@ -305,17 +306,18 @@ impl Linkage {
         solids
     }
 
-    /// The shadows of the links on the floor, in the light from above left, on a base in a place.
+    /// Returns the shadows of the links on the floor, in light from the upper left; `base` is the position of the base,
+    /// m.
     pub fn shadows(&self, e: &Units, base: Vector) -> impl Iterator<Item = Shadow> {
         let (e, floor) = (*e, self.floor());
         self.bars.iter().map(move |bar| {
             let [width, height] =
                 [if bar.carries_tip { BAR_RADIUS } else { THIN_BAR_RADIUS }, BAR_HEIGHT].map(|part| part * self.reach);
             let ends = bar.ends(&e).map(|[x, y, z]| {
-                let away = base + Vector::new(x, y) + SHADE * (z + 0.5 * height - floor);
+                let away = base + Vector::new(x, y) + SHADOW_SHIFT * (z + 0.5 * height - floor);
                 [away.re as f32, away.im as f32]
             });
-            // The higher, the softer and paler.
+            // Shadows of higher bars are softer and paler.
             let above = bar.z - floor;
             let soft = width + 0.8 * above;
             Shadow {
@@ -323,12 +325,12 @@ impl Linkage {
                 z: floor as f32,
                 core: (0.5 * width) as f32,
                 reach: (width + soft) as f32,
-                strength: (SHADOW * width / (width + 0.5 * above)) as f32,
+                strength: (SHADOW_OPACITY * width / (width + 0.5 * above)) as f32,
             }
         })
     }
 
-    /// The links that carry the end effector as lines from root to tip, from B outwards, with their drives.
+    /// Returns drive and end points, m, of the links between base and end effector, from B outwards.
     pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
@@ -339,7 +341,7 @@ impl Linkage {
             .collect()
     }
 
-    /// The arms that carry the end effector, as a ghost of another pose that has a name.
+    /// Returns the links between base and end effector in another pose, as translucent solids named `name/…`.
     pub fn ghost(&self, name: &str, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
@@ -353,7 +355,7 @@ impl Linkage {
 }
 
 impl Linkage {
-    /// Ends of the arms that carry the end effector, in a pose, m.
+    /// Returns the end points, m, of the links between base and end effector.
     pub fn outlines(&self, e: &Units) -> impl Iterator<Item = [Vector; 2]> {
         let e = *e;
         self.bars.iter().filter(|b| b.carries_tip).map(move |bar| {
@@ -364,17 +366,17 @@ impl Linkage {
 }
 
 impl Bar {
-    /// The name of its item in a picture.
+    /// Name of its item in a scene.
     pub fn item(&self) -> &Name {
         &self.item
     }
 
-    /// 1 where it points as its drive does, −1 where against it.
+    /// 1 if it points in the direction of its drive, −1 if opposite.
     pub fn sign(&self) -> f64 {
         self.sign
     }
 
-    /// The line along it as drawn on a base that stands still, from end to end, m.
+    /// Returns its drawn end points for a fixed base, m.
     pub fn ends(&self, e: &Units) -> [[f64; 3]; 2] {
         let (root, along, z) = self.pose(e);
         self.span.map(|s| {
@@ -383,12 +385,12 @@ impl Bar {
         })
     }
 
-    /// How long it is, m.
+    /// Length, m.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Where its root is and which way it points, and its height.
+    /// Returns the position of its root, m, its direction, a unit vector, and its height, m.
     pub fn pose(&self, e: &Units) -> (Vector, Vector, f64) {
         (place_of(&self.root, e), e[self.drive] * self.sign, self.z)
     }
@@ -405,7 +407,7 @@ impl Bar {
     }
 }
 
-/// Which links carry the end effector.
+/// Returns for each link whether it lies between base and end effector.
 fn carriers(machine: &Machine) -> Vec<bool> {
     let mut carries = vec![false; machine.links().len()];
     let mut at = Some(machine.end_link());
@@ -416,14 +418,14 @@ fn carriers(machine: &Machine) -> Vec<bool> {
     carries
 }
 
-/// The pin in which a motor sits between the links of two drives.
+/// Returns the pin of motor k, if the motor is mounted on a link of another drive.
 fn joint_of(machine: &Machine, k: usize) -> Option<Chain> {
     let (parts, on) = (machine.resolved_links(), machine.motors().on(k)?);
     let on_its_drive = |part: &&ResolvedLink| part.parent.is_some_and(|parent| parts[parent].drive == on);
     parts.iter().filter(|part| part.drive == k).find(on_its_drive).map(|part| part.root)
 }
 
-/// Distinct pins: where they are, and the links that they join.
+/// Returns the distinct pins away from B: their positions, and the links that they connect.
 fn joints(machine: &Machine) -> Vec<(Chain, Vec<usize>)> {
     let mut joints: Vec<(Chain, Vec<usize>)> = Vec::new();
     for (j, part) in machine.resolved_links().iter().enumerate() {

@@ -1,21 +1,21 @@
 //! Meshes of bars, discs and rings, built once per machine.
 //!
 //! Every mesh is a profile in (offset, z) swept around a convex outline in the xy plane, so it is closed by
-//! construction: strips of one normal a strip across, smooth along the outline, and flat caps. Lengths are metres, z
-//! runs from 0 to the height. Computed in `f64`, stored in `f32`.
+//! construction. It consists of strips and flat caps. Normals are constant across a strip and smooth along the outline.
+//! Lengths are metres, z runs from 0 to the height. Computed in `f64`, stored in `f32`.
 //!
-//! Sizes from outside are never trusted: negative and non-finite ones count as zero, a bevel takes at most half of the
+//! Invalid sizes are corrected: negative and non-finite ones are treated as zero, and a bevel is at most half of the
 //! radius and a third of the height. A mesh without volume has no triangles.
 
 use std::f64::consts::{PI, TAU};
 
 use super::Mesh;
 
-/// Chords in a full turn; the polygon's area falls short of the circle's.
+/// Number of chords of a circle; the vertices lie on the circle.
 pub const SEGMENTS: usize = 64;
 
 /// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,
-/// from z = 0 to `height`, its top and bottom edges bevelled by `bevel` so that shading shows them.
+/// from z = 0 to `height`; its top and bottom edges are bevelled by `bevel`, so that shading shows them.
 pub fn bar(length_from: f64, length_to: f64, radius: f64, height: f64, bevel: f64) -> Mesh {
     let [from, to] = [length_from, length_to].map(|x| if x.is_finite() { x } else { 0.0 });
     prism(&stadium(from.min(to), from.max(to)), radius, height, bevel)
@@ -45,13 +45,14 @@ pub fn ring(outer: f64, inner: f64, height: f64) -> Mesh {
     mesh
 }
 
-/// A vertex of an outline: the centre it is offset from, and the outward direction.
+/// A vertex of an outline: x of the centre that it is offset from, and the outward unit vector.
 struct Spoke {
     centre: f64,
     out: [f64; 2],
 }
 
-/// Directions of a circle, cut in two and pulled apart from `from` to `to`; counter-clockwise from (0, -1).
+/// Returns the outline of a stadium with centres at x = `from` and x = `to`, counter-clockwise from (0, -1); a circle
+/// if they are equal.
 fn stadium(from: f64, to: f64) -> Vec<Spoke> {
     let half = SEGMENTS / 2;
     let spoke = |centre, k: usize| {
@@ -118,7 +119,7 @@ fn strip(mesh: &mut Mesh, outline: &[Spoke], a: [f64; 2], b: [f64; 2]) {
     }
 }
 
-/// Closes the outline at (offset, z) with a flat fan that looks up (`up` = 1) or down (-1).
+/// Closes the outline at (offset, z) with a flat fan that faces up (`up` = 1) or down (-1).
 fn cap(mesh: &mut Mesh, outline: &[Spoke], at: [f64; 2], up: f64) {
     let first = mesh.positions.len() as u32;
     for spoke in outline {

@@ -1,10 +1,10 @@
-//! The picture between physics and GPU: plain data that a test can print.
+//! Scenes as plain data between simulation and renderer.
 //!
 //! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates (metres; x and y in the plane of
-//! motion, z along the drive axis, towards the viewer of the flat view). Numbers turn from `f64` into `f32` here and
-//! nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and says what
-//! of it [may change](Changes): geometry is made once, afterwards only poses change. Colours are sRGB with straight
-//! alpha, as in the palette, and sizes called `px` are logical pixels.
+//! motion, z along the drive axis, towards the viewer of the flat view). Numbers are converted from `f64` to `f32` here
+//! and nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and a
+//! statement of which parts [may change](Changes). Most geometry is built once; afterwards only poses change. Colours
+//! are sRGB with straight alpha, as in the palette. Sizes in `px` are logical pixels.
 
 pub mod arrow;
 pub mod axes;
@@ -37,90 +37,92 @@ use crate::mechanics::planar::Vector;
 /// sRGB red, green, blue and straight alpha, each 0..1.
 pub type Rgba = [f32; 4];
 
-/// A triangle mesh with one normal a vertex; counter-clockwise triangles face outwards. Closed, unless it is a shell.
+/// A triangle mesh with one normal per vertex; counter-clockwise triangles face outwards. Closed, unless it is a shell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertices, m.
     pub positions: Vec<[f32; 3]>,
-    /// Unit normals, one a vertex.
+    /// Unit normals, one per vertex.
     pub normals: Vec<[f32; 3]>,
-    /// Triangles, as vertex numbers.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// An open surface that is seen from both sides; being translucent, it hides nothing and every layer of it counts.
+    /// Whether the mesh is an open translucent surface: visible from both sides, all layers are drawn, and it hides
+    /// nothing.
     pub shell: bool,
 }
 
-/// The meshes of one machine. They never change while it moves, so they are uploaded once.
+/// The meshes of one machine. They do not change while it moves, so they are uploaded once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
-    /// Meshes in their own frames; [`Solid::mesh`] counts in this list.
+    /// Meshes in their own frames; [`Solid::mesh`] is an index into this list.
     pub meshes: Vec<Mesh>,
 }
 
-/// A name in parts, `machine/link/5`: of an item in its picture, and of its entity in a recording.
+/// Hierarchical name of an item of a scene and of its entity in a recording, like `machine/link/5`.
 pub type Name = Cow<'static, str>;
 
-/// world_from_item, column-major.
+/// Homogeneous transformation world_from_item, column-major.
 pub type Pose = [[f32; 4]; 4];
 
-/// An item whose own coordinates are the world's.
+/// The identity: coordinates of the item are world coordinates.
 pub const IN_PLACE: Pose = posed_at([1.0, 0.0], [0.0; 3]);
 
 const fn posed_at([c, s]: [f32; 2], [x, y, z]: [f32; 3]) -> Pose {
     [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]]
 }
 
-/// The pose of an item whose origin is at a point, m, and whose x axis lies along a unit vector.
+/// Returns the pose of an item with its origin at the point `at` and height `z`, m, and its x axis along a unit vector.
 pub fn posed(at: Vector, along: Vector, z: f64) -> Pose {
     posed_at([along.re as f32, along.im as f32], point(at, z))
 }
 
-/// A point of an item in the world.
+/// Transforms a point of an item to world coordinates.
 pub fn place(pose: &Pose, p: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|r| pose[0][r] * p[0] + pose[1][r] * p[1] + pose[2][r] * p[2] + pose[3][r])
 }
 
-/// A point of the plane of motion at a height, m.
+/// Returns the world coordinates of a point of the plane of motion at height `z`, m.
 pub fn point(p: Vector, z: f64) -> [f32; 3] {
     [p.re as f32, p.im as f32, z as f32]
 }
 
-/// What of an item may change before the picture is prepared anew.
+/// The parts of an item that may change until the scene is prepared again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Changes {
-    /// It stays as and where it is.
+    /// Nothing changes.
     Nothing,
-    /// It moves: its geometry, colour and size stay.
+    /// Only the pose changes; geometry, colour and size are constant.
     Pose,
-    /// Anything, and it may be gone.
+    /// Everything may change, and the item may disappear.
     #[default]
     Shape,
 }
 
-/// One mesh, placed and coloured. Several of one name share a mesh.
+/// A mesh with pose and colour. Several solids of one name share a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// What it is: `machine/link/5`.
+    /// Name, like `machine/link/5`.
     pub name: Name,
-    /// Which mesh of the [`Model`].
+    /// Index of the mesh in the [`Model`].
     pub mesh: usize,
     /// world_from_item, column-major.
     pub world_from_item: Pose,
-    /// Colour under full light; alpha below 1 blends (ghosts).
+    /// Colour under full light; translucent if alpha is below 1.
     pub colour: Rgba,
-    /// What may change of it.
+    /// Parts that may change.
     pub changes: Changes,
 }
 
-/// Polylines that never change once made.
+/// Immutable polylines.
 pub type Strips = Arc<[Vec<[f32; 3]>]>;
 
 /// Polylines of constant width on the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// Name.
     pub name: Name,
-    /// Vertices of each, m. A closed one repeats its first point; none at all is a line that is not to be seen now.
+    /// Vertices of each polyline, m. A closed one repeats its first point; an empty list is a line that is currently
+    /// hidden.
     pub strips: Strips,
     /// world_from_item, column-major.
     pub world_from_item: Pose,
@@ -130,14 +132,14 @@ pub struct Line {
     pub colour: Rgba,
     /// Lengths of dash and gap, px; `None` is a solid line.
     pub dash: Option<[f32; 2]>,
-    /// Drawn over everything, or hidden by solids in front of it.
+    /// Whether it is drawn over everything; otherwise solids in front of it hide it.
     pub on_top: bool,
-    /// What may change of it.
+    /// Parts that may change.
     pub changes: Changes,
 }
 
 impl Line {
-    /// A solid line that is drawn anew whenever it changes, hidden by what is in front of it.
+    /// Returns a solid line in world coordinates that may change and that solids in front of it hide.
     pub fn new(name: impl Into<Name>, strips: impl Into<Strips>, width: f32, colour: Rgba) -> Self {
         Self {
             name: name.into(),
@@ -151,42 +153,41 @@ impl Line {
         }
     }
 
-    /// In dashes and gaps, px.
+    /// Returns the line with dashes and gaps, px.
     #[must_use]
     pub fn dashed(self, dash: f32, gap: f32) -> Self {
         Self { dash: Some([dash, gap]), ..self }
     }
 
-    /// The same line, drawn over everything.
+    /// Returns the line drawn over everything.
     #[must_use]
     pub fn on_top(self) -> Self {
         Self { on_top: true, ..self }
     }
 
-    /// It stays as and where it is.
+    /// Returns the line marked as constant.
     #[must_use]
     pub fn still(self) -> Self {
         Self { changes: Changes::Nothing, ..self }
     }
 
-    /// It keeps its shape and stands in a pose.
+    /// Returns the line in a pose, marked as constant except for its pose.
     #[must_use]
     pub fn moving(self, world_from_item: Pose) -> Self {
         Self { changes: Changes::Pose, world_from_item, ..self }
     }
 
-    /// Its vertices in the world, strip by strip.
+    /// Returns all vertices in world coordinates, strip by strip.
     pub fn points(&self) -> Vec<[f32; 3]> {
         self.strips.iter().flatten().map(|p| place(&self.world_from_item, *p)).collect()
     }
 }
 
-/// A reactionless workspace as Eq. (16) states it: for `(a_1, a_2)` in the rectangle,
-/// `x + iy = B + e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates it per vertex and knows nothing
-/// more.
+/// A reactionless workspace, Eq. (16): for `(a_1, a_2)` in the rectangle,
+/// `x + iy = B + e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates this formula at each vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
-    /// What it is.
+    /// Name.
     pub name: Name,
     /// `c_k`, m.
     pub c: [f32; 3],
@@ -194,40 +195,40 @@ pub struct Area {
     pub u: [[f32; 2]; 3],
     /// `v_k`, rad.
     pub v: [f32; 3],
-    /// Least `(a_1, a_2)`, rad.
+    /// Lower bounds of `(a_1, a_2)`, rad.
     pub a_min: [f32; 2],
-    /// Greatest `(a_1, a_2)`, rad.
+    /// Upper bounds of `(a_1, a_2)`, rad.
     pub a_max: [f32; 2],
-    /// b*, rad: turns the whole area about B.
+    /// Rotation b* of the whole area about B, rad.
     pub turn: f32,
-    /// B, m.
+    /// Position of B, m.
     pub at: [f32; 2],
     /// Height of its plane, m.
     pub z: f32,
-    /// Fill of one sheet; where sheets overlap, the colour gathers.
+    /// Colour of one sheet; overlapping sheets blend to a stronger colour.
     pub colour: Rgba,
-    /// Shades the fill by a measure of dexterity.
+    /// Colour scale for a measure of dexterity.
     pub shade: Option<Shade>,
 }
 
 impl Area {
-    /// Where its plane stands before Eq. (16) is turned.
+    /// Returns the pose in which Eq. (16) with `turn` = 0 and B = 0 gives the area.
     pub fn world_from_item(&self) -> Pose {
         let [x, y] = self.at;
         posed_at([self.turn.cos(), self.turn.sin()], [x, y, self.z])
     }
 }
 
-/// A colour that a fill turns into as a measure of dexterity grows.
+/// Colour scale from the colour of an area to a second colour, by a measure of dexterity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shade {
-    /// Of what: the arms as vectors tell it at each vertex.
+    /// Measure of dexterity, evaluated at each vertex.
     pub measure: Measure,
-    /// The fill where the measure is [`full`](Self::full) or more.
+    /// Colour where the measure is [`full`](Self::full) or more.
     pub colour: Rgba,
-    /// Where it still has the area's own colour, 0 for det.
+    /// Value of the measure with the area's own colour; 0 for det.
     pub empty: f32,
-    /// Where it has this colour.
+    /// Value of the measure with the second colour.
     pub full: f32,
 }
 
@@ -239,20 +240,20 @@ pub enum Measure {
     Det = 0,
     /// √det(J Jᵀ), m².
     Manipulability = 1,
-    /// The greatest |τ| of a unit force at the end effector, N m/N.
+    /// Maximum |τ| over all unit forces at the end effector, N m/N.
     TorquePerForce = 2,
 }
 
-/// A disc or ring of constant size on the screen: a joint dot, a handle, the end effector. Several may have one name.
+/// A disc or ring of constant size on the screen, for joints, handles and the end effector. Several may have one name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
-    /// What it is.
+    /// Name.
     pub name: Name,
-    /// Centre, m: all of its pose.
+    /// Centre, m.
     pub at: [f32; 3],
     /// Outer radius, px.
     pub radius: f32,
-    /// Inside; alpha 0 leaves it hollow.
+    /// Colour of the inside; hollow if alpha is 0.
     pub fill: Rgba,
     /// Colour of the edge.
     pub stroke: Rgba,
@@ -261,19 +262,19 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// A disc without an edge.
+    /// Returns a disc without an edge.
     pub fn disc(name: impl Into<Name>, at: [f32; 3], radius: f32, fill: Rgba) -> Self {
         Self { name: name.into(), at, radius, fill, stroke: fill, stroke_width: 0.0 }
     }
 
-    /// With an edge.
+    /// Returns the marker with an edge of the given colour and width, px.
     #[must_use]
     pub fn edged(self, stroke: Rgba, stroke_width: f32) -> Self {
         Self { stroke, stroke_width, ..self }
     }
 }
 
-/// Where a label's anchor lies on its box.
+/// Position of the anchor point on the rectangle of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text runs to the right of the anchor.
@@ -287,24 +288,24 @@ pub enum Anchor {
 /// Text beside a point. Several may have one name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// Of what: `plan/names`.
+    /// Name, like `plan/names`.
     pub name: Name,
-    /// Point it belongs to, m.
+    /// Point that it belongs to, m.
     pub at: [f32; 3],
     /// Shift on the screen, px; y down.
     pub offset: [f32; 2],
-    /// The words.
+    /// Text.
     pub text: String,
     /// Colour.
     pub colour: Rgba,
-    /// Height of the type, px.
+    /// Font size, px.
     pub size: f32,
-    /// Which side of the text holds the anchor.
+    /// Position of the anchor point.
     pub anchor: Anchor,
 }
 
 impl Label {
-    /// Text of a colour and size beside a point.
+    /// Returns a label of the given text, colour and size beside a point.
     pub fn new(
         name: impl Into<Name>,
         at: [f32; 3],
@@ -318,31 +319,31 @@ impl Label {
     }
 }
 
-/// The soft shadow of a bar on a plane below it, seen in space; no thing of its own, so it has no name.
+/// The soft shadow of a bar on a plane below it, in the perspective view. It is not an item, so it has no name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadow {
-    /// The ends of its middle line, m.
+    /// End points of its centre line, m.
     pub ends: [[f32; 2]; 2],
     /// Height of the plane, m.
     pub z: f32,
-    /// Half the width of what is fully dark, m.
+    /// Half width of the fully dark part, m.
     pub core: f32,
-    /// From the middle to where it ends, m.
+    /// Half width of the whole shadow, m.
     pub reach: f32,
-    /// How dark, from 0 to 1.
+    /// Opacity, from 0 to 1.
     pub strength: f32,
 }
 
-/// Everything there is to draw at one instant.
+/// All items to be drawn at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Colour behind everything.
+    /// Background colour.
     pub background: Rgba,
     /// Meshes that the solids refer to.
     pub model: Arc<Model>,
-    /// Fills, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
+    /// Filled areas, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
-    /// Of bars, over the fills.
+    /// Shadows of bars, over the areas.
     pub shadows: Vec<Shadow>,
     /// Bars, joints, base.
     pub solids: Vec<Solid>,
@@ -350,14 +351,14 @@ pub struct Scene {
     pub lines: Vec<Line>,
     /// Handles and dots, over everything.
     pub markers: Vec<Marker>,
-    /// Words, over everything; drawn by egui, which has the fonts.
+    /// Labels, over everything; drawn by egui, which has the fonts.
     pub labels: Vec<Label>,
-    /// The middle lines of the machine's bars, which words keep off.
+    /// Centre lines of the bars of the machine, which labels avoid.
     pub bars: Vec<[[f32; 3]; 2]>,
 }
 
 impl Scene {
-    /// Nothing yet, in front of a background.
+    /// Returns an empty scene with a background colour.
     pub fn new(background: Rgba, model: Arc<Model>) -> Self {
         Self {
             background,
@@ -372,7 +373,7 @@ impl Scene {
         }
     }
 
-    /// Whether another one looks the same but for its words.
+    /// Whether another scene looks the same except for its labels.
     pub fn looks_like(&self, other: &Self) -> bool {
         let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bars: _ } = self;
         Arc::ptr_eq(model, &other.model)

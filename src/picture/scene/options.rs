@@ -1,4 +1,4 @@
-//! What a person has chosen to see, and what can be dragged.
+//! Options of the view, and the handles that the pointer can pick.
 
 use std::sync::Arc;
 
@@ -10,46 +10,46 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::session::Refusal;
 use crate::simulation::frame::Frame;
 
-/// What a person has chosen to see.
+/// Options of the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewOptions {
-    /// Light or dark.
+    /// Light or dark theme.
     pub theme: Theme,
-    /// The workspace is shaded by this measure.
+    /// Measure of dexterity that colours the workspace.
     pub dexterity: Option<Measure>,
-    /// The scene says what can be dragged.
+    /// Whether labels say what can be dragged.
     pub invites: bool,
-    /// The second workspace, to compare with, is shown.
+    /// Whether the second workspace is shown for comparison.
     pub compares: bool,
-    /// The pointer is on this handle, or drags it.
+    /// Handle that is under the pointer or dragged.
     pub hot: Option<Handle>,
-    /// Where the pointer holds what it drags, m.
+    /// Position of the pointer during a drag, m.
     pub held: Option<[f64; 2]>,
-    /// A pose constant to show A, or the target, on, rad.
+    /// Pose constant for which the poses at A, or at the target, are previewed, rad.
     pub preview_b: Option<f64>,
-    /// What the pointer has drawn so far, m.
+    /// Curve that the pointer has drawn so far, m.
     pub stroke: Vec<[f64; 2]>,
-    /// What was asked for last and refused.
+    /// Curve that was requested last and refused.
     pub refused: Option<Arc<Refused>>,
-    /// Poses along the motion, in the order of time, as in Fig. 5.
+    /// Poses along the motion, in order of time, as in Fig. 5.
     pub snapshots: Vec<DriveAngles>,
     /// Other runs at the same instant.
     pub others: Vec<Other>,
-    /// Arrows show what the pins carry.
+    /// Whether arrows show the pin forces.
     pub pin_forces: bool,
-    /// Arcs show the joint limits.
+    /// Whether arcs show the joint limits.
     pub limits: bool,
-    /// Links throw shadows on the floor.
+    /// Whether links cast shadows on the floor.
     pub shadows: bool,
-    /// How the motion of the base is drawn.
+    /// Exaggeration of the motion of the base.
     pub exaggeration: Exaggeration,
-    /// A force at the end effector, N.
+    /// External force at the end effector, N.
     pub push: Option<[f64; 2]>,
-    /// Counterweights to choose from.
+    /// Counterweights to choose from, in the design view.
     pub weights: Vec<Offered>,
-    /// Links that are spoken of, by number, where the machine is designed.
+    /// Indices of highlighted links, in the design view.
     pub links: Vec<usize>,
-    /// What a full arrow and arc of a reaction stand for; none goes by the largest so far.
+    /// Scale of the arrow and arc of the reaction; `None` uses the largest values so far.
     pub scale: Option<Scale>,
 }
 
@@ -79,36 +79,36 @@ impl Default for ViewOptions {
     }
 }
 
-/// What in the scene the pointer can be on: to be dragged, to be clicked, or to be told of.
+/// The items of a scene that the pointer can pick: to be dragged, clicked or described.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// The end effector's target.
     Target,
-    /// The end effector, to be pushed.
+    /// The end effector, to which a force is applied.
     EndEffector,
     /// The knob of the b ring.
     Ring,
     /// The plane b = const, in joint space or as a slice of the tower.
     Plane,
-    /// A bar of the tower: the b that reach a point.
+    /// A bar of the tower: an interval of b that reaches a point.
     Bar,
-    /// A point of the planned path, counted from A.
+    /// A point of the planned path; its index from A.
     Waypoint(usize),
-    /// A link, by its number in the machine.
+    /// A link; its index in the machine.
     Link(usize),
-    /// The centre of mass of a link, by its number, where the machine is designed.
+    /// The centre of mass of a link in the design view; index of the link.
     Mass(usize),
-    /// A counterweight, by its number in the machine.
+    /// A counterweight; its index in the machine.
     Weight(usize),
-    /// The end of a link, by its number.
+    /// The end of a link in the design view; index of the link.
     End(usize),
-    /// A pin that joins links, by its number in the [`Linkage`](super::linkage::Linkage).
+    /// A pin between links; its index in the [`Linkage`](super::linkage::Linkage).
     Joint(usize),
-    /// An end of the joint limits of a relative angle: both counted from 0.
+    /// A joint limit: index of the relative angle, and 0 for its lower or 1 for its upper limit.
     Limit(usize, usize),
-    /// What the machine stands on, with its drives.
+    /// The base with its drives.
     Base,
-    /// What the plant holds and the model does not know of.
+    /// The payload of the plant, which the model of the controller does not contain.
     Payload,
     /// The boundary of the reactionless workspace.
     Boundary,
@@ -119,7 +119,7 @@ pub enum Handle {
 }
 
 impl Handle {
-    /// Whether the pointer can pull at it.
+    /// Whether the pointer can drag it.
     pub fn can_be_dragged(self) -> bool {
         match self {
             Self::Target
@@ -139,39 +139,39 @@ impl Handle {
     }
 }
 
-/// A counterweight to choose.
+/// A counterweight to choose from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offered {
-    /// Its link, counted from 0.
+    /// Index of its link, from 0.
     pub link: usize,
-    /// Where along that, m.
+    /// Position along the link, m.
     pub at: f64,
-    /// m.
+    /// Radius, m.
     pub radius: f64,
 }
 
-/// Another run at the present instant.
+/// Another run at the displayed instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Other {
-    /// Its number in the table.
+    /// Its number in the table of runs.
     pub name: String,
-    /// What is true of it.
+    /// Its frame.
     pub frame: Frame,
 }
 
-/// A curve that was asked for and refused, and where it cannot be followed.
+/// A requested curve that was refused, and the point from which it cannot be followed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
-    /// m.
+    /// Points of the curve, m.
     pub curve: Vec<Vector>,
-    /// m.
+    /// Point where following stops, m.
     pub at: Vector,
-    /// Why, in a few words.
+    /// Reason, in a few words.
     pub why: String,
 }
 
 impl Refused {
-    /// The curve of a refusal, if it is of one.
+    /// Returns the refused curve, if the refusal is about a curve.
     pub fn of(refusal: &Refusal) -> Option<Self> {
         let Refusal::Blocked(blocked) = refusal else { return None };
         Some(Self { curve: blocked.curve.clone(), at: blocked.at, why: blocked.stop.to_string() })

@@ -1,42 +1,42 @@
-//! The colours of Stillbase, and what they mean; the same in scene, plots, recordings and figures.
+//! Colours by meaning, for scenes, plots, recordings and figures.
 
 use super::Rgba;
 
-/// Light or dark.
+/// Light or dark theme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Theme {
-    /// Light ink on dark.
+    /// Light text on a dark background.
     #[default]
     Dark,
-    /// Dark ink on white.
+    /// Dark text on white.
     Light,
 }
 
 /// Colour by meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// Behind the scene.
+    /// Background of scenes.
     pub background: Rgba,
-    /// Behind the panels.
+    /// Background of panels.
     pub panel: Rgba,
     /// Hairlines and the grid.
     pub line: Rgba,
     /// Colour of text.
     pub ink: Rgba,
-    /// Text of less weight.
+    /// Secondary text.
     pub dim: Rgba,
     /// Drives 1 to 8.
     pub drives: [Rgba; 8],
     /// b, its workspace, the time cursor.
     pub amber: Rgba,
-    /// A reaction that is zero.
+    /// Reactions that are zero.
     pub zero: Rgba,
-    /// A reaction that is not.
+    /// Reactions that are not zero.
     pub reaction: Rgba,
 }
 
-/// The colours of a theme.
+/// Returns the colours of a theme.
 pub const fn palette(theme: Theme) -> Palette {
     match theme {
         Theme::Dark => Palette {
@@ -83,18 +83,18 @@ pub const fn palette(theme: Theme) -> Palette {
 }
 
 impl Palette {
-    /// The colour of drive `k`, counted from 0.
+    /// Returns the colour of drive `k`, counted from 0.
     pub fn drive(&self, k: usize) -> Rgba {
         self.drives[k % self.drives.len()]
     }
 }
 
-/// The same colour, more transparent: `alpha` 0..1 multiplies.
+/// Returns a colour with its alpha multiplied by `alpha`, 0..1.
 pub fn faded([r, g, b, a]: Rgba, alpha: f32) -> Rgba {
     [r, g, b, a * alpha]
 }
 
-/// a towards b by a share of 0..1.
+/// Interpolates between `a` and `b`: `share` 0 gives `a`, 1 gives `b`.
 pub fn mix(a: Rgba, b: Rgba, share: f32) -> Rgba {
     [0, 1, 2, 3].map(|i| a[i] + (b[i] - a[i]) * share)
 }

@@ -1,34 +1,34 @@
-//! What the pointer has taken hold of, and what pulling at it asks for.
+//! Picked items, and the changes that dragging them requests.
 
 use super::options::Handle;
 
-/// How near to a handle the pointer takes hold of it, px.
+/// Distance within which the pointer picks a handle, px.
 pub const NEAR: f64 = 20.0;
 
-/// What the pointer has taken hold of, and where.
+/// A picked item, and the point at which it was picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// What is held.
+    /// Picked handle.
     pub handle: Handle,
-    /// In the scene.
+    /// Picked point in the coordinates of the scene.
     pub at: [f64; 3],
-    /// How a link or a joint limit is held.
+    /// State at the start of the drag, for links and joint limits.
     pub grip: Option<Grip>,
 }
 
-/// How something that turns is held.
+/// State at the start of the drag of a link or a joint limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
-    /// A link.
+    /// A link that is rotated.
     Link(Hold),
-    /// A link that is pulled while the end effector stays.
+    /// A link that is dragged while the end effector stays.
     Pull(Hook),
     /// A joint limit.
     Limit(Pivot),
 }
 
 impl Grip {
-    /// The same, with a link that stops at round angles of its drive only, or does not.
+    /// Returns the grip with snapping of the link to round drive angles switched on or off.
     #[must_use]
     pub fn snapping(self, snaps: bool) -> Self {
         match self {
@@ -38,130 +38,132 @@ impl Grip {
     }
 }
 
-/// What a joint limit turned about when it was taken hold of; the machine may move under the hand.
+/// Centre of a joint limit at the start of the drag; the machine may move meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pivot {
-    /// The pin, m.
+    /// Position of the pin, m.
     pub at: [f64; 2],
     /// Angle of the inner drive, rad.
     pub inner: f64,
 }
 
-/// Where on a link it is pulled.
+/// Point at which a link is dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hook {
-    /// m from its root.
+    /// Distance from the root of the link, m.
     pub along: f64,
-    /// From the pointer to there, m.
+    /// Vector from the pointer to this point, m.
     pub off: [f64; 2],
 }
 
-/// How a link is held.
+/// State of a link at the start of its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    /// From the link's direction to the pointer about its root, rad.
+    /// Angle from the direction of the link to the pointer, about the root of the link, rad.
     pub angle: f64,
-    /// (a_1, a_2) when it was taken hold of, rad.
+    /// (a_1, a_2) at the start of the drag, rad.
     pub from: [f64; 2],
-    /// Whether its drive stops at round angles only.
+    /// Whether the angle of its drive snaps to round angles.
     pub snaps: bool,
 }
 
-/// Round places, m, pose constants, rad, forces, N, and angles of drives, rad.
-const ROUND_PLACE: f64 = 0.01;
-const ROUND_B: f64 = 0.05;
-const ROUND_FORCE: f64 = 0.5;
-/// Of drives that a hand turns.
+/// Grid of positions for snapping, m.
+const POSITION_GRID_M: f64 = 0.01;
+/// Grid of pose constants for snapping, rad.
+const B_GRID_RAD: f64 = 0.05;
+/// Grid of force components for snapping, N.
+const FORCE_GRID_N: f64 = 0.5;
+/// Grid of angles for snapping, rad.
 pub const ROUND_ANGLE: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
 impl Aim {
-    /// The same at the nearest round numbers.
+    /// Returns the change rounded to the grids for snapping.
     #[must_use]
     pub fn snapped(self) -> Self {
         let round = |x: f64, step: f64| (x / step).round() * step;
         let both = |at: [f64; 2], step| at.map(|x| round(x, step));
         match self {
-            Self::Target(at) => Self::Target(both(at, ROUND_PLACE)),
-            Self::Waypoint(i, at) => Self::Waypoint(i, both(at, ROUND_PLACE)),
-            Self::Payload(offset) => Self::Payload(both(offset, ROUND_PLACE)),
+            Self::Target(at) => Self::Target(both(at, POSITION_GRID_M)),
+            Self::Waypoint(i, at) => Self::Waypoint(i, both(at, POSITION_GRID_M)),
+            Self::Payload(offset) => Self::Payload(both(offset, POSITION_GRID_M)),
             Self::Limit { angle, end, mut ends } => {
-                // Round, unless that is beyond the other end.
+                // Rounded, unless that is beyond the other limit.
                 let rounded = round(ends[end], ROUND_ANGLE);
                 let fits = if end == 0 { rounded < ends[1] } else { rounded > ends[0] };
                 ends[end] = if fits { rounded } else { ends[end] };
                 Self::Limit { angle, end, ends }
             }
-            Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),
-            Self::B(b) => Self::B(round(b, ROUND_B)),
-            Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, ROUND_PLACE) },
-            Self::Mass { link, to } => Self::Mass { link, to: round(to, ROUND_PLACE) },
-            Self::Weight { weight, to } => Self::Weight { weight, to: round(to, ROUND_PLACE) },
-            Self::Length { link, to } => Self::Length { link, to: round(to, ROUND_PLACE).max(ROUND_PLACE) },
-            // Where its drive is at a round angle: its grip says so.
+            Self::Push(force) => Self::Push(both(force, FORCE_GRID_N)),
+            Self::B(b) => Self::B(round(b, B_GRID_RAD)),
+            Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, POSITION_GRID_M) },
+            Self::Mass { link, to } => Self::Mass { link, to: round(to, POSITION_GRID_M) },
+            Self::Weight { weight, to } => Self::Weight { weight, to: round(to, POSITION_GRID_M) },
+            Self::Length { link, to } => Self::Length { link, to: round(to, POSITION_GRID_M).max(POSITION_GRID_M) },
+            // Already snapped, if `Hold::snaps` is set.
             Self::Angles(a) => Self::Angles(a),
         }
     }
 }
 
 impl Pick {
-    /// What does not turn.
+    /// Returns the pick of a handle that needs no state from the start of the drag.
     pub fn of(handle: Handle, at: [f64; 3]) -> Self {
         Self { handle, at, grip: None }
     }
 }
 
-/// What pulling at it asks of the session.
+/// A change that a drag requests from the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
-    /// The end effector at a point, m.
+    /// Target position of the end effector, m.
     Target([f64; 2]),
-    /// The pose constant, rad.
+    /// Pose constant, rad.
     B(f64),
-    /// A point of the path, counted from A, at a place, m.
+    /// Position, m, of a point of the path; its index from A.
     Waypoint(usize, [f64; 2]),
-    /// The relative joint angles (a_1, a_2), rad.
+    /// Relative joint angles (a_1, a_2), rad.
     Angles([f64; 2]),
-    /// A point of a link, while the end effector stays.
+    /// Position of a point of a link, while the end effector stays.
     Pull {
-        /// Counted from 0.
+        /// Index of the link, from 0.
         link: usize,
-        /// m from its root.
+        /// Distance of the point from the root of the link, m.
         along: f64,
-        /// m.
+        /// Requested position, m.
         at: [f64; 2],
     },
-    /// Least and greatest value of a relative angle.
+    /// Limits of a relative angle.
     Limit {
-        /// Counted from 0.
+        /// Index of the angle, from 0.
         angle: usize,
-        /// Which of the two is pulled.
+        /// The dragged limit: 0 for the lower, 1 for the upper one.
         end: usize,
-        /// rad.
+        /// Lower and upper limit, rad.
         ends: [f64; 2],
     },
-    /// The payload's centre of mass, along and across the link that holds it, m.
+    /// Centre of mass of the payload, along and across the link that holds it, m.
     Payload([f64; 2]),
-    /// A force at the end effector, N.
+    /// Force at the end effector, N.
     Push([f64; 2]),
-    /// The centre of mass of a link.
+    /// Centre of mass of a link.
     Mass {
-        /// Counted from 0.
+        /// Index of the link, from 0.
         link: usize,
-        /// m from its root.
+        /// Distance from the root of the link, m.
         to: f64,
     },
-    /// A counterweight.
+    /// Position of a counterweight.
     Weight {
-        /// Counted from 0.
+        /// Index of the counterweight, from 0.
         weight: usize,
-        /// m from the root of its link.
+        /// Distance from the root of its link, m.
         to: f64,
     },
-    /// The length of a link.
+    /// Length of a link.
     Length {
-        /// Counted from 0.
+        /// Index of the link, from 0.
         link: usize,
-        /// m.
+        /// Requested length, m.
         to: f64,
     },
 }

@@ -1,7 +1,7 @@
-//! What reaches the base at an instant, with its words and colours: every view and every recording draws this.
+//! The reaction on the base at an instant, with its texts and colours, for all views and recordings.
 //!
-//! The arrow is the force of the motion; constant forces, of weight and pushes, are written beside it. The arc is the
-//! moment that the base feels. Force and moment have a colour each.
+//! The arrow is the force due to the motion; constant forces (weight and pushes) are written beside it. The arc is the
+//! moment that reaches the base. Force and moment have separate colours.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,48 +11,50 @@ use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_up, signed};
 use crate::simulation::frame::{Frame, REACTIONLESS};
 
-/// A full arrow, parts of the machine's reach.
+/// Length of a full arrow, as a fraction of the reach of the machine.
 pub const ARROW: f64 = 0.25;
-/// Radius of the arc of a moment, parts of the machine's reach.
+/// Radius of the arc of a moment, as a fraction of the reach of the machine.
 pub const RADIUS: f64 = 0.17;
-/// The sweep of a full arc, rad.
+/// Angle of a full arc, rad.
 pub const FULL: f64 = 1.5 * FRAC_PI_2;
-/// The least arrow, parts of the reach, and the least sweep, rad, that can be seen.
-const LEAST: (f64, f64) = (0.004, 0.02);
+/// Minimum length of a visible arrow, as a fraction of the reach.
+const MIN_ARROW: f64 = 0.004;
+/// Minimum angle of a visible arc, rad.
+const MIN_SWEEP_RAD: f64 = 0.02;
 
-/// What a full arrow and a full arc stand for.
+/// Force and moment of a full arrow and a full arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// N of a full arrow.
+    /// Force of a full arrow, N.
     pub newtons: f64,
-    /// N m of a full arc.
+    /// Moment of a full arc, N m.
     pub newton_metres: f64,
 }
 
 impl Scale {
-    /// Round numbers that hold the largest force and moment that are shown.
+    /// Returns round numbers that are at least the largest force, N, and moment, N m.
     pub fn of(force: f64, moment: f64) -> Self {
         Self { newtons: round_up(force.max(1e-3)), newton_metres: round_up(moment.max(1e-3)) }
     }
 }
 
-/// What reaches the base at an instant.
+/// Reaction on the base at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// f_B of motion, N.
+    /// Force f_B due to the motion, N.
     pub force: Vector,
-    /// What the base feels of n_B, N m.
+    /// Part of the moment n_B that reaches the base, N m.
     pub moment: f64,
-    /// |f_B| of weight and pushes, N.
+    /// |f_B| due to weight and pushes, N.
     pub rest: f64,
-    /// Whether the force is more than rounding, by the measure of the run so far.
+    /// Whether the force exceeds rounding errors, relative to the inertial forces of the run so far.
     pub pulls: bool,
-    /// The same of the moment.
+    /// Whether the moment exceeds rounding errors, relative to the torques of the run so far.
     pub turns: bool,
 }
 
 impl Reaction {
-    /// Of a frame.
+    /// Returns the reaction of a frame.
     pub fn of(frame: &Frame) -> Self {
         let (force, moment) = (frame.wrench.dynamic.force, frame.felt_moment());
         Self {
@@ -64,19 +66,19 @@ impl Reaction {
         }
     }
 
-    /// The arrow, parts of the reach, where a full one stands for so many newtons; none where nothing is to be seen.
+    /// Returns the arrow as a fraction of the reach; `newtons` is the force of a full arrow. `None` if it is too small.
     pub fn arrow(&self, newtons: f64) -> Option<Vector> {
         let arrow = self.force * (ARROW / newtons);
-        (self.pulls && arrow.norm() > LEAST.0).then_some(arrow)
+        (self.pulls && arrow.norm() > MIN_ARROW).then_some(arrow)
     }
 
-    /// The sweep of the arc, rad, where a full one stands for so many newton metres; none where nothing is to be seen.
+    /// Returns the angle of the arc, rad; `newton_metres` is the moment of a full arc. `None` if it is too small.
     pub fn sweep(&self, newton_metres: f64) -> Option<f64> {
         let sweep = self.moment / newton_metres * FULL;
-        (self.turns && sweep.abs() > LEAST.1).then_some(sweep)
+        (self.turns && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
     }
 
-    /// f_B and n_B in words, each in its own colour.
+    /// Returns the texts of f_B and n_B with their colours.
     pub fn readings(&self, palette: &Palette) -> [(String, Rgba); 2] {
         let tone = |real: bool| if real { palette.reaction } else { palette.zero };
         [
@@ -85,13 +87,13 @@ impl Reaction {
         ]
     }
 
-    /// What else the base carries, by its name, if there is any.
+    /// Returns the text of the constant force under the given name, if there is one.
     pub fn beside(&self, name: &str) -> Option<String> {
         (self.rest > 0.0).then(|| format!("and {name}, {:.1} N", self.rest))
     }
 }
 
-/// Three decimals, or the order of magnitude where they would hide it.
+/// Formats with three decimals, or with a power of ten if a nonzero value would be rounded to zero.
 fn reading(x: f64, real: bool) -> String {
     if real && x.abs() < 5e-4 { format!("{x:.1e}").replace('-', "−") } else { signed(x, 3) }
 }

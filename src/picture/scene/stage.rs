@@ -1,4 +1,4 @@
-//! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
+//! Makes the [`Scene`] of a run and a frame. A [`Stage`] holds the parts that do not change from frame to frame.
 
 mod base;
 mod limits;
@@ -38,66 +38,67 @@ use path::Plan;
 use pins::Pins;
 use ring::Ring;
 
-/// What stays the same from frame to frame.
+/// The parts of the machine's view that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Stage {
     linkage: Linkage,
     base: BaseStage,
     reached: Reached,
-    /// The mesh that fills it.
+    /// Index of the mesh that fills the workspace.
     fill: Option<usize>,
-    /// The b to compare with, rad.
+    /// Pose constant b of the workspace for comparison, rad.
     compared: Option<f64>,
-    /// Of a machine with a b to turn.
+    /// The ring that sets b, if the machine has a b and more than one drive.
     ring: Option<Ring>,
     plan: Option<Plan>,
-    /// Whether the run waits, and whether a hand can lead the machine.
+    /// Whether the run waits because its task is infeasible.
     waits: bool,
-    follows: bool,
-    /// Whether links are pulled while the end effector stays.
-    holds: bool,
+    /// Whether the target can be dragged.
+    target_draggable: bool,
+    /// Whether links can be dragged while the end effector stays.
+    links_draggable: bool,
     pins: Pins,
     limits: Limits,
     grid: Grid,
 }
 
-/// What is reached while b is held.
+/// The workspace for constant b.
 #[derive(Clone, Debug)]
 enum Reached {
-    /// There is none.
+    /// The machine has none.
     None,
-    /// Its outline is yet to be found.
+    /// Its outline is not yet computed.
     Wanted(Arc<PoseSpace>),
-    /// Here it is.
+    /// Its outline is known.
     Done(Arc<Workspace>),
 }
 
 impl Reached {
-    /// Of a pose space: planes know it at once.
+    /// Returns the workspace at once for a machine with planes; otherwise its outline is still to be computed.
     fn of(space: &Arc<PoseSpace>) -> Self {
         Workspace::known(space).map_or_else(|| Self::Wanted(space.clone()), |known| Self::Done(Arc::new(known)))
     }
 }
 
 impl Stage {
-    /// Prepares a run for drawing; to be made again when its machine or plan changes.
+    /// Prepares a run for drawing; to be repeated when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
         let mut stage = Self::begun(run);
         stage.finish(run.queries());
         stage
     }
 
-    /// Finds the outline, where it is still wanted.
+    /// Computes the outline of the workspace, if it is not yet known.
     pub fn finish(&mut self, queries: &Queries) {
         if let Some(space) = self.unoutlined() {
             self.set_outline(Option::clone(&queries.ask::<Outlining>(&Shared(space))));
         }
     }
 
-    /// The same but for an outline of what is reached that takes longer.
+    /// Prepares a run for drawing, without an outline of the workspace that takes longer to compute.
     pub fn begun(run: &Run) -> Self {
         let model = &run.scenario().machine;
-        // A machine with other lengths is drawn as it is.
+        // If the plant has other lengths than the model, the plant is drawn.
         let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
         let linkage = Linkage::of(&plant);
         let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
@@ -109,8 +110,8 @@ impl Stage {
             ring: space.filter(|space| !space.joints().is_empty()).map(|space| Ring::of(space, ring_radius(&linkage))),
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
-            follows: run.waiting().is_none() && space.is_some(),
-            holds: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
+            target_draggable: run.waiting().is_none() && space.is_some(),
+            links_draggable: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: Grid::of(&linkage),
@@ -118,13 +119,13 @@ impl Stage {
         }
     }
 
-    /// The same without a workspace, for a run that is led otherwise.
+    /// Returns the stage without workspace and ring, for a run that does not follow a target.
     #[must_use]
     pub fn without_workspace(self) -> Self {
         Self { ring: None, reached: Reached::None, ..self }
     }
 
-    /// What is reached while b is held, once it is found.
+    /// Returns the workspace for constant b, once its outline is known.
     pub fn outlined(&self) -> Option<&Workspace> {
         match &self.reached {
             Reached::Done(workspace) => Some(workspace),
@@ -132,7 +133,7 @@ impl Stage {
         }
     }
 
-    /// What is yet to be outlined.
+    /// Returns the pose space whose outline is still to be computed.
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
         match &self.reached {
             Reached::Wanted(space) => Some(space.clone()),
@@ -140,7 +141,7 @@ impl Stage {
         }
     }
 
-    /// Takes the outline of what was yet to be outlined.
+    /// Sets the outline of the workspace; `None` if the machine has no workspace.
     pub fn set_outline(&mut self, outline: Option<Arc<Workspace>>) {
         let fill = outline.as_ref().and_then(|outline| outline.fill());
         self.fill = fill.map(|mesh| self.linkage.add(mesh.clone()));
@@ -151,7 +152,7 @@ impl Stage {
         self.outlined()?.planes()
     }
 
-    /// Takes over what has changed of base and payload.
+    /// Updates base and payload from a run.
     pub fn refresh(&mut self, run: &Run) {
         self.base.refresh(run);
     }
@@ -161,12 +162,12 @@ impl Stage {
         self.grid.width()
     }
 
-    /// The machine's body.
+    /// Body of the machine.
     pub fn linkage(&self) -> &Linkage {
         &self.linkage
     }
 
-    /// From where to where a measure of dexterity is shaded.
+    /// Ends of the colour scale of a measure of dexterity.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
         self.outlined().and_then(|workspace| workspace.shaded(measure)).unwrap_or([0.0, 1.0])
     }
@@ -181,13 +182,13 @@ impl Stage {
         self.linkage.top()
     }
 
-    /// Where a handle is drawn, m.
+    /// Returns the drawn position of a handle, m; `None` if it is not shown.
     pub fn handle(&self, handle: Handle, shown: &Shown<'_>) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
             Handle::EndEffector if self.waits => None,
-            // The point of the path under it is held instead.
-            Handle::Target if !self.follows => None,
+            // The point of the path below it is picked instead.
+            Handle::Target if !self.target_draggable => None,
             Handle::Target => Some([shown.target.re, shown.target.im, z]),
             Handle::Ring => {
                 let p = self.ring.as_ref()?.knob(shown);
@@ -203,56 +204,57 @@ impl Stage {
         }
     }
 
-    /// The ends of the joint limits as they are drawn, to be taken hold of.
+    /// Returns the picks of all joint limits at their drawn positions.
     pub fn limits<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
         self.limits.ends(&self.linkage, shown)
     }
 
-    /// Both limits of a relative angle, rad, with one end (0 or 1) pulled to the pointer.
+    /// Returns both limits of a relative angle, rad, with the lower (0) or upper (1) one dragged to the pointer.
     pub fn limit_pulled(&self, limit: (usize, usize), pivot: &Pivot, pointer: &Pointer) -> Option<[f64; 2]> {
         self.limits.pulled(limit, pivot, self.handle_height(), pointer)
     }
 
-    /// Where the payload's centre of mass is, seen along and across the link that holds it, m, if it is brought to a
-    /// place.
+    /// Converts a drawn position of the centre of mass of the payload, m, to offsets along and across the link that
+    /// holds it, m.
     pub fn load_offset(&self, shown: &Shown<'_>, at: [f64; 2]) -> [f64; 2] {
         self.base.offset_at(shown, Vector::new(at[0], at[1]))
     }
 
-    /// Where the payload is drawn, m, while it is held.
+    /// Returns the drawn position of the payload, m, while the machine holds it.
     pub fn payload(&self, shown: &Shown<'_>) -> Option<Vector> {
         self.base.load_at(shown)
     }
 
-    /// The number of the link under the pointer; the uppermost of several.
+    /// Returns the index of the link under the pointer; the uppermost of several.
     pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
         under::link(&self.linkage, shown, pointer)
     }
 
-    /// The link under the pointer, taken hold of, on a machine that has planes to turn it on, or freedoms to pull it in.
+    /// Picks the link under the pointer, if the machine has planes on which the link can be rotated, or freedoms left
+    /// with fixed end effector.
     pub fn grip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
-        if self.holds {
+        if self.links_draggable {
             let i = self.link_at(shown, pointer)?;
             return turning::hook(i, self.linkage.bars().get(i)?, shown, pointer);
         }
-        let planes = self.planes().filter(|_| self.follows)?;
+        let planes = self.planes().filter(|_| self.target_draggable)?;
         let (i, map) = (self.link_at(shown, pointer)?, planes.map());
         turning::grip(i, self.linkage.bars().get(i)?, map, shown, pointer)
     }
 
-    /// The angles (a_1, a_2), rad, at which a link points where the pointer pulls it, on the plane b; as near to that as
-    /// the joint limits let it.
+    /// Returns the angles (a_1, a_2), rad, on the plane b for which the link follows the pointer, as far as the joint
+    /// limits allow.
     pub fn turned(&self, link: usize, grip: &Hold, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
         let map = self.planes()?.map();
         turning::turned(self.linkage.bars().get(link)?, grip, map, shown, pointer, b)
     }
 
-    /// Where the pointer pulls a link while the end effector stays.
+    /// Returns the change requested by dragging a link while the end effector stays.
     pub fn pulled(&self, link: usize, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
         turning::pulled(link, self.linkage.bars().get(link)?, hook, shown, pointer)
     }
 
-    /// What is under the pointer that cannot be pulled at; the uppermost of several.
+    /// Returns the item under the pointer that gives information; the uppermost of several.
     pub fn under(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
         let load = || self.base.load_at(shown).filter(|at| under::payload(*at, &self.linkage, pointer));
         let known = || self.outlined().filter(|workspace| workspace.planes().is_some());
@@ -266,12 +268,12 @@ impl Stage {
             .or_else(|| edge().map(|_| Handle::Boundary))
     }
 
-    /// The b that a place of the ring's knob as it is drawn stands for, nearest to the present one, rad.
+    /// Returns the b, rad, of a drawn position of the knob, m; of all full turns, the b nearest to `near`.
     pub fn ring_b(&self, at: [f64; 2], near: f64, shown: &Shown<'_>) -> Option<f64> {
         Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, shown))
     }
 
-    /// The ends of all links as they are drawn, and the target: what a hand wants to see.
+    /// Returns the drawn ends of all links, and the target, m.
     pub fn outline<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = [f64; 3]> + 'a {
         let (units, at, target) = (shown.q.units(), shown.base.at, shown.target);
         let ends = self.linkage.bars().iter().flat_map(move |bar| bar.ends(&units));
@@ -279,13 +281,13 @@ impl Stage {
         ends.map(move |[x, y, z]| [at.re + x, at.im + y, z]).chain([target])
     }
 
-    /// Points of the planned path that can be dragged: their numbers, A first.
+    /// Returns the indices of the points of the planned path that can be dragged, A first.
     pub fn waypoints(&self) -> impl Iterator<Item = usize> + '_ {
         self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(i, ..)| *i))
     }
 
-    /// What is to be seen when everything is shown: the machine as it stands and in other poses, its workspace, its
-    /// task; and the workspace to compare with.
+    /// Returns the points that the camera has to show: the machine in its present and in other poses, its workspace and
+    /// its task; secondly the workspace for comparison.
     pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> Content {
         let (base, z) = (frame.base, self.handle_height());
         let on_base = |p: Vector| base.at + unit(base.angle) * p;
@@ -307,7 +309,7 @@ impl Stage {
         }
     }
 
-    /// What is to be seen of the machine alone.
+    /// Returns the points that the camera has to show for the machine alone.
     pub fn body(&self, frame: &Frame) -> Content {
         let (e, at) = (frame.q.units(), frame.base.at);
         let ends = self.linkage.bars().iter().flat_map(|bar| bar.ends(&e));
@@ -318,7 +320,7 @@ impl Stage {
         Content { first: ends.chain(discs).collect(), then: Vec::new() }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
         let shown = &Shown::of(frame, options.exaggeration);
@@ -353,7 +355,7 @@ impl Stage {
         scene
     }
 
-    /// The machine, and pale where it begins and where it would be on another plane.
+    /// Draws the machine, and translucently its pose at the start and its poses on another plane.
     fn bodies(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions) {
         if let Some(plan) = self.plan.as_ref().filter(|plan| !plan.waits()) {
             scene.solids.extend(self.linkage.ghost("plan/start", &plan.start, palette, 0.16));
@@ -377,7 +379,7 @@ impl Stage {
         }
     }
 
-    /// The machine as it is designed.
+    /// Returns the scene of the design view.
     pub fn drafted(&self, draft: &Draft, frame: &Frame, options: &ViewOptions) -> Scene {
         draft.scene((&self.linkage, &self.grid), frame, options)
     }

@@ -1,9 +1,10 @@
-//! All reactionless workspaces at once: over the plane of motion, the pose constant b as height. Each slice of the
-//! tower is the workspace of its b, turned by b* = b/Σλ, (15); a point's vertical line lies in it where b reaches it.
+//! All reactionless workspaces at once, with the pose constant b as height over the plane of motion. Each horizontal
+//! section of the tower is the workspace of its b, rotated by b* = b/Σλ, (15). A point is reachable for those b for
+//! which its vertical line is inside the tower.
 //!
-//! Of two drives a slice is a curve, and the tower a surface of curves; of four and more it is their outline.
+//! With two drives a section is a curve; with four or more drives the tower is shown by the outlines of its sections.
 //!
-//! In the scene x and y are metres, and z is b from the lowest that is shown, times [`Tower::rise`].
+//! In the scene x and y are metres, and z is b minus the lowest shown b, times [`Tower::rise`].
 
 use std::sync::Arc;
 
@@ -25,90 +26,91 @@ use crate::planning::reactionless::{AngleLimit, BSet, PlaneMap};
 use crate::session::Run;
 use crate::simulation::frame::{Frame, Reach};
 
-/// How much of b is shown, rad.
+/// Length of the interval of b that is shown, rad.
 pub const SPAN: f64 = 5.0;
-/// The widest, for runs over many b, rad.
+/// Maximum length of the interval of b, for runs over many b, rad.
 pub const MOST: f64 = 4.0 * SPAN;
-/// How much coarser a recorded wall is.
-const GRAIN: f64 = 2.6;
-/// Contours lie at multiples of this, rad.
-const CONTOUR: f64 = 0.5;
-/// The present b keeps this share of the span from top and bottom.
-const MARGIN: f64 = 0.08;
-/// Height of the box in radii of the workspace.
-const HEIGHT: f64 = 2.1;
-/// Cells a side of the slice's fill.
+/// Factor of the mesh size of the wall in a recording.
+const RECORDED_GRAIN: f64 = 2.6;
+/// Spacing of contours, rad; contours are at multiples of this.
+const CONTOUR_STEP_RAD: f64 = 0.5;
+/// Minimum distance of the present b from top and bottom, as a fraction of the interval.
+const MARGIN_FRACTION: f64 = 0.08;
+/// Height of the box, as a multiple of the radius of the workspace.
+const HEIGHT_PER_RADIUS: f64 = 2.1;
+/// Cells per side of the fill of a section.
 const CELLS: u32 = 64;
-/// The same where it stands in a recording.
-const FEWER_CELLS: u32 = 40;
-/// The most points that have their b shown; of more, the first and the last.
-const POSTS: usize = 8;
-/// How near to a bar the pointer takes hold of it, px.
-const NEAR_BAR: f64 = 9.0;
+/// Cells per side of the fill of a section in a recording.
+const RECORDED_CELLS: u32 = 40;
+/// Maximum number of points whose b are all shown; of more points, only the first and last are shown.
+const MAX_POSTS: usize = 8;
+/// Distance within which the pointer picks a bar, px.
+const BAR_PICK_PX: f64 = 9.0;
 
-/// What stays the same from frame to frame.
+/// The parts of the tower that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Tower {
     space: Arc<PoseSpace>,
-    /// The boundary of the workspace.
+    /// Boundary of the workspace at b = 0.
     outline: Strips,
     wall: Wall,
     model: Arc<Model>,
-    /// A, B and what is between them, of a planned motion.
+    /// The points of a planned motion, from A to B.
     ends: Option<Vec<Post>>,
-    /// The planned motion: p and b.
+    /// The planned motion: position, m, and b, rad.
     course: Vec<(Vector, f64)>,
-    /// Greatest distance of the workspace from B, m.
+    /// Maximum distance of the workspace from B, m.
     radius: f64,
+    /// Length of the interval of b that is shown, rad.
     span: f64,
-    /// The b that are shown, rad, where they do not slide along with the present one.
+    /// The interval of b that is shown, rad, if it does not follow the present b.
     fixed: Option<[f64; 2]>,
-    /// Outlines at round b, where the wall stands still.
+    /// Outlines at round b, if the interval is fixed.
     contours: Strips,
 }
 
-/// A point of the plane and the b that reach it.
+/// A point of the plane and the set of b for which it is reachable.
 #[derive(Clone, Debug)]
 pub struct Post {
-    /// `A`, `1`, `B`, `target`.
+    /// Name: `A`, `1`, `B`, `target`.
     pub name: String,
-    /// m.
+    /// Position, m.
     pub at: Vector,
-    /// None if no b does.
+    /// Values of b for which the point is reachable; `None` if there are none.
     pub reach: Option<BSet>,
 }
 
 impl Tower {
-    /// Prepares a run for drawing, over [`SPAN`], once what it reaches is known; to be made again when its machine or plan
+    /// Prepares a run for drawing, over an interval of b of length [`SPAN`]; to be repeated when its machine or plan
     /// changes.
     pub fn of(run: &Run, reached: &Workspace) -> Option<Self> {
         Self::rising(run, reached.shape(), SPAN, None)
     }
 
-    /// For a whole run, whose b lie in a range: it shows [`SPAN`] or more, up to [`MOST`], and stands still. Its wall
-    /// is a few thousand triangles.
+    /// Prepares a whole run whose b lie in the given interval, rad. The tower shows a constant interval of length
+    /// [`SPAN`] to [`MOST`]. Its wall has a few thousand triangles.
     pub fn over(run: &Run, reached: &Workspace, b: [f64; 2]) -> Option<Self> {
-        let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
-        let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN));
+        let span = (b[1] - b[0] + 2.0 * MARGIN_FRACTION * SPAN).clamp(SPAN, MOST);
+        let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN_FRACTION * SPAN));
         Self::rising(run, reached.shape(), span, fixed)
     }
 
-    /// Above outlines at b = 0: closed ones, with the inside on their left.
+    /// Builds the tower above closed outlines at b = 0, with the inside on their left.
     fn rising(run: &Run, outlines: &[Vec<Vector>], span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
         let space = run.pose_space().ok()?.clone();
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         if !(radius > 0.0 && span.is_finite() && span > 0.0) {
             return None;
         }
-        let rise = HEIGHT * radius / span;
-        let grain = if fixed.is_some() { GRAIN } else { 1.0 };
+        let rise = HEIGHT_PER_RADIUS * radius / span;
+        let grain = if fixed.is_some() { RECORDED_GRAIN } else { 1.0 };
         let wall = Wall::with_grain(outlines, space.turn(1.0) / rise, grain);
-        // The fill of a slice is known of planes alone.
+        // Only machines with planes have a filled section.
         let slice = match space.planes() {
-            Ok(planes) => sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),
+            Ok(planes) => sheet(planes.map(), if fixed.is_some() { RECORDED_CELLS } else { CELLS }),
             Err(_) => Mesh { shell: true, ..Mesh::default() },
         };
-        let model = Arc::new(Model { meshes: vec![slice, wall.mesh(HEIGHT * radius)] });
+        let model = Arc::new(Model { meshes: vec![slice, wall.mesh(HEIGHT_PER_RADIUS * radius)] });
         let tip = *run.scenario().machine.end_effector();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |s: f64| motion.path.at(s).q;
@@ -116,7 +118,7 @@ impl Tower {
         });
         let ends = run.motion().map(|_| {
             let mut points = waypoints(run);
-            if points.len() > POSTS {
+            if points.len() > MAX_POSTS {
                 points.drain(1..points.len() - 1);
             }
             points.into_iter().map(|(_, name, at)| Post { name, at, reach: space.reach(at).ok() }).collect()
@@ -139,34 +141,33 @@ impl Tower {
         Some(tower)
     }
 
-    /// Height of a radian of b, m.
+    /// Height per radian of b, m/rad.
     pub fn rise(&self) -> f64 {
-        HEIGHT * self.radius / self.span
+        HEIGHT_PER_RADIUS * self.radius / self.span
     }
 
-    /// The least and the greatest b that are shown, rad: from 0 while the present one lies well inside, else moved
-    /// along.
+    /// Returns the interval of b that is shown, rad: from 0 while the present `b` is well inside, otherwise shifted.
     pub fn window(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, 0.5 * self.span, self.span, MARGIN * self.span))
+        self.fixed.unwrap_or_else(|| axes::sliding(b, 0.5 * self.span, self.span, MARGIN_FRACTION * self.span))
     }
 
-    /// A view of the whole tower.
+    /// Returns a camera that shows the whole tower.
     pub fn camera(&self) -> Camera {
-        let height = HEIGHT * self.radius;
-        // What stands still is seen from nearer.
+        let height = HEIGHT_PER_RADIUS * self.radius;
+        // A tower with a fixed interval is viewed from a smaller distance.
         let (middle, near) = if self.fixed.is_some() { (0.93, 0.66) } else { (1.0, 1.0) };
         let centre = [0.0, 0.0, middle * 0.46 * height];
         Camera::Orbit(Orbit { centre, distance: near * 5.9 * self.radius, yaw: 0.5, pitch: 0.36 })
     }
 
-    /// Corners of the box that holds the tower and its axes.
+    /// Corners of the bounding box of the tower and its axes.
     pub fn hull(&self) -> Vec<[f64; 3]> {
-        let (side, height) = (1.05 * self.radius, HEIGHT * self.radius);
+        let (side, height) = (1.05 * self.radius, HEIGHT_PER_RADIUS * self.radius);
         let corner = |i: u32| [0, 1].map(|k| if (i >> k) & 1 == 0 { -side } else { side });
         (0..8).map(|i| [corner(i)[0], corner(i)[1], if i < 4 { 0.0 } else { height }]).collect()
     }
 
-    /// The points whose b are shown, with these as intervals within a window.
+    /// Returns the points whose b are shown, and for each the intervals of b within the shown interval.
     pub fn posts(&self, frame: &Frame) -> Vec<(Post, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);
         if let Some(ends) = &self.ends {
@@ -176,7 +177,7 @@ impl Tower {
         vec![barred(&Post { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
     }
 
-    /// What the pointer can take hold of: the end effector's dot, a bar, the slice.
+    /// Returns the item under the pointer that can be dragged: the dot of the end effector, a bar, or the section.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let [low, _] = self.window(frame.b_reference);
         let height = |b: f64| (b - low) * self.rise();
@@ -189,7 +190,7 @@ impl Tower {
         for (post, bars) in self.posts(frame) {
             for [from, to] in bars {
                 let ends = [from, to].map(|b| [post.at.re, post.at.im, height(b)]);
-                if pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_BAR) {
+                if pointer.distance_to_segment(ends).is_some_and(|d| d < BAR_PICK_PX) {
                     return Some(Pick::of(Handle::Bar, ends[0]));
                 }
             }
@@ -203,21 +204,21 @@ impl Tower {
         inside.then_some(Pick::of(Handle::Plane, [x, y, dot[2]]))
     }
 
-    /// Whether the pointer is on the present slice, which is a curve at a height.
+    /// Whether the pointer is on the present section, which is a curve at the given height.
     fn is_on_curve(&self, frame: &Frame, pointer: &Pointer, height: f64) -> bool {
         let pose = posed(Vector::default(), unit(self.space.turn(frame.b_reference)), height);
         let seen = |p: &[f32; 3]| super::place(&pose, *p).map(f64::from);
         let near =
-            |w: &[[f32; 3]]| pointer.distance_to_segment([seen(&w[0]), seen(&w[1])]).is_some_and(|d| d < NEAR_BAR);
+            |w: &[[f32; 3]]| pointer.distance_to_segment([seen(&w[0]), seen(&w[1])]).is_some_and(|d| d < BAR_PICK_PX);
         self.outline.iter().any(|line| line.windows(2).any(near))
     }
 
-    /// What pulling at something asks for.
+    /// Returns the change that dragging an item to the pointer requests.
     pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         let [low, high] = self.window(frame.b_reference);
         let ray = pointer.ray()?;
         let [x, y, _] = pick.at;
-        // A little past the ends, so that the window can be moved along.
+        // Slightly beyond the ends, so that the shown interval can be shifted.
         let slack = 0.05 * self.span;
         let b = || Some(low + ray.along_line([x, y, 0.0], [0.0, 0.0, 1.0])? / self.rise());
         match pick.handle {
@@ -225,7 +226,7 @@ impl Tower {
             Handle::Plane => Some(Aim::B(b()?.clamp(low - slack, high + slack))),
             Handle::Bar => {
                 let b = b()?;
-                // The nearest b that reaches the post that was taken hold of.
+                // The nearest b for which the point of the picked bar is reachable.
                 let away = |post: &Post| (post.at - Vector::new(x, y)).norm();
                 let posts = self.posts(frame).into_iter();
                 let (_, bars) = posts.min_by(|s, t| away(&s.0).total_cmp(&away(&t.0)))?;
@@ -236,7 +237,7 @@ impl Tower {
         }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
@@ -285,7 +286,7 @@ impl Tower {
         let up = Axis {
             title: "b, rad",
             colour: palette.amber,
-            ends: [0.0, HEIGHT * self.radius],
+            ends: [0.0, HEIGHT_PER_RADIUS * self.radius],
             values: self.window(frame.b_reference),
             step: round_up(self.span / 6.0),
             decimals: 0,
@@ -294,8 +295,8 @@ impl Tower {
         [across("x, m"), across("y, m"), up]
     }
 
-    /// What the wall hides from the eye is fainter: that tells its sides apart. Where the wall stands for all eyes, no
-    /// side is.
+    /// Draws the contours; those on the far side of the wall are fainter. A fixed tower is recorded for all directions
+    /// of view, so all its contours are alike.
     fn contours(&self, scene: &mut Scene, palette: &Palette, [low, high]: [f64; 2], eye: [f64; 3]) {
         let line = |name: &'static str, strips: Strips, strength| {
             Line::new(name, strips, 1.0, faded(palette.amber, strength)).on_top()
@@ -316,7 +317,7 @@ impl Tower {
         scene.lines.push(line("contours/hidden", far_ones.into(), 0.2));
     }
 
-    /// Over A and B, or the target: its vertical line, and where b reaches it.
+    /// Draws the vertical lines of A and B, or of the target, and the intervals of b for which they are reachable.
     fn bars(
         &self,
         scene: &mut Scene,
@@ -331,7 +332,7 @@ impl Tower {
             posts.iter().map(|(post, _)| vec![point(post.at, floor), point(post.at, head)]).collect();
         scene.lines.push(Line::new("points", uprights, 1.3, faded(palette.ink, 0.6)).dashed(1.5, 3.5).on_top());
         for (post, bars) in posts {
-            // One b alone is a dot.
+            // An interval of nearly zero length is drawn as a dot.
             for [from, to] in bars.iter().filter(|[from, to]| (to - from) * self.rise() < 1e-3 * self.radius) {
                 let at = point(post.at, z(0.5 * (from + to)));
                 scene.markers.push(Marker::disc("reach/alone", at, 5.0, palette.zero));
@@ -370,8 +371,8 @@ impl Tower {
     }
 }
 
-/// A workspace before it is turned, over a grid of (a_1, a_2). A shell lies over the grid of the walls, an area under
-/// it.
+/// Returns the workspace at b = 0 as a mesh over a grid of (a_1, a_2). It is a shell and not an [`Area`](super::Area),
+/// because areas are drawn under lines and the grid of the axes would cover them.
 fn sheet(map: &PlaneMap, cells: u32) -> Mesh {
     let [l1, l2] = map.limits();
     let share = |l: AngleLimit, i: u32| l.min + f64::from(i) / f64::from(cells) * (l.max - l.min);
@@ -387,20 +388,20 @@ fn sheet(map: &PlaneMap, cells: u32) -> Mesh {
     mesh
 }
 
-/// A post with its bars.
+/// Returns a post with its intervals of b within a window, rad.
 fn barred(post: &Post, window: [f64; 2]) -> (Post, Vec<[f64; 2]>) {
     let bars = post.reach.as_ref().map_or_else(Vec::new, |set| within(set, window));
     (post.clone(), bars)
 }
 
-/// The b of contours: round ones, and both ends.
+/// Returns the b of contours: multiples of [`CONTOUR_STEP_RAD`], and both ends.
 fn contours([low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
-    let first = (low / CONTOUR).ceil();
-    let inner = (0..200).map(move |i| (first + f64::from(i)) * CONTOUR).take_while(move |b| *b <= high);
+    let first = (low / CONTOUR_STEP_RAD).ceil();
+    let inner = (0..200).map(move |i| (first + f64::from(i)) * CONTOUR_STEP_RAD).take_while(move |b| *b <= high);
     inner.chain([low, high])
 }
 
-/// The intervals of a set on the circle, wherever they show in a window of the real line, in order.
+/// Returns the intervals of a periodic set within a window of the real line, in ascending order.
 fn within(set: &BSet, [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
     let mut shown = Vec::new();
     for [from, to] in &set.intervals {

@@ -1,5 +1,5 @@
-//! The linked views of one run: the machine from above and in space, joint space, and the tower of workspaces. What is
-//! pulled at in one of them is asked of the session, so all of them follow.
+//! The linked views of one run: the machine from above and in perspective, joint space, and the tower of workspaces. A
+//! drag in one of them is a request to the session, so all views follow.
 
 use std::sync::Arc;
 
@@ -22,21 +22,23 @@ use crate::session::Run;
 use crate::settings::number::Short;
 use crate::simulation::frame::Frame;
 
-/// How near to a handle the pointer takes hold of it, px: a point of the path or the end of a limit, and a payload.
-const NEAR_POINT: f64 = 9.0;
-const NEAR_LOAD: f64 = 12.0;
+/// Distance within which the pointer picks a point of the path, a label or a joint limit, px.
+const POINT_PICK_PX: f64 = 9.0;
+/// Distance within which the pointer picks a payload, px.
+const PAYLOAD_PICK_PX: f64 = 12.0;
 
-/// How far to the left of a point its name stands, px, and how far above a payload its mass.
-const NAME: f64 = 17.0;
-const MASS: f64 = 22.0;
+/// Distance of the label of a point to the left of the point, px.
+const NAME_DISTANCE_PX: f64 = 17.0;
+/// Distance of the label of a payload above the payload, px.
+const MASS_DISTANCE_PX: f64 = 22.0;
 
 /// Radius of the target's ring, px.
-const RING: f64 = 14.0;
+const RING_RADIUS_PX: f64 = 14.0;
 
-/// A payload nearer to the end effector than this part of the reach hangs at it.
-const AT_TIP: f64 = 0.015;
+/// A payload that is dragged nearer to the end effector than this fraction of the reach snaps to it.
+const TIP_SNAP: f64 = 0.015;
 
-/// One of the views.
+/// The views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ViewKind {
     /// The machine from straight above.
@@ -53,10 +55,10 @@ pub enum ViewKind {
 }
 
 impl ViewKind {
-    /// In the order of the switch.
+    /// All views, in the order of the switch.
     pub const ALL: [Self; 5] = [Self::Flat, Self::Space, Self::Joints, Self::Tower, Self::Design];
 
-    /// What the switch says.
+    /// Name on the switch.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flat => "2D",
@@ -67,13 +69,13 @@ impl ViewKind {
         }
     }
 
-    /// The next one, around.
+    /// Returns the next view; after the last one, the first.
     #[must_use]
     pub fn next(self) -> Self {
         Self::ALL[(self as usize + 1) % Self::ALL.len()]
     }
 
-    /// What it shows, in a sentence.
+    /// Explanation in a sentence.
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Flat => "The machine and its reactionless workspace from above",
@@ -88,7 +90,7 @@ impl ViewKind {
         }
     }
 
-    /// What can be done in it with the pointer.
+    /// Hint at what can be dragged in the view.
     pub fn invitation(self) -> &'static str {
         match self {
             Self::Flat | Self::Space => "",
@@ -98,13 +100,13 @@ impl ViewKind {
         }
     }
 
-    /// Whether it shows the machine and its workspace.
+    /// Whether the view shows the machine and its workspace.
     pub fn shows_machine(self) -> bool {
         matches!(self, Self::Flat | Self::Space)
     }
 }
 
-/// What stays the same from frame to frame in all views.
+/// The parts of all views that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Views {
     stage: Stage,
@@ -114,22 +116,22 @@ pub struct Views {
     machine: Machine,
 }
 
-/// What views are made of: a run, as far as it stands still in them; in those of a whole run, over a range of b, rad.
+/// Input of [`Views`]: a run, compared only by its constant parts; for a whole run, also the interval of its b, rad.
 #[derive(Clone, Debug)]
 pub struct Seen {
     run: Run,
     over: Option<[f64; 2]>,
-    /// Where outlines are kept.
+    /// Cache of the outlines.
     queries: Asking,
 }
 
 impl Seen {
-    /// A run in the window, or a whole one in a recording.
+    /// Returns the input for a run in the window, or with `over` for a whole run in a recording.
     pub fn of(run: &Run, over: Option<[f64; 2]>, queries: &Queries) -> Self {
         Self { run: run.clone(), over, queries: queries.asking() }
     }
 
-    /// Whether nothing that stands still differs in another run: machine, plan, and what is built otherwise.
+    /// Whether the constant parts of another run are equal: machine, plan, and differences of the plant from the model.
     pub fn is_of(&self, run: &Run) -> bool {
         let (one, other) = (self.run.scenario(), run.scenario());
         one.machine == other.machine
@@ -151,7 +153,7 @@ impl PartialEq for Seen {
 
 impl Quick for Views {
     type Input = Seen;
-    /// In the window but for an outline of what is reached that takes longer, and its tower.
+    /// Views; in the window without outline and tower if the outline takes longer to compute.
     type Answer = Self;
 
     fn answer(seen: &Seen) -> Self {
@@ -162,29 +164,29 @@ impl Quick for Views {
     }
 }
 
-/// Views with what changes although they stand still: base and payload, the outline once it is found with the tower over
-/// it, and the drives along the axes of joint space.
+/// Query for [`Views`] with the parts that change more often: base and payload, the outline once it is computed with
+/// its tower, and the drives along the axes of joint space.
 #[derive(Debug)]
 struct Completed;
 
-/// What these depend on.
+/// Input of [`Completed`].
 #[derive(Clone)]
-struct Completing {
+struct CompletedInput {
     made: Same<Views>,
     run: Run,
     outline: Option<Same<Option<Arc<Workspace>>>>,
-    /// Of the axes of joint space, counted from 0, where there are more than three.
+    /// Indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     drives: Option<[usize; 3]>,
 }
 
-impl Completing {
+impl CompletedInput {
     fn is_of(&self, run: &Run) -> bool {
         let (one, other) = (self.run.scenario(), run.scenario());
         one.base == other.base && one.plant.payload == other.plant.payload
     }
 }
 
-impl PartialEq for Completing {
+impl PartialEq for CompletedInput {
     fn eq(&self, other: &Self) -> bool {
         self.made == other.made
             && self.is_of(&other.run)
@@ -194,10 +196,10 @@ impl PartialEq for Completing {
 }
 
 impl Quick for Completed {
-    type Input = Completing;
+    type Input = CompletedInput;
     type Answer = Views;
 
-    fn answer(Completing { made, run, outline, drives }: &Completing) -> Views {
+    fn answer(CompletedInput { made, run, outline, drives }: &CompletedInput) -> Views {
         let mut views = Views::clone(&made.0);
         if let Some(Same(outline)) = outline {
             views.stage.set_outline(Option::clone(outline));
@@ -218,13 +220,14 @@ impl Views {
         views
     }
 
-    /// The views of a run but for what changes although they stand still; in those of a whole run, over a range of b, rad.
+    /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
+    /// adds; for a whole run, `over` is the interval of its b, rad.
     pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
         queries.ask_if::<Whole<Self>>(|seen| seen.over == over && seen.is_of(run), || Seen::of(run, over, queries))
     }
 
-    /// The same with all that is known by now, and drives along the axes of joint space, counted from 0, where there are
-    /// more than three.
+    /// Returns the views completed by base, payload and, once it is computed, the outline with its tower. `drives` are
+    /// the indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
         let wanted = made.unoutlined();
         let outline = wanted.and_then(|space| queries.known::<Outlining>(&Shared(space))).map(Same);
@@ -235,11 +238,11 @@ impl Views {
                     && known.outline == outline
                     && known.drives == drives
             },
-            || Completing { made: Same(made.clone()), run: run.clone(), outline: outline.clone(), drives },
+            || CompletedInput { made: Same(made.clone()), run: run.clone(), outline: outline.clone(), drives },
         )
     }
 
-    /// Takes base and payload of a run, and makes the tower, once what is reached is outlined.
+    /// Updates base and payload from a run, and builds the tower once the outline is known.
     fn complete(&mut self, run: &Run) {
         self.stage.refresh(run);
         if let (None, Some(reached)) = (&self.tower, self.stage.outlined()) {
@@ -247,7 +250,8 @@ impl Views {
         }
     }
 
-    /// For a whole run, whose b lie in a range, rad: joint space and tower show all of them and stand still.
+    /// Prepares a whole run whose b lie in an interval, rad; joint space and tower show a constant interval that
+    /// contains it.
     pub fn over(run: &Run, b: [f64; 2], queries: &Queries) -> Self {
         let mut stage = Stage::begun(run);
         stage.finish(queries);
@@ -257,7 +261,7 @@ impl Views {
         Self { joints, tower, draft: Draft::of(&machine), stage, machine }
     }
 
-    /// The same but for an outline of what is reached that takes longer, and its tower.
+    /// Prepares a run for drawing, without outline and tower if the outline takes longer to compute.
     pub fn begun(run: &Run) -> Self {
         Self::with(Stage::begun(run), run)
     }
@@ -268,16 +272,16 @@ impl Views {
         Self { stage, joints: Joints::of(run), tower, draft: Draft::of(&machine), machine }
     }
 
-    /// Whether a machine looks like that of other views: its links are the same, wherever its limits are.
+    /// Whether the machine looks like that of other views: equal links, whatever its limits.
     pub fn looks_like(&self, other: &Self) -> bool {
         let (one, other) = (&self.machine, &other.machine);
         one.links() == other.links() && one.resolved_links() == other.resolved_links()
     }
 
-    /// Why a machine has no such view, in words.
+    /// Checks that the machine of a run has a view.
     ///
     /// # Errors
-    /// If it has none.
+    /// If it does not; the text gives the reason.
     pub fn has(kind: ViewKind, run: &Run) -> Result<(), String> {
         if kind.shows_machine() || kind == ViewKind::Design {
             return Ok(());
@@ -289,12 +293,12 @@ impl Views {
         }
     }
 
-    /// What is yet to be outlined.
+    /// Returns the pose space whose outline is still to be computed.
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
         self.stage.unoutlined()
     }
 
-    /// The width of the grid under the machine, in words.
+    /// Returns the text of the width of the grid under the machine.
     pub fn grid(&self, kind: ViewKind) -> String {
         match kind {
             ViewKind::Flat | ViewKind::Space | ViewKind::Design => format!("{} m grid", Short(self.stage.grid_width())),
@@ -312,7 +316,7 @@ impl Views {
         self.joints.as_ref()
     }
 
-    /// Whether there is such a view.
+    /// Whether the machine has a view.
     pub fn shows(&self, kind: ViewKind) -> bool {
         match kind {
             ViewKind::Flat | ViewKind::Space | ViewKind::Design => true,
@@ -321,7 +325,7 @@ impl Views {
         }
     }
 
-    /// Which axis of (q_1, q_2, q_3) each axis of joint space stands for.
+    /// Returns the index of the drive along each axis of joint space, if the order is fixed by the machine.
     pub fn joint_axes(&self) -> [usize; 3] {
         self.joints.as_ref().map_or([0, 1, 2], Joints::axes)
     }
@@ -331,7 +335,7 @@ impl Views {
         self.tower.as_ref()
     }
 
-    /// The camera that shows everything.
+    /// Returns the default camera of a view.
     pub fn camera(&self, kind: ViewKind) -> Camera {
         let reach = self.stage.linkage().reach();
         match (kind, &self.joints, &self.tower) {
@@ -342,7 +346,7 @@ impl Views {
         }
     }
 
-    /// What is to be seen of a frame and of other poses of the machine when everything is shown.
+    /// Returns the points that the camera has to show for a frame and other poses of the machine.
     pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> Content {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => Content { first: joints.corners(), then: Vec::new() },
@@ -352,7 +356,7 @@ impl Views {
         }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
@@ -362,27 +366,27 @@ impl Views {
         }
     }
 
-    /// The end effector, if it is under the pointer.
+    /// Picks the end effector, if it is under the pointer.
     pub fn pick_tip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
         let at = self.stage.handle(Handle::EndEffector, shown)?;
         (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick::of(Handle::EndEffector, at))
     }
 
-    /// The target, where the pointer is on the arm or no farther from it than so many px.
+    /// Picks the target, if the pointer is on a link or within `near` px of the target.
     pub fn pick_arm(&self, shown: &Shown<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {
         let at = self.stage.handle(Handle::Target, shown)?;
         let on = pointer.distance(at)? < near || self.link_at(shown, pointer).is_some();
         on.then(|| Pick::of(Handle::Target, at))
     }
 
-    /// The number of the link under the pointer in the machine's view as it is drawn; the uppermost of several.
+    /// Returns the index of the drawn link under the pointer; the uppermost of several.
     pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
         self.stage.link_at(shown, pointer)
     }
 
-    /// What is under the pointer, to be pulled at or not, as it is drawn.
+    /// Returns the drawn item under the pointer, whether it can be dragged or not.
     pub fn under(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
-        // What lies on a link comes before it.
+        // Items on a link take precedence over the link.
         let pulled = self
             .pick(kind, shown, pointer)
             .filter(|pick| !matches!(pick.handle, Handle::Link(_)))
@@ -393,7 +397,7 @@ impl Views {
         })
     }
 
-    /// What is under the pointer and can be pulled at, as it is drawn.
+    /// Returns the drawn item under the pointer that can be dragged.
     pub fn pick(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
         // Only the machine's own views exaggerate.
         let frame = shown.frame;
@@ -408,28 +412,29 @@ impl Views {
                 });
                 let near = picks.filter(|(_, d)| *d < NEAR);
                 let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // Where the target covers a point of the path, the point is held by its name, to the left of it.
+                // If the target covers a point of the path, the point is picked by its label, to the left of it.
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
                     let at = self.stage.handle(handle, shown)?;
                     let [x, y] = pointer.seen(at)?;
-                    let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
+                    let name = (pointer.at[0] - x + NAME_DISTANCE_PX).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
-                    // Within its ring the target comes first.
-                    (off < NEAR_POINT && !(first.is_some() && own < RING)).then_some((Pick::of(handle, at), off))
+                    // Within its ring the target takes precedence.
+                    (off < POINT_PICK_PX && !(first.is_some() && own < RING_RADIUS_PX))
+                        .then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // A payload under the target is held by its mass, above it.
+                // A payload under the target is picked by its label, above it.
                 let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
                     let Some([x, y]) = pointer.seen(*at) else { return false };
                     let [px, py] = pointer.at;
-                    let on = first.is_none() && (px - x).hypot(py - y) < NEAR_LOAD;
-                    on || (px - x).hypot(py - y + MASS) < NEAR_POINT
+                    let on = first.is_none() && (px - x).hypot(py - y) < PAYLOAD_PICK_PX;
+                    on || (px - x).hypot(py - y + MASS_DISTANCE_PX) < POINT_PICK_PX
                 });
                 let load = load.map(|at| Pick::of(Handle::Payload, at));
                 let ends = self.stage.limits(shown).filter_map(|end| {
-                    let off = pointer.distance(end.at).filter(|off| *off < NEAR_POINT)?;
+                    let off = pointer.distance(end.at).filter(|off| *off < POINT_PICK_PX)?;
                     Some((end, off))
                 });
                 let end = || ends.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
@@ -438,7 +443,7 @@ impl Views {
         }
     }
 
-    /// What pulling at something asks for; `b` is the pose constant that the machine is sent to, rad.
+    /// Returns the change that dragging an item to the pointer requests; `b` is the commanded pose constant, rad.
     pub fn aim(&self, kind: ViewKind, pick: &Pick, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<Aim> {
         let frame = shown.frame;
         if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
@@ -469,7 +474,7 @@ impl Views {
                     }
                     Handle::Payload => {
                         let offset = self.stage.load_offset(shown, at);
-                        let far = offset[0].hypot(offset[1]) > AT_TIP * self.stage.linkage().reach();
+                        let far = offset[0].hypot(offset[1]) > TIP_SNAP * self.stage.linkage().reach();
                         Some(Aim::Payload(if far { offset } else { [0.0; 2] }))
                     }
                     _ => None,

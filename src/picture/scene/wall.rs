@@ -1,56 +1,57 @@
-//! The wall of a twisting tower: an outline that rises and turns, as a mesh, and its contours.
+//! The lateral surface of a twisted tower: an outline that rotates with height, as a mesh, and its contours.
 //!
-//! A point p of the outline is at height z, turned by τ = twist · z: P(p, z) = (p e^{iτ}, z).
+//! At height z, a point p of the outline is rotated by τ = twist · z: P(p, z) = (p e^{iτ}, z).
 
 use super::Mesh;
 use crate::mechanics::planar::{Vector, cross, dot, unit};
 
-/// Outlines turn by less than this between two vertices of the wall, rad; a sharper turn is an edge.
-const TURN: f64 = 0.045;
-const EDGE: f64 = 0.35;
-/// The longest side of a vertex of the wall, as a share of its radius.
-const SIDE: f64 = 0.07;
-/// The wall turns by less than this from row to row, rad.
-const ROW: f64 = 0.07;
+/// Maximum change of direction of an outline between two vertices of the wall, rad.
+const MAX_TURN_RAD: f64 = 0.045;
+/// Minimum change of direction of an outline at a corner, rad.
+const MIN_CORNER_RAD: f64 = 0.35;
+/// Maximum distance of two vertices of the wall along the outline, as a fraction of the radius of the outline.
+const MAX_SIDE: f64 = 0.07;
+/// Maximum rotation of the wall between two rows of vertices, rad.
+const MAX_ROW_TURN_RAD: f64 = 0.07;
 
-/// A smooth stretch of an outline: its points before they are turned, and the outward normals of the wall there.
+/// A smooth part of an outline: its points at z = 0, and the outward normals of the wall there.
 #[derive(Clone, Debug)]
 struct Stretch {
     points: Vec<Vector>,
-    /// Across the outline, and along z.
+    /// Components in the plane and along z.
     normals: Vec<(Vector, f64)>,
 }
 
-/// A wall above outlines that turn with height.
+/// The wall above outlines that rotate with height.
 #[derive(Clone, Debug)]
 pub struct Wall {
     stretches: Vec<Stretch>,
     twist: f64,
-    /// How much coarser than the finest.
+    /// Factor of the mesh size, 1 for the finest.
     grain: f64,
 }
 
 impl Wall {
-    /// Above closed outlines with the inside on their left, m; `twist` in rad/m.
+    /// Returns the wall above closed outlines, m, with the inside on their left; `twist` in rad/m.
     pub fn of(outlines: &[Vec<Vector>], twist: f64) -> Self {
         Self::with_grain(outlines, twist, 1.0)
     }
 
-    /// The same with vertices as many times as far apart along the outline and in height.
+    /// Returns the wall with the spacing of vertices, along the outline and in height, multiplied by `grain`.
     pub fn with_grain(outlines: &[Vec<Vector>], twist: f64, grain: f64) -> Self {
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         let stretches = outlines
             .iter()
             .flat_map(|outline| smooth_parts(outline))
-            .map(|part| Stretch::of(&thinned(&part, SIDE * radius * grain, TURN * grain), twist))
+            .map(|part| Stretch::of(&thinned(&part, MAX_SIDE * radius * grain, MAX_TURN_RAD * grain), twist))
             .filter(|s| s.points.len() > 1)
             .collect();
         Self { stretches, twist, grain }
     }
 
-    /// From z = 0 to a height, m, as an open shell.
+    /// Returns the wall from z = 0 to a height, m, as an open shell.
     pub fn mesh(&self, height: f64) -> Mesh {
-        let rows = ((self.twist * height / (ROW * self.grain)).abs().ceil() as u32).clamp(1, 400);
+        let rows = ((self.twist * height / (MAX_ROW_TURN_RAD * self.grain)).abs().ceil() as u32).clamp(1, 400);
         let mut mesh = Mesh { shell: true, ..Mesh::default() };
         for stretch in &self.stretches {
             let (first, n) = (mesh.positions.len() as u32, stretch.points.len() as u32);
@@ -73,14 +74,14 @@ impl Wall {
         mesh
     }
 
-    /// The outlines turned by an angle, cut at their corners.
+    /// Returns the outlines rotated by an angle, rad, and split at their corners.
     pub fn level(&self, turn: f64) -> Vec<Vec<Vector>> {
         let turn = unit(turn);
         self.stretches.iter().map(|s| s.points.iter().map(|p| p * turn).collect()).collect()
     }
 
-    /// The outlines turned by an angle, cut where the wall turns away from an eye in a direction (a unit vector towards
-    /// it): each piece, and whether the eye is on its outer side.
+    /// Returns the outlines rotated by an angle, rad, and split at their corners and where the wall turns away from the
+    /// eye. `eye` is the unit vector towards it. Each piece comes with a flag: the eye is on its outer side.
     pub fn contour(&self, turn: f64, eye: [f64; 3]) -> Vec<(Vec<Vector>, bool)> {
         let turn = unit(turn);
         let level = Vector::new(eye[0], eye[1]) * turn.conj();
@@ -126,7 +127,7 @@ impl Stretch {
     }
 }
 
-/// A closed outline cut at its corners; without corners, in one piece that ends where it begins.
+/// Splits a closed outline at its corners; without corners, returns one piece that ends at its start.
 fn smooth_parts(outline: &[Vector]) -> Vec<Vec<Vector>> {
     let mut points: Vec<Vector> = outline.to_vec();
     points.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
@@ -137,7 +138,7 @@ fn smooth_parts(outline: &[Vector]) -> Vec<Vec<Vector>> {
     if n < 3 {
         return Vec::new();
     }
-    let is_corner = |i: usize| turning(points[(i + n - 1) % n], points[i], points[(i + 1) % n]).abs() > EDGE;
+    let is_corner = |i: usize| turning(points[(i + n - 1) % n], points[i], points[(i + 1) % n]).abs() > MIN_CORNER_RAD;
     let corners: Vec<usize> = (0..n).filter(|i| is_corner(*i)).collect();
     let Some(&first) = corners.first() else {
         return vec![points.iter().chain(&points[..1]).copied().collect()];
@@ -146,13 +147,14 @@ fn smooth_parts(outline: &[Vector]) -> Vec<Vec<Vector>> {
     corners.iter().zip(ends).map(|(&from, to)| (from..=to).map(|i| points[i % n]).collect()).collect()
 }
 
-/// By how much a path turns in its middle point, rad.
+/// Change of direction of the path a, b, c at b, rad.
 fn turning(a: Vector, b: Vector, c: Vector) -> f64 {
     let (u, v) = (b - a, c - b);
     cross(u, v).atan2(dot(u, v))
 }
 
-/// The points between which a path turns little and does not go far, with its ends.
+/// Thins a path: keeps its ends, and a point whenever the change of direction since the last kept point exceeds `turn`,
+/// rad, or the length exceeds `side`, m.
 fn thinned(path: &[Vector], side: f64, turn: f64) -> Vec<Vector> {
     let mut kept: Vec<Vector> = path.first().copied().into_iter().collect();
     let (mut turned, mut gone) = (0.0, 0.0);

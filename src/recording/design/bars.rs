@@ -1,4 +1,4 @@
-//! [`Bars`]: what each link brings to the lines of (7) or (8), a group of bars for each line.
+//! [`Bars`]: contributions of the links to the conditions (7) or (8), as a group of bars for each condition.
 
 use rerun::{BarChart, EntityPath};
 
@@ -10,23 +10,24 @@ use crate::recording::rows::Track;
 use crate::recording::store::{Instant, Store, StoreError};
 use crate::recording::style::{colour, under};
 
-/// What part of the room of a line its bars take.
-const ROOM: f64 = 0.86;
+/// Width of a group of bars, as a fraction of the distance between groups.
+const GROUP_WIDTH: f64 = 0.86;
 
-/// Bars of one colour: those of the links of one drive, or what is left.
+/// Bars of one colour: the contributions of the links of one drive, or the residuals.
 pub struct Bars {
     path: String,
     rgba: Rgba,
     is_force: bool,
-    /// Links, counted from 0; none: what is left.
+    /// Indices of the links, from 0; `None` for the residuals.
     links: Option<Vec<usize>>,
-    /// Bars of a line, and of how many lines.
+    /// Number of bars for each condition.
     slots: usize,
+    /// Number of conditions.
     lines: usize,
 }
 
 impl Bars {
-    /// All of a machine.
+    /// Returns all bars of a machine.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let palette = palette(Theme::Dark);
         let slots = machine.links().len() + 1;
@@ -57,11 +58,11 @@ impl Bars {
         all
     }
 
-    /// Where bars stand: line i has its middle at i, counted from 1.
+    /// Returns the abscissas of the bars; the group of condition i, counted from 1, is centred at i.
     fn abscissa(&self) -> Vec<f64> {
         let place = |line: usize, slot: usize| {
             let from_middle = slot as f64 - 0.5 * (self.slots - 1) as f64;
-            (line + 1) as f64 + from_middle * ROOM / self.slots as f64
+            (line + 1) as f64 + from_middle * GROUP_WIDTH / self.slots as f64
         };
         let last = [self.slots - 1];
         let slots = self.links.as_deref().unwrap_or(&last);
@@ -79,7 +80,7 @@ impl Bars {
         lines.flat_map(of).collect()
     }
 
-    /// Writes them for each state.
+    /// Writes the bars for each state.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -98,7 +99,7 @@ impl Bars {
         }
         let (clock, rows) = track.take();
         let abscissa = self.abscissa();
-        let widths = vec![(0.92 * ROOM / self.slots as f64) as f32; abscissa.len()];
+        let widths = vec![(0.92 * GROUP_WIDTH / self.slots as f64) as f32; abscissa.len()];
         let looks = BarChart::update_fields()
             .with_color(colour(self.rgba))
             .with_abscissa(abscissa.as_slice())

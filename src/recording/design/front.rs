@@ -1,4 +1,5 @@
-//! [`Fronts`]: what less inertia costs in mass, as the window's design view has it, with the machine's own point.
+//! [`Fronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
+//! machine.
 
 use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
@@ -11,34 +12,35 @@ use crate::recording::store::{Instant, Store, StoreError};
 use crate::recording::style::{colour, under};
 use crate::session::design::Brief;
 
-/// Machines of a front.
-const POINTS: usize = 13;
+/// Number of points of a Pareto front.
+const FRONT_POINTS: usize = 13;
 
-/// Sizes of the drawing: it has no unit, and y points down, as the viewer has it.
-const SIDES: [f64; 2] = [2.2, 1.0];
-/// What of it is left free around all points.
-const FREE: f64 = 0.07;
-/// Left, top, right and bottom of what is seen: numbers stand beside the axes.
+/// Width and height of the drawing, without unit; y points down, as in the viewer.
+const SIZE: [f64; 2] = [2.2, 1.0];
+/// Margin around all points, as a fraction of their range.
+const MARGIN_FRACTION: f64 = 0.07;
+/// Left, top, right and bottom of the visible part of the drawing, with space for tick labels.
 pub const SEEN: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
 
-/// The fronts of the states of a design.
+/// The Pareto fronts of the states of a design.
 #[derive(Debug)]
 pub struct Fronts {
-    /// By the machines without counterweights that they are of: added mass, kg, and Σ D, kg m².
+    /// For each machine without counterweights: points of added mass, kg, and Σ D, kg m².
     all: Vec<(Machine, Vec<[f64; 2]>)>,
-    /// From where to where the axes go, kg and kg m².
+    /// Intervals of the axes, kg and kg m².
     ranges: [[f64; 2]; 2],
 }
 
 impl Fronts {
-    /// Of machines, as far as they have counterweights; none where nothing within the usual bounds balances any.
+    /// Computes the Pareto fronts of those machines that have counterweights; `None` if no counterweights within the
+    /// usual bounds balance any of them.
     pub fn of<'a>(machines: impl Iterator<Item = &'a Machine>) -> Option<Self> {
         let mut all: Vec<(Machine, Vec<[f64; 2]>)> = Vec::new();
         let mut seen: Vec<[f64; 2]> = Vec::new();
         for machine in machines {
             let Some(bare) = bare(machine) else { continue };
             if !all.iter().any(|(known, _)| *known == bare) {
-                let found = Brief::of(machine).front(&bare, POINTS);
+                let found = Brief::of(machine).front(&bare, FRONT_POINTS);
                 let points = found.map_or_else(|_| Vec::new(), |front| front.measures());
                 seen.extend(&points);
                 all.push((bare, points));
@@ -51,7 +53,7 @@ impl Fronts {
         let range = |i: usize| {
             let ends = (f64::INFINITY, f64::NEG_INFINITY);
             let (low, high) = seen.iter().fold(ends, |(low, high), at| (low.min(at[i]), high.max(at[i])));
-            let room = FREE * (high - low).max(1e-3 * high.abs()).max(1e-9);
+            let room = MARGIN_FRACTION * (high - low).max(1e-3 * high.abs()).max(1e-9);
             [low - room, high + room]
         };
         Some(Self { ranges: [range(0), range(1)], all })
@@ -59,10 +61,10 @@ impl Fronts {
 
     fn place(&self, at: [f64; 2]) -> [f32; 2] {
         let share = |i: usize| (at[i] - self.ranges[i][0]) / (self.ranges[i][1] - self.ranges[i][0]);
-        [SIDES[0] * share(0), SIDES[1] * (1.0 - share(1))].map(|x| x as f32)
+        [SIZE[0] * share(0), SIZE[1] * (1.0 - share(1))].map(|x| x as f32)
     }
 
-    /// Writes those of each state.
+    /// Writes the Pareto front of each state.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -108,7 +110,7 @@ impl Fronts {
             let words = |[mass, inertia]: [f64; 2]| format!("{} kg · {} kg m²", signed(mass, 2), signed(inertia, 3));
             let aside = |at: [f64; 2]| {
                 let [x, y] = self.place(at);
-                [x.clamp(0.42, SIDES[0] as f32 - 0.42), if y < 0.2 { y + 0.13 } else { y - 0.13 }]
+                [x.clamp(0.42, SIZE[0] as f32 - 0.42), if y < 0.2 { y + 0.13 } else { y - 0.13 }]
             };
             let label = Points2D::new(rows[i].map(aside))
                 .with_radii([Radius::ZERO])
@@ -119,11 +121,11 @@ impl Fronts {
         Ok(())
     }
 
-    /// The frame with its grid and numbers.
+    /// Writes the axes with grid and tick labels.
     fn axes(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let palette = palette(Theme::Dark);
         let (mut grid, mut places, mut words) = (Vec::new(), Vec::new(), Vec::new());
-        let [wide, high] = SIDES.map(|x| x as f32);
+        let [wide, high] = SIZE.map(|x| x as f32);
         for (i, [from, to]) in self.ranges.into_iter().enumerate() {
             let (marks, step) = spaced(from, to, if i == 0 { 7.0 } else { 5.0 });
             for mark in marks.into_iter().filter(|mark| (from..=to).contains(mark)) {
@@ -159,7 +161,7 @@ impl Fronts {
     }
 }
 
-/// What the counterweights of a machine weigh, kg, and its Σ D, kg m².
+/// Returns the mass of all counterweights of a machine, kg, and its Σ D, kg m².
 fn own(machine: &Machine) -> [f64; 2] {
     let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
     [added, Inertia::of(machine).total_momentum()]

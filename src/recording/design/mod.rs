@@ -1,5 +1,6 @@
-//! The design of a machine: what it weighs and where, what that leaves of (7) and (8), and what balance has cost. Each
-//! state that edits of a session have left is a row of the time line `edit`, and stands on the others where it holds.
+//! The design of a machine: its masses, the residuals of (7) and (8), and the cost of balance. Each state of the
+//! machine in a session is a row on the time line `edit`. On the other time lines it holds from the instant of its
+//! edit.
 
 mod bars;
 mod front;
@@ -31,28 +32,28 @@ use state::State;
 pub use front::SEEN;
 pub use words::beside;
 
-/// What of the height and width of its view the machine fills.
-const FILLS: f64 = 0.8;
+/// Size of the machine as a fraction of the height and width of its view.
+const FILL_FRACTION: f64 = 0.8;
 
-/// A design as it is recorded.
+/// A design to be recorded.
 #[derive(Debug)]
 pub struct Design {
     states: Vec<State>,
-    /// The run before its first step: every state is drawn in its pose.
+    /// Frame at the start of the run; every state is drawn in its pose.
     start: Frame,
-    /// From where the machine is seen.
+    /// Eye of the view of the machine.
     pub eye: Eye,
-    /// Where its machine has counterweights: what else these could be.
+    /// Pareto fronts of the counterweights, if the machine has any.
     pub fronts: Option<Fronts>,
-    /// It is what the scenario is about: its machine has counterweights, or was changed in its session.
+    /// Whether the design is the active tab: the machine has counterweights, or was changed in its session.
     pub leads: bool,
 }
 
 impl Design {
-    /// Of a run that began with a frame, made of a scenario with all its edits.
+    /// Returns the design of a run of a scenario; `start` is its first frame.
     ///
     /// # Errors
-    /// If an edit cannot be made of the machine.
+    /// If an edit cannot be applied to the machine.
     pub fn of(scenario: &Scenario, run: &Run, start: Frame) -> Result<Self, Refusal> {
         let (all, dt) = (designs(scenario)?, run.simulation().dt());
         let several = all.len() > 1;
@@ -72,7 +73,7 @@ impl Design {
         })
     }
 
-    /// Drives of the machine.
+    /// Number of drives of the machine.
     pub fn drives(&self) -> usize {
         self.states[0].of.machine.drives()
     }
@@ -97,7 +98,7 @@ impl Design {
         }
     }
 
-    /// The machine from straight above.
+    /// Draws the machine from straight above.
     fn draw(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let palette = palette(Theme::Dark);
         let mut space = Space::new(root.clone(), self.eye, palette.background);
@@ -108,7 +109,7 @@ impl Design {
             let linkage = Linkage::of(machine);
             let mut scene = Draft::of(machine).scene((&linkage, &Grid::of(&linkage)), &self.start, &options);
             if state.at.edit.is_none() {
-                // There is one state of it: it stands.
+                // There is only one state, so its solids are constant.
                 scene.solids.iter_mut().for_each(|solid| solid.changes = Changes::Nothing);
             }
             space.draw(store, (state.at, state.at.edit.map(|_| state.at)), &scene)?;
@@ -116,7 +117,7 @@ impl Design {
         space.write(store)
     }
 
-    /// Writes what is to be read of each state.
+    /// Writes the text of each state.
     fn document(&self, store: &mut Store, path: &EntityPath, of: impl Fn(&State) -> String) -> Result<(), StoreError> {
         let mut track = Track::new();
         self.states.iter().for_each(|state| track.push(state.at, of(state)));
@@ -131,7 +132,7 @@ impl Design {
     }
 }
 
-/// From where all of these machines are seen as a whole.
+/// Returns an eye from which all machines are completely visible.
 fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &Units) -> Eye {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let wider = |[low, high]: [f64; 2], x: f64, r: f64| [low.min(x - r), high.max(x + r)];
@@ -144,5 +145,5 @@ fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &Units) -> Eye {
         }
     }
     let side = seen.iter().fold(0.0_f64, |side, [low, high]| side.max(high - low));
-    Eye::above(seen.map(|[low, high]| 0.5 * (low + high)), side / FILLS)
+    Eye::above(seen.map(|[low, high]| 0.5 * (low + high)), side / FILL_FRACTION)
 }

@@ -1,4 +1,4 @@
-//! [`State`]: the machine after so many changes, and what is said of it.
+//! [`State`]: the machine after a number of changes, with its balance and measures.
 
 use crate::mechanics::balance::Breakdown;
 use crate::mechanics::machine::{Machine, MachineSpec};
@@ -10,24 +10,25 @@ use crate::study::measures::Measures;
 /// A state of a design.
 #[derive(Debug)]
 pub struct State {
-    /// Where it stands on the time lines.
+    /// Instant on the time lines.
     pub at: Instant,
-    /// The machine, and how it came about.
+    /// The machine, and the change that led to it.
     pub of: Designed,
-    /// What its parts bring to (7) and (8).
+    /// Contributions of its parts to (7) and (8).
     pub breakdown: Breakdown,
-    /// What balance has cost beside another machine, and which that is.
+    /// Cost of balance relative to a reference machine, and the name of that.
     pub measures: Option<(&'static str, Measures)>,
 }
 
 impl State {
-    /// Of a design that began with a machine, and its task's motion.
+    /// Returns the state of a design; `first` is the machine at the start, `motion` the motion of the task.
     pub fn of(at: Instant, of: Designed, first: &Machine, motion: &Motion) -> Self {
         Self { at, breakdown: Breakdown::of(&of.machine), measures: measured(&of, first, motion), of }
     }
 }
 
-/// What balance has cost: beside the machine without its counterweights, as in the window, else beside that of the start.
+/// Returns the cost of balance relative to the machine without its counterweights, as in the window, otherwise relative
+/// to the machine at the start.
 fn measured(of: &Designed, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
     let motion = Some(motion);
     match bare(&of.machine) {
@@ -37,7 +38,7 @@ fn measured(of: &Designed, first: &Machine, motion: &Motion) -> Option<(&'static
     }
 }
 
-/// A machine without its counterweights, if it has some.
+/// Returns a machine without its counterweights, if it has any.
 pub fn bare(machine: &Machine) -> Option<Machine> {
     if machine.spec().counterweights.is_empty() {
         return None;

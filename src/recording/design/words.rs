@@ -1,4 +1,4 @@
-//! What is to be read of a state of a design, as Markdown.
+//! Texts about a state of a design, as Markdown.
 
 use super::state::State;
 use crate::mechanics::balance::Breakdown;
@@ -9,14 +9,15 @@ use crate::settings::number::counted;
 use crate::settings::range::shortened;
 use crate::study::comparison::{DESIGN, Design};
 
-/// Across a table of what links bring to lines, at most; of more lines the links stand across.
-const ACROSS: usize = 10;
+/// Maximum number of conditions as columns of a table; of more conditions the table is transposed.
+const MAX_COLUMNS: usize = 10;
 
-/// Characters of a name, or of what an edit does.
-const NAME: usize = 24;
-const SAID: usize = 300;
+/// Maximum number of characters of a name.
+const MAX_NAME_CHARS: usize = 24;
+/// Maximum number of characters of the description of an edit.
+const MAX_TEXT_CHARS: usize = 300;
 
-/// What the machine comes to, after so many of `count` changes.
+/// Returns the table of the measures of a machine; `count` is the total number of changes.
 pub(super) fn state(state: &State, count: usize) -> String {
     let machine = &state.of.machine;
     let inertia = Inertia::of(machine);
@@ -26,7 +27,7 @@ pub(super) fn state(state: &State, count: usize) -> String {
         0 => {
             text += &format!("Before {}, to be stepped through on the time line *edit*.\n\n", counted(count, "change"))
         }
-        changes => text += &format!("Change {changes} of {count}: {}\n\n", cell(&state.of.words, SAID)),
+        changes => text += &format!("Change {changes} of {count}: {}\n\n", cell(&state.of.words, MAX_TEXT_CHARS)),
     }
     let all = |values: &mut dyn Iterator<Item = f64>| values.map(|x| signed(x, 3)).collect::<Vec<_>>().join(" · ");
     let [force, coupling] = [inertia.force_residual(), inertia.invariance_residual()];
@@ -35,8 +36,8 @@ pub(super) fn state(state: &State, count: usize) -> String {
         ["Dₖ, kg m²".into(), all(&mut inertia.momenta().iter().copied())],
         ["Σ D, kg m²".into(), signed(inertia.total_momentum(), 4)],
         ["λₖ = Dₖ / D₁".into(), all(&mut inertia.lambda().iter().copied())],
-        ["worst of (7), kg m".into(), left(force, inertia.is_force_balanced())],
-        ["worst of (8), kg m²".into(), left(coupling, inertia.is_invariant())],
+        ["worst of (7), kg m".into(), residual(force, inertia.is_force_balanced())],
+        ["worst of (8), kg m²".into(), residual(coupling, inertia.is_invariant())],
     ];
     if let Some((beside, measures)) = &state.measures {
         let ratio = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
@@ -52,17 +53,17 @@ pub(super) fn state(state: &State, count: usize) -> String {
         }
     }
     text + &table(
-        &[format!("machine {}", cell(machine.name(), NAME)), String::new()],
+        &[format!("machine {}", cell(machine.name(), MAX_NAME_CHARS)), String::new()],
         &rows.into_iter().map(Vec::from).collect::<Vec<_>>(),
     )
 }
 
-/// What is left of one kind of conditions.
-fn left(most: f64, is_none: bool) -> String {
-    if is_none { "nothing".into() } else { signed(most, 4) }
+/// Returns the text of the largest residual of one kind of conditions.
+fn residual(largest: f64, is_zero: bool) -> String {
+    if is_zero { "nothing".into() } else { signed(largest, 4) }
 }
 
-/// The links with what they weigh, and their counterweights.
+/// Returns the table of the links, their masses and their counterweights.
 pub(super) fn links(machine: &Machine) -> String {
     let spec = machine.spec();
     let has_weights = !spec.counterweights.is_empty();
@@ -76,7 +77,12 @@ pub(super) fn links(machine: &Machine) -> String {
     let mut rows = Vec::new();
     for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
         let drive = &spec.drives[part.drive].name;
-        let mut own = vec![cell(&link.name, NAME), cell(drive, NAME), signed(link.mass, 3), signed(link.com, 4)];
+        let mut own = vec![
+            cell(&link.name, MAX_NAME_CHARS),
+            cell(drive, MAX_NAME_CHARS),
+            signed(link.mass, 3),
+            signed(link.com, 4),
+        ];
         if heads.contains(&"across m") {
             own.push(signed(link.com_normal, 4));
         }
@@ -87,7 +93,7 @@ pub(super) fn links(machine: &Machine) -> String {
             continue;
         }
         for (i, weight) in weights.enumerate() {
-            // A second one on the same link stands alone.
+            // The row of a second counterweight on the same link has empty cells for the link.
             let mut row = if i == 0 { own.clone() } else { vec![String::new(); own.len()] };
             row.extend([signed(weight.mass, 3), signed(weight.at, 4), signed(weight.radius, 4)]);
             rows.push(row);
@@ -102,7 +108,8 @@ pub(super) fn links(machine: &Machine) -> String {
     table(&heads, &rows) + &sum
 }
 
-/// Every line of (7) and (8): what each link brings to it with all that it carries, and what is left.
+/// Returns the table of the conditions (7) and (8): contribution of each link with all that it carries, and the
+/// residual.
 pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     let terms = &breakdown.terms;
     let heads = terms.iter().map(|term| format!("{} {}", term.condition.symbol(), term.condition.unit()));
@@ -112,15 +119,15 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
             none if none == "0.0000" => "·".to_owned(),
             part => part,
         });
-        [cell(&own.name, NAME)].into_iter().chain(parts).collect::<Vec<_>>()
+        [cell(&own.name, MAX_NAME_CHARS)].into_iter().chain(parts).collect::<Vec<_>>()
     };
     let of_term = terms.iter().map(|term| match term.balanced {
         true => "**0**".to_owned(),
         false => format!("**{}**", complex(term.left)),
     });
-    let left = ["**left**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
-    let rows = [left].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();
-    if terms.len() <= ACROSS {
+    let residuals = ["**left**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
+    let rows = [residuals].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();
+    if terms.len() <= MAX_COLUMNS {
         return table(&heads, &rows);
     }
     let across: Vec<Vec<String>> = [heads].into_iter().chain(rows).collect();
@@ -129,9 +136,9 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     table(&turned[0], &turned[1..])
 }
 
-/// The machines of several cases, by their names, beside the first.
+/// Returns the table that compares the machines of several cases, by name, with the first.
 pub fn beside(cases: &[(&str, Design)]) -> String {
-    let heads = cases.iter().map(|(name, _)| cell(name, NAME));
+    let heads = cases.iter().map(|(name, _)| cell(name, MAX_NAME_CHARS));
     let heads: Vec<String> = [String::new()].into_iter().chain(heads).collect();
     let rows = DESIGN.iter().map(|column| {
         let cells = cases.iter().map(|(_, design)| match (column.value)(design) {
@@ -143,11 +150,11 @@ pub fn beside(cases: &[(&str, Design)]) -> String {
         [head].into_iter().chain(cells).collect::<Vec<_>>()
     });
     let apart = cases.iter().filter_map(|(name, design)| Some((name, design.apart.as_ref()?)));
-    let apart = apart.map(|(name, why)| format!("\n{}: {}\n", cell(name, NAME), cell(why, SAID)));
+    let apart = apart.map(|(name, why)| format!("\n{}: {}\n", cell(name, MAX_NAME_CHARS), cell(why, MAX_TEXT_CHARS)));
     table(&heads, &rows.collect::<Vec<_>>()) + &apart.collect::<String>()
 }
 
-/// Along the axes of links, and across them where there is something.
+/// Formats a complex number: real part along the axes of links, imaginary part across them unless zero.
 fn complex(x: Vector) -> String {
     match signed(x.im, 4) {
         none if none == "0.0000" => signed(x.re, 4),
@@ -156,7 +163,7 @@ fn complex(x: Vector) -> String {
     }
 }
 
-/// Text that is shown as it stands, in one line.
+/// Escapes a text for Markdown, on one line and with at most `most` characters before escaping.
 fn cell(text: &str, most: usize) -> String {
     let mut cell = String::new();
     for c in shortened(text, most).chars() {
@@ -169,7 +176,7 @@ fn cell(text: &str, most: usize) -> String {
     cell
 }
 
-/// Columns after the first are numbers.
+/// Returns a table; columns after the first are right-aligned.
 fn table(heads: &[String], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let rule: Vec<String> = (0..heads.len()).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();

@@ -1,4 +1,4 @@
-//! What joint space shows alike for any number of drives: its axes, the pose, the ends of the planned path.
+//! Items of joint space for any number of drives: axes, pose, and ends of the planned path.
 
 use crate::picture::numbers::round_up;
 use crate::picture::scene::axes::Axis;
@@ -6,17 +6,17 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Marker, Scene};
 use crate::simulation::frame::Frame;
 
-/// Drives by their angles.
+/// Symbols of the drive angles.
 pub const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
-/// Names of the axes, with the unit.
+/// Titles of the axes, with units.
 pub(super) const TITLES: [&str; 8] =
     ["q₁, rad", "q₂, rad", "q₃, rad", "q₄, rad", "q₅, rad", "q₆, rad", "q₇, rad", "q₈, rad"];
 
-/// The most marks on the longest axis.
-const MARKS: f64 = 10.0;
+/// Maximum number of ticks on the longest axis.
+const MAX_TICKS: f64 = 10.0;
 
-/// Axes for three drives, over their bounds in the scene, with the value of now on each; `origin` is q of all drives
-/// at the scene's origin, rad.
+/// Returns the axes of three drives over their bounds in the scene, with the current values; `origin` is q of all
+/// drives at the origin of the scene, rad.
 pub(super) fn axes(
     palette: &Palette,
     frame: &Frame,
@@ -32,14 +32,14 @@ pub(super) fn axes(
             colour: palette.drive(k),
             ends: [from, to],
             values: [from + origin[k], to + origin[k]],
-            step: round_up(longest / MARKS),
+            step: round_up(longest / MAX_TICKS),
             decimals: 0,
             now: Some((frame.relative(k), palette.drive(k))),
         }
     })
 }
 
-/// A dot where the pose is, and the ring to pull it by.
+/// Draws a dot at the pose, and the ring by which it is dragged.
 pub(super) fn draw_pose(scene: &mut Scene, palette: &Palette, pose: [f64; 3], hot: bool) {
     let at = pose.map(|x| x as f32);
     scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
@@ -47,13 +47,13 @@ pub(super) fn draw_pose(scene: &mut Scene, palette: &Palette, pose: [f64; 3], ho
     scene.markers.push(ring.edged(palette.ink, 2.0));
 }
 
-/// What the surface of a b is called, rad: where λ changes a little with the pose, most of the moment is kept from the
-/// base.
+/// Returns the label of the surface of b, rad. It says "nearly reactionless" if λ varies slightly with the pose, so
+/// that a small part of the moment reaches the base.
 pub(super) fn named(b: f64, is_reactionless: bool) -> String {
     format!("b = {b:.3} rad{}", if is_reactionless { "" } else { ", nearly reactionless" })
 }
 
-/// The named ends of a path; a closed one has one.
+/// Draws the ends of a path with their names; of a closed path, only the first.
 pub(super) fn draw_ends(scene: &mut Scene, palette: &Palette, [first, last]: [[f32; 3]; 2]) {
     let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
     let is_closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);

@@ -1,11 +1,11 @@
-//! [`Joints`]: joint space of any machine that has a b. Its axes are drive angles, and a b is a surface in it: a plane, or a
-//! line where there are two axes.
+//! [`Joints`]: joint space of any machine that has a b. Its axes are drive angles, and constant b is a surface in it: a
+//! plane, or a line with two axes.
 //!
-//! | what | file |
+//! | subject | file |
 //! |---|---|
-//! | a machine with planes: all within the limits are a prism | `prism` |
-//! | any other: cut where the drives stand that have no axis | `section` |
-//! | the b that are shown | `range` |
+//! | machines with planes: the joint limits bound a prism | `prism` |
+//! | other machines: section at the present angles of the drives without an axis | `section` |
+//! | the interval of b that is shown | `range` |
 
 mod items;
 mod prism;
@@ -25,7 +25,7 @@ use super::pointer::Pointer;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// Joint space as a run has it. In the scene a unit is a radian.
+/// Joint space of a run. The unit of the scene is the radian.
 #[derive(Clone, Debug)]
 pub struct Joints(Kind);
 
@@ -36,14 +36,14 @@ enum Kind {
 }
 
 impl Joints {
-    /// Prepares a run for drawing; to be made again when its machine or plan changes. `None` without a b, or with one
-    /// drive alone.
+    /// Prepares a run for drawing; to be repeated when its machine or plan changes. `None` without a b, or with a
+    /// single drive.
     pub fn of(run: &Run) -> Option<Self> {
         Self::showing(run, None)
     }
 
-    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
-    /// coordinates.
+    /// Prepares a whole run whose b lie in an interval, rad. It shows a constant interval that contains it; coordinates
+    /// of the scene are q itself.
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
         Self::showing(run, Some(b))
     }
@@ -56,7 +56,7 @@ impl Joints {
         }
     }
 
-    /// The drives along the axes, counted from 0.
+    /// Indices of the drives along the axes, from 0.
     pub fn drives(&self) -> &[usize] {
         match &self.0 {
             Kind::Prism(prism) => prism.drives(),
@@ -64,7 +64,8 @@ impl Joints {
         }
     }
 
-    /// Which axis of (q_1, q_2, q_3) each axis of the scene stands for; drives that were chosen keep their order.
+    /// Returns the index of the drive along each axis of the scene, if the machine determines the order; otherwise 0,
+    /// 1, 2.
     pub fn axes(&self) -> [usize; 3] {
         match &self.0 {
             Kind::Prism(prism) => *prism.drives(),
@@ -72,7 +73,7 @@ impl Joints {
         }
     }
 
-    /// Whether there are drives without an axis, so that others can be put along these.
+    /// Whether there are more drives than axes, so that the drives along the axes can be chosen.
     pub fn has_choice(&self) -> bool {
         match &self.0 {
             Kind::Prism(_) => false,
@@ -80,14 +81,14 @@ impl Joints {
         }
     }
 
-    /// Puts drives along the axes, counted from 0, where there is a choice.
+    /// Sets the drives along the axes, indices from 0, if there is a choice.
     pub fn show(&mut self, drives: [usize; 3]) {
         if let Kind::Section(section) = &mut self.0 {
             section.show(drives);
         }
     }
 
-    /// What can be done in it with the pointer.
+    /// Hint at what can be dragged.
     pub fn invitation(&self) -> &'static str {
         match self.drives().len() {
             2 => "drag the dot along its line  ·  drag the line to change b",
@@ -95,7 +96,7 @@ impl Joints {
         }
     }
 
-    /// Where q, rad, lies in the scene while the present pose constant is b, rad.
+    /// Converts q, rad, to a point of the scene; `b` is the present pose constant, rad.
     pub fn point(&self, q: &[f64], b: f64) -> [f64; 3] {
         match &self.0 {
             Kind::Prism(prism) => prism.point(q, b),
@@ -103,7 +104,7 @@ impl Joints {
         }
     }
 
-    /// q of a point of the scene, rad; drives without an axis stand as in a frame.
+    /// Converts a point of the scene to q, rad; drives without an axis have their angles in the frame.
     pub fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
         match &self.0 {
             Kind::Prism(prism) => prism.angles(point, frame.b_reference).to_vec(),
@@ -111,7 +112,8 @@ impl Joints {
         }
     }
 
-    /// The surface of a b, rad, within the limits, drives without an axis as in a frame: its ends or corners, in order.
+    /// Returns the ends or corners, in order, of the surface of constant b, rad, within the joint limits. Drives
+    /// without an axis have their angles in the frame.
     pub fn surface(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
         match &self.0 {
             Kind::Prism(prism) => prism.surface(b, frame.b_reference).to_vec(),
@@ -119,7 +121,7 @@ impl Joints {
         }
     }
 
-    /// A view of all of it.
+    /// Returns a camera that shows everything.
     pub fn camera(&self) -> Camera {
         match &self.0 {
             Kind::Prism(prism) => prism.camera(),
@@ -127,7 +129,7 @@ impl Joints {
         }
     }
 
-    /// Corners of the box that holds it.
+    /// Corners of the bounding box.
     pub fn corners(&self) -> Vec<[f64; 3]> {
         let ends = match &self.0 {
             Kind::Prism(prism) => prism.bounds_at_home(),
@@ -136,7 +138,7 @@ impl Joints {
         (0..8).map(|i| [0, 1, 2].map(|k| ends[k][(i >> k) & 1])).collect()
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         match &self.0 {
             Kind::Prism(prism) => prism.scene(frame, options, camera),
@@ -144,7 +146,7 @@ impl Joints {
         }
     }
 
-    /// What the pointer can take hold of.
+    /// Returns the item under the pointer that can be dragged.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         match &self.0 {
             Kind::Prism(prism) => prism.pick(frame, pointer),
@@ -152,7 +154,7 @@ impl Joints {
         }
     }
 
-    /// What pulling at something asks for.
+    /// Returns the change that dragging an item to the pointer requests.
     pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         match &self.0 {
             Kind::Prism(prism) => prism.aim(pick, frame, pointer),

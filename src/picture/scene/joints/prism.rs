@@ -1,9 +1,11 @@
 //! [`Prism`]: joint space of a machine with planes. Its axes are the drive angles q_1, q_2, q_3, so the planes
-//! b = Σ λ_k q_k, (13), are seen as planes. The limits of a_1 and a_2 cut a parallelogram out of each; all of them together
-//! are a prism along (1, 1, 1), because turning all drives alike changes no relative angle.
+//! b = Σ λ_k q_k, (13), appear as planes. The limits of a_1 and a_2 bound a parallelogram in each plane. All
+//! parallelograms together form a prism along (1, 1, 1), because equal rotations of all drives change no relative
+//! angle.
 //!
-//! The drive with the greatest λ points up, the others follow it in order (q_2, q_3, q_1 for the paper's machine), so
-//! the planes lie nearly level. In the scene a unit is a radian, and the origin is [`Prism::origin`].
+//! The axis of the drive with the largest λ points up, so the planes are nearly horizontal. The other drives follow in
+//! order (q_2, q_3, q_1 for the paper's machine). The unit of the scene is the radian, and the origin is
+//! [`Prism::origin`].
 
 use std::sync::Arc;
 
@@ -24,37 +26,38 @@ use crate::planning::reactionless::PlanePoint;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// Where the b that are shown lie while the present one is well inside, rad.
-const HOME: f64 = 2.5;
-/// Changes of b from which on they are what there is to see, rad.
-const BESIDE: f64 = 0.3;
-/// Room around the prism, rad.
-const ROOM: f64 = 0.25;
+/// Centre of the shown interval of b while the present b is well inside, rad.
+const HOME_B_RAD: f64 = 2.5;
+/// Minimum variation of b over a run for which the camera looks across the prism, rad.
+const LARGE_B_CHANGE_RAD: f64 = 0.3;
+/// Margin around the prism, rad.
+const MARGIN_RAD: f64 = 0.25;
 
-/// What stays the same from frame to frame.
+/// The parts of joint space that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub(super) struct Prism {
     planes: Arc<Planes>,
-    /// The parallelogram of one plane about its middle; the sides of the prism.
+    /// Meshes of the parallelogram of one plane and of the sides of the prism.
     model: Arc<Model>,
-    /// The drive shown along each axis of the scene, counted from 0.
+    /// Index of the drive along each axis of the scene, from 0.
     drives: [usize; 3],
-    /// The outline of the parallelogram.
+    /// Outline of the parallelogram.
     outline: Strips,
-    /// (a_1, a_2) of the parallelogram's corners, in order, rad.
+    /// (a_1, a_2) at the corners of the parallelogram, in order, rad.
     corners: [[f64; 2]; 4],
-    /// q of the planned motion along the axes of the scene, as it is where the origin is q = 0; none without a plan.
+    /// The planned motion along the axes of the scene, with origin q = 0; empty without a plan.
     course: Strips,
-    /// The b that are shown.
+    /// Interval of b that is shown.
     range: Range,
-    /// b changes so much that this is what there is to see.
-    travels: bool,
+    /// Whether b changes so much that the camera looks across the prism.
+    b_varies: bool,
 }
 
 impl Prism {
-    /// Of a run with planes; with a range of b, rad, it shows all of them and stands still, with q itself as coordinates.
+    /// Prepares a run with planes. With an interval `all` of b, rad, the shown interval is constant and contains it,
+    /// and coordinates of the scene are q itself.
     pub fn of(run: &Run, all: Option<[f64; 2]>) -> Option<Self> {
-        let range = all.map_or_else(|| Range::sliding(HOME), |all| Range::over(all, HOME));
+        let range = all.map_or_else(|| Range::sliding(HOME_B_RAD), |all| Range::over(all, HOME_B_RAD));
         let planes = run.planes()?.clone();
         let map = planes.map();
         let lambda = map.lambda();
@@ -70,16 +73,16 @@ impl Prism {
         let mut space = Self {
             model: Arc::default(),
             outline: Strips::default(),
-            travels: all.is_some_and(|[low, high]| high - low > BESIDE),
+            b_varies: all.is_some_and(|[low, high]| high - low > LARGE_B_CHANGE_RAD),
             drives,
             corners,
             course,
             planes,
             range,
         };
-        let [low, high] = range.about(HOME);
-        let ring = |b: f64| space.surface(b, HOME);
-        let (own, bottom, top) = (ring(HOME), ring(low), ring(high));
+        let [low, high] = range.about(HOME_B_RAD);
+        let ring = |b: f64| space.surface(b, HOME_B_RAD);
+        let (own, bottom, top) = (ring(HOME_B_RAD), ring(low), ring(high));
         let sides = (0..4).flat_map(|i| {
             let j = (i + 1) % 4;
             [[bottom[i], bottom[j], top[j]], [bottom[i], top[j], top[i]]]
@@ -87,21 +90,21 @@ impl Prism {
         let faces = [[own[0], own[1], own[2]], [own[0], own[2], own[3]]];
         let meshes = vec![shell(faces), shell(sides)];
         space.model = Arc::new(Model { meshes });
-        space.outline = [space.polygon(HOME, HOME)].into();
+        space.outline = [space.polygon(HOME_B_RAD, HOME_B_RAD)].into();
         Some(space)
     }
 
-    /// The drive shown along each axis of the scene, counted from 0; the last one points up.
+    /// Index of the drive along each axis of the scene, from 0; the last axis points up.
     pub fn drives(&self) -> &[usize; 3] {
         &self.drives
     }
 
-    /// q at the corners of a plane, in order, rad.
+    /// Returns q at the corners of a plane, in order, rad.
     fn corners(&self, b: f64) -> [[f64; 3]; 4] {
         self.corners.map(|a| self.planes.map().lift(PlanePoint { a, b }))
     }
 
-    /// q at the scene's origin while the present pose constant is b, in the order of the drives, rad.
+    /// Returns q at the origin of the scene, in the order of the drives, rad; `b` is the present pose constant.
     fn origin(&self, b: f64) -> [f64; 3] {
         if self.range.is_fixed() {
             return [0.0; 3];
@@ -110,18 +113,18 @@ impl Prism {
         self.middle(0.5 * (low + high))
     }
 
-    /// Where q lies in the scene while the present pose constant is b.
+    /// Converts q to a point of the scene; `b` is the present pose constant.
     pub fn point(&self, q: &[f64], b: f64) -> [f64; 3] {
         let origin = self.origin(b);
         self.drives.map(|k| q[k] - origin[k])
     }
 
-    /// Corners of the plane of a pose constant, in order, in the scene of the present one, b.
+    /// Returns the corners, in order, of the plane of the pose constant `of`; `b` is the present pose constant.
     pub fn surface(&self, of: f64, b: f64) -> [[f64; 3]; 4] {
         self.corners(of).map(|q| self.point(&q, b))
     }
 
-    /// q of a point of the scene while the present pose constant is b, rad.
+    /// Converts a point of the scene to q, rad; `b` is the present pose constant.
     pub fn angles(&self, point: [f64; 3], b: f64) -> [f64; 3] {
         let mut q = self.origin(b);
         for (k, x) in self.drives.into_iter().zip(point) {
@@ -130,36 +133,37 @@ impl Prism {
         q
     }
 
-    /// A view of the whole prism, or of all that a run shows.
+    /// Returns a camera that shows the whole prism.
     pub fn camera(&self) -> Camera {
         if self.range.is_fixed() {
             return self.camera_over();
         }
-        let size = self.bounds(HOME).iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
+        let size = self.bounds(HOME_B_RAD).iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
         Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.85 * size, yaw: 1.85, pitch: 0.66 })
     }
 
-    /// Where b changes much the path runs along (1, 1, 1), which is seen from its side.
+    /// Returns the camera for a fixed interval. If b changes much, the path runs along (1, 1, 1) and is viewed from the
+    /// side.
     fn camera_over(&self) -> Camera {
-        let ends = self.bounds(HOME);
+        let ends = self.bounds(HOME_B_RAD);
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
         let [x, y, z] = ends.map(|[from, to]| 0.5 * (from + to));
-        let (yaw, distance) = if self.travels { (-0.45, 1.2 * size) } else { (1.85, 1.05 * size) };
+        let (yaw, distance) = if self.b_varies { (-0.45, 1.2 * size) } else { (1.85, 1.05 * size) };
         Camera::Orbit(Orbit { centre: [x, y, z - 0.05 * size], distance, yaw, pitch: 0.66 })
     }
 
-    /// Ends of the box that holds the prism where it usually lies, along the scene's axes.
+    /// Bounds of the box around the prism in its usual position, along the axes of the scene.
     pub fn bounds_at_home(&self) -> [[f64; 2]; 3] {
-        self.bounds(HOME)
+        self.bounds(HOME_B_RAD)
     }
 
-    /// Ends of the box along the scene's axes.
+    /// Bounds of the box along the axes of the scene; `b` is the present pose constant.
     fn bounds(&self, b: f64) -> [[f64; 2]; 3] {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for edge in self.range.about(b) {
             for p in self.surface(edge, b) {
                 for (bound, x) in bounds.iter_mut().zip(p) {
-                    *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
+                    *bound = [bound[0].min(x - MARGIN_RAD), bound[1].max(x + MARGIN_RAD)];
                 }
             }
         }
@@ -171,12 +175,12 @@ impl Prism {
         self.drives.map(|k| lambda[k])
     }
 
-    /// b of a point of the scene.
+    /// Returns the pose constant of a point of the scene; `b` is the present one.
     fn b_at(&self, point: [f64; 3], b: f64) -> f64 {
         self.planes.map().project(&self.angles(point, b)).b
     }
 
-    /// The point of the plane b under the pointer.
+    /// Returns the point of the plane b under the pointer.
     fn on_plane(&self, b: f64, pointer: &Pointer) -> Option<[f64; 3]> {
         pointer.ray()?.at_plane(self.normal(), b - self.b_at([0.0; 3], b))
     }
@@ -185,7 +189,7 @@ impl Prism {
         self.point(&[0, 1, 2].map(|k| frame.relative(k)), frame.b_reference)
     }
 
-    /// What the pointer can take hold of: the pose's dot, the plane.
+    /// Returns the item under the pointer that can be dragged: the dot of the pose, or the plane.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let (b, dot) = (frame.b_reference, self.pose(frame));
         if pointer.distance(dot).is_some_and(|d| d < NEAR) {
@@ -198,7 +202,7 @@ impl Prism {
         inside.then_some(Pick::of(Handle::Plane, at))
     }
 
-    /// What pulling at something asks for: the dot within its plane, the plane along its normal.
+    /// Returns the change that dragging an item requests: the dot moves in its plane, the plane along its normal.
     pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         let (b, map) = (frame.b_reference, self.planes.map());
         match pick.handle {
@@ -218,7 +222,7 @@ impl Prism {
         }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
@@ -231,8 +235,8 @@ impl Prism {
             changes,
         };
         let mut scene = Scene::new(palette.background, self.model.clone());
-        // The meshes were made on the plane HOME and about it, where they are seen while b is HOME.
-        let plane = shifted(self.point(&self.middle(b), b), self.point(&self.middle(HOME), HOME));
+        // The meshes have the coordinates of the scene for b = HOME_B_RAD.
+        let plane = shifted(self.point(&self.middle(b), b), self.point(&self.middle(HOME_B_RAD), HOME_B_RAD));
         scene.solids = vec![
             solid("prism", 1, IN_PLACE, faded(palette.dim, 0.07), Changes::Nothing),
             solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
@@ -249,7 +253,7 @@ impl Prism {
         scene
     }
 
-    /// The outline of the plane of a pose constant, closed, in the scene of the present one.
+    /// Returns the closed outline of the plane of the pose constant `of`; `b` is the present pose constant.
     fn polygon(&self, of: f64, b: f64) -> Vec<[f32; 3]> {
         let corners = self.surface(of, b).map(|p| p.map(|x| x as f32));
         (0..5).map(|i| corners[i % 4]).collect()
@@ -271,7 +275,7 @@ impl Prism {
     fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Pose, hot: bool) {
         let b = frame.b_reference;
         let polygon = self.polygon(b, b);
-        // Outside a corner that the pose leaves free.
+        // Outside a corner that is not near the pose.
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
         let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
         let at = [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k]));
@@ -282,12 +286,12 @@ impl Prism {
         scene.lines.push(outline.on_top().moving(pose));
     }
 
-    /// Which limit each side of the polygon is.
+    /// Labels each side of the polygon with its joint limit.
     fn limits(&self, scene: &mut Scene, palette: &Palette, polygon: &[[f32; 3]]) {
         for (i, ends) in polygon.windows(2).enumerate() {
-            // Sides run along a_1 and a_2 in turn, at a limit of the other.
+            // Sides run alternately along a_1 and a_2; the other angle is at a limit.
             let fixed = 1 - i % 2;
-            // A little outside.
+            // Slightly outside of the side.
             let at =
                 [0, 1, 2].map(|k| 0.5 * (1.13 * (ends[0][k] + ends[1][k]) - 0.13 * (polygon[0][k] + polygon[2][k])));
             let text = format!("{} = {}°", ["a₁", "a₂"][fixed], degrees(self.corners[i][fixed]));
@@ -295,7 +299,7 @@ impl Prism {
         }
     }
 
-    /// From the pose straight to the walls behind it, each in the colour of its drive.
+    /// Draws lines from the pose perpendicular to the rear walls, each in the colour of its drive.
     fn drops(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, eye: [f64; 3]) {
         const NAMES: [&str; 3] = ["pose/drop/1", "pose/drop/2", "pose/drop/3"];
         let (at, bounds) = (self.pose(frame), self.bounds(frame.b_reference));
@@ -320,14 +324,14 @@ impl Prism {
         items::draw_ends(scene, palette, [first, last]);
     }
 
-    /// q at the middle of a plane, rad.
+    /// Returns q at the centre of a plane, rad.
     fn middle(&self, b: f64) -> [f64; 3] {
         let [a1, a2] = self.planes.map().limits();
         self.planes.map().lift(PlanePoint { a: [a1, a2].map(|l| 0.5 * (l.min + l.max)), b })
     }
 }
 
-/// The pose of what was made at one point of the scene and stands at another.
+/// Returns the translation from one point of the scene to another.
 fn shifted(to: [f64; 3], from: [f64; 3]) -> Pose {
     let mut pose = IN_PLACE;
     for i in 0..3 {
@@ -336,7 +340,7 @@ fn shifted(to: [f64; 3], from: [f64; 3]) -> Pose {
     pose
 }
 
-/// Triangles as an open shell, each with its own normal.
+/// Returns triangles as an open shell, each with its own normal.
 fn shell(triangles: impl IntoIterator<Item = [[f64; 3]; 3]>) -> Mesh {
     let mut mesh = Mesh { shell: true, ..Mesh::default() };
     for [a, b, c] in triangles {

@@ -1,53 +1,55 @@
-//! [`Range`]: which b joint space shows.
+//! [`Range`]: the interval of b that joint space shows.
 
 use crate::picture::scene::{Changes, axes};
 
-/// How much of b is shown at least, rad, and how near to its ends the present one comes.
-const SPAN: f64 = 3.0;
-const MARGIN: f64 = 0.4;
-/// Neighbouring surfaces lie at multiples of this, rad; so many of them are shown at most.
-const APART: f64 = 0.5;
-const MOST: i32 = 80;
+/// Minimum length of the interval, rad.
+const MIN_LENGTH_RAD: f64 = 3.0;
+/// Minimum distance of the present b from the ends of the interval, rad.
+const MARGIN_RAD: f64 = 0.4;
+/// Spacing of neighbouring surfaces, rad; they are at multiples of this.
+const SPACING_RAD: f64 = 0.5;
+/// Maximum number of neighbouring surfaces.
+const MAX_SURFACES: i32 = 80;
 
-/// The b that are shown: all of a run, or those about the present one, along with which they slide.
+/// The interval of b that is shown: constant for a whole run, or following the present b.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
-    /// Where they lie while the present b is well inside, rad.
+    /// Centre of the interval while the present b is well inside, rad.
     home: f64,
-    /// Those of a whole run, rad.
+    /// Constant interval of a whole run, rad.
     fixed: Option<[f64; 2]>,
 }
 
 impl Range {
-    /// About the present b.
+    /// Returns an interval that follows the present b.
     pub fn sliding(home: f64) -> Self {
         Self { home, fixed: None }
     }
 
-    /// All of a run, whose b lie in a range, rad.
+    /// Returns the constant interval for a run whose b lie between `low` and `high`, rad.
     pub fn over([low, high]: [f64; 2], home: f64) -> Self {
-        let width = SPAN.max(high - low + 2.0 * MARGIN);
-        Self { home, fixed: Some(axes::covering([low, high], home, width, MARGIN)) }
+        let width = MIN_LENGTH_RAD.max(high - low + 2.0 * MARGIN_RAD);
+        Self { home, fixed: Some(axes::covering([low, high], home, width, MARGIN_RAD)) }
     }
 
-    /// Whether it stands still, whatever the present b is.
+    /// Whether the interval is constant.
     pub fn is_fixed(&self) -> bool {
         self.fixed.is_some()
     }
 
-    /// The least and the greatest b that are shown while a b is the present one, rad.
+    /// Returns the interval that is shown, rad; `b` is the present pose constant.
     pub fn about(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, self.home, SPAN, MARGIN))
+        self.fixed.unwrap_or_else(|| axes::sliding(b, self.home, MIN_LENGTH_RAD, MARGIN_RAD))
     }
 
-    /// The b of neighbouring surfaces, rad.
+    /// Returns the pose constants of neighbouring surfaces, rad; `b` is the present pose constant.
     pub fn neighbours(&self, b: f64) -> impl Iterator<Item = f64> {
         let [low, high] = self.about(b);
-        let first = (low / APART).ceil();
-        (0..MOST).map(move |i| (first + f64::from(i)) * APART).take_while(move |of| *of <= high)
+        let first = (low / SPACING_RAD).ceil();
+        (0..MAX_SURFACES).map(move |i| (first + f64::from(i)) * SPACING_RAD).take_while(move |of| *of <= high)
     }
 
-    /// What may change of what stands about the present surface.
+    /// Returns which parts may change of the items around the present surface.
     pub fn changes(&self) -> Changes {
         if self.is_fixed() { Changes::Nothing } else { Changes::Shape }
     }

@@ -1,7 +1,8 @@
-//! [`Section`]: joint space of a machine without planes. Of two drives it is a plane, in which a b is a line. Of four and more it is cut
-//! where the drives that have no axis stand now, and three are left: in these a b is a plane again.
+//! [`Section`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a line.
+//! With four or more drives it is a three-dimensional section, at the present angles of the drives without an axis. In
+//! this section constant b is a plane.
 //!
-//! In the scene a unit is a radian, along x, y and z lie the drives that were chosen, and the origin moves with b.
+//! The unit of the scene is the radian, the chosen drives are along x, y and z, and the origin moves with b.
 
 use std::sync::Arc;
 
@@ -20,30 +21,30 @@ use crate::planning::pose_space::{Joint, PoseSpace};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// Where the b that are shown lie while the present one is well inside, rad.
-const HOME: f64 = 1.5;
-/// Room around what is shown, rad.
-const ROOM: f64 = 0.2;
+/// Centre of the shown interval of b while the present b is well inside, rad.
+const HOME_B_RAD: f64 = 1.5;
+/// Margin around all poses, rad.
+const MARGIN_RAD: f64 = 0.2;
 
-/// What stays the same from frame to frame.
+/// The parts of joint space that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
     space: Arc<PoseSpace>,
-    /// The drives along the axes, counted from 0: two or three.
+    /// Indices of the two or three drives along the axes, from 0.
     shown: Vec<usize>,
-    /// The planned motion; none without a plan.
+    /// The planned motion; empty without a plan.
     course: Vec<DriveAngles>,
-    /// Ends of the box along the scene's axes.
+    /// Bounds of the box along the axes of the scene.
     bounds: [[f64; 2]; 3],
-    /// The b that are shown.
+    /// Interval of b that is shown.
     range: Range,
 }
 
 impl Section {
-    /// Of a run without planes that has a b; with a range of b, rad, it shows all of them and stands still, with q itself
-    /// as coordinates.
+    /// Prepares a run without planes that has a b. With an interval `all` of b, rad, the shown interval is constant and
+    /// contains it, and coordinates of the scene are q itself.
     pub fn of(run: &Run, space: &Arc<PoseSpace>, all: Option<[f64; 2]>) -> Option<Self> {
-        let range = all.map_or_else(|| Range::sliding(HOME), |all| Range::over(all, HOME));
+        let range = all.map_or_else(|| Range::sliding(HOME_B_RAD), |all| Range::over(all, HOME_B_RAD));
         let n = space.drives();
         let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
         let shown = (0..n.min(3)).collect();
@@ -51,7 +52,7 @@ impl Section {
         (n > 1).then(|| Self { space, shown, course, bounds, range }.bounded())
     }
 
-    /// Puts other drives along the axes, counted from 0; those that the machine lacks change nothing.
+    /// Sets the drives along the axes, indices from 0; has no effect if the machine lacks one of them.
     pub fn show(&mut self, drives: [usize; 3]) {
         let fits = drives.iter().all(|k| *k < self.space.drives());
         if !self.is_flat() && fits && self.shown != drives {
@@ -60,7 +61,7 @@ impl Section {
         }
     }
 
-    /// The drives along the axes, counted from 0.
+    /// Indices of the drives along the axes, from 0.
     pub fn drives(&self) -> &[usize] {
         &self.shown
     }
@@ -74,7 +75,7 @@ impl Section {
         self.shown.len() < 3
     }
 
-    /// q at the scene's origin while the present pose constant is b, rad.
+    /// Returns q at the origin of the scene, rad; `b` is the present pose constant.
     fn origin(&self, b: f64) -> DriveAngles {
         if self.range.is_fixed() {
             return DriveAngles(PerDrive::zeros(self.space.drives()));
@@ -83,7 +84,7 @@ impl Section {
         self.space.lift(&self.space.middle(), 0.5 * (low + high))
     }
 
-    /// Where q lies in the scene while the present pose constant is b.
+    /// Converts q to a point of the scene; `b` is the present pose constant.
     pub fn point(&self, q: &[f64], b: f64) -> [f64; 3] {
         let origin = self.origin(b);
         let mut at = [0.0; 3];
@@ -93,7 +94,7 @@ impl Section {
         at
     }
 
-    /// q of a point of the scene, the drives without an axis as in a frame.
+    /// Converts a point of the scene to q, rad; drives without an axis have their angles in the frame.
     pub fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
         let origin = self.origin(frame.b_reference);
         let mut q = now(frame);
@@ -103,16 +104,16 @@ impl Section {
         q
     }
 
-    /// With a box that holds all poses within the limits, over the b that are shown.
+    /// Sets the box to the bounding box of all poses within the joint limits and the shown interval of b.
     fn bounded(self) -> Self {
         let joints = self.space.joints();
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for i in 0..1_usize << joints.len() {
             let a: Vec<f64> = joints.iter().enumerate().map(|(j, joint)| joint.limits()[(i >> j) & 1]).collect();
-            for b in self.range.about(HOME) {
-                let at = self.point(&self.space.lift(&a, b), HOME);
+            for b in self.range.about(HOME_B_RAD) {
+                let at = self.point(&self.space.lift(&a, b), HOME_B_RAD);
                 for (bound, x) in bounds.iter_mut().zip(at) {
-                    *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
+                    *bound = [bound[0].min(x - MARGIN_RAD), bound[1].max(x + MARGIN_RAD)];
                 }
             }
         }
@@ -122,12 +123,12 @@ impl Section {
         Self { bounds, ..self }
     }
 
-    /// Ends of the box along the scene's axes.
+    /// Bounds of the box along the axes of the scene.
     pub fn bounds(&self) -> [[f64; 2]; 3] {
         self.bounds
     }
 
-    /// A view of it: a plane from straight above, three axes in perspective.
+    /// Returns the camera: from straight above for two axes, in perspective for three.
     pub fn camera(&self) -> Camera {
         let ends = self.bounds;
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
@@ -135,19 +136,20 @@ impl Section {
         if self.is_flat() {
             return Camera::Flat(Flat { centre: [x, y], half_height: 0.5 * size });
         }
-        // What stands still is seen from nearer.
+        // With a fixed interval, the camera is nearer.
         let near = if self.range.is_fixed() { 1.05 } else { 1.85 };
         Camera::Orbit(Orbit { centre: [x, y, z - 0.06 * size], distance: near * size, yaw: 1.85, pitch: 0.5 })
     }
 
-    /// λ along the axes.
+    /// Components of λ along the axes.
     fn normal(&self) -> [f64; 3] {
         let mut normal = [0.0; 3];
         normal.iter_mut().zip(&self.shown).for_each(|(x, k)| *x = self.space.lambda()[*k]);
         normal
     }
 
-    /// The part of b's line or plane within the limits, the other drives as in a frame: its ends or corners, in order.
+    /// Returns the ends or corners, in order, of the line or plane of constant b within the joint limits and the box.
+    /// Drives without an axis have their angles in the frame.
     pub fn surface(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
         let normal = self.normal();
         let size = dot(normal, normal);
@@ -156,7 +158,7 @@ impl Section {
         }
         let bounds = self.bounds;
         let far = bounds.iter().map(|[from, to]| to - from).sum::<f64>();
-        // The foot of the origin, and ways along the line or plane.
+        // Foot of the perpendicular from the origin, then a segment or square that contains the whole box.
         let off = (b - self.space.b(&self.angles([0.0; 3], frame))) / size;
         let foot = normal.map(|x| off * x);
         let mut part: Vec<[f64; 3]> = if self.is_flat() {
@@ -192,7 +194,7 @@ impl Section {
         self.point(&now(frame), frame.b_reference)
     }
 
-    /// The point of the scene under the pointer, of b's plane or of the plane of two drives.
+    /// Returns the point under the pointer, on the plane of constant b, or on the plane of two drives.
     fn under(&self, frame: &Frame, pointer: &Pointer) -> Option<[f64; 3]> {
         if self.is_flat() {
             let [x, y] = pointer.ray()?.at_height(0.0)?;
@@ -202,7 +204,7 @@ impl Section {
         pointer.ray()?.at_plane(self.normal(), off)
     }
 
-    /// What the pointer can take hold of: the pose's dot, the line or plane.
+    /// Returns the item under the pointer that can be dragged: the dot of the pose, or the line or plane.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let dot = self.pose(frame);
         if pointer.distance(dot).is_some_and(|d| d < NEAR) {
@@ -225,7 +227,7 @@ impl Section {
         on.then_some(Pick::of(Handle::Plane, at))
     }
 
-    /// What pulling at something asks for: the dot within its b, the line or plane across.
+    /// Returns the change that dragging an item requests: the dot moves at constant b, the line or plane changes b.
     pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         let (b, space) = (frame.b_reference, &self.space);
         match pick.handle {
@@ -249,7 +251,7 @@ impl Section {
         }
     }
 
-    /// Everything there is to draw.
+    /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
@@ -281,14 +283,14 @@ impl Section {
         scene
     }
 
-    /// Beyond the end or corner that is farthest from the pose.
+    /// Returns the position of the label: beyond the end or corner that is farthest from the pose.
     fn label(&self, part: &[[f64; 3]], pose: [f64; 3]) -> Option<[f32; 3]> {
         let far = part.iter().max_by(|p, q| distance(**p, pose).total_cmp(&distance(**q, pose)))?;
         let middle = [0, 1, 2].map(|i| part.iter().map(|p| p[i]).sum::<f64>() / part.len() as f64);
         Some([0, 1, 2].map(|i| (far[i] + 0.06 * (far[i] - middle[i])) as f32))
     }
 
-    /// The plane of two drives, ruled at round angles, with the present ones at its edges.
+    /// Draws the grid of the plane of two drives at round angles, with the current angles at its edges.
     fn grid(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let (bounds, origin, pose) = (self.bounds, self.origin(frame.b_reference), self.pose(frame));
         let longest = (0..2).map(|i| bounds[i][1] - bounds[i][0]).fold(0.0, f64::max);
@@ -305,7 +307,7 @@ impl Section {
             while value <= to + origin[k] {
                 let x = value - origin[k];
                 lines.push([low, high].map(|y| flat(at(i, x, y))).to_vec());
-                // The present value takes the place of a mark.
+                // The label of the current value replaces a nearby tick label.
                 if (x - pose[i]).abs() > 0.05 * (to - from) {
                     let text = signed(value + 0.0, decimals);
                     let label = Label::new("axes/words", flat(at(i, x, low)), offset, text, palette.dim, 11.5, anchor);
@@ -329,12 +331,12 @@ impl Section {
         scene.lines.insert(0, Line::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));
     }
 
-    /// The lines of two drives along which the relative angle is at a limit.
+    /// Draws, for two drives, the lines on which the relative angle is at a limit.
     fn limits(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let Some(joint) = self.space.joints().first().filter(|joint| joint.bounds()[0].is_finite()) else { return };
         let bounds = self.bounds;
         for limit in joint.limits() {
-            // Along (1, 1) from one edge of the grid to the other.
+            // Along (1, 1) between two edges of the grid.
             let off = limit - joint.of(&self.angles([0.0; 3], frame));
             let rise = joint.of(&self.angles([0.0, 1.0, 0.0], frame)) - joint.of(&self.angles([0.0; 3], frame));
             let lift = off / rise;
@@ -357,7 +359,7 @@ impl Section {
         scene.lines.push(Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top());
     }
 
-    /// The planned motion as the axes show it.
+    /// Draws the planned motion along the shown drives.
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
@@ -367,12 +369,12 @@ impl Section {
     }
 }
 
-/// Angles of the drives against the base, rad.
+/// Drive angles relative to the base, rad.
 fn now(frame: &Frame) -> Vec<f64> {
     (0..frame.q.len()).map(|k| frame.relative(k)).collect()
 }
 
-/// What of a convex polygon, or of a segment, lies where a linear function is not below 0.
+/// Clips a convex polygon, or a segment, to the half space in which a linear function is non-negative.
 fn clipped(part: &[[f64; 3]], of: impl Fn(&[f64; 3]) -> f64) -> Vec<[f64; 3]> {
     let mut kept = Vec::with_capacity(part.len() + 1);
     for (i, p) in part.iter().enumerate() {
@@ -407,12 +409,12 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|x| x / size)
 }
 
-/// A closed outline as a line.
+/// Returns the outline of a polygon as a closed line.
 fn closed(part: &[[f64; 3]]) -> Vec<[f32; 3]> {
     part.iter().chain(part.first()).map(|p| p.map(|x| x as f32)).collect()
 }
 
-/// A convex polygon as an open shell.
+/// Returns a convex polygon as an open shell.
 fn fan(part: &[[f64; 3]]) -> Mesh {
     let mut mesh = Mesh { shell: true, ..Mesh::default() };
     let [a, b, c, ..] = *part else { return mesh };

@@ -1,5 +1,5 @@
-//! What the machine stands on: a plate that floats or stands on springs, its wheel, what it holds, and where all would
-//! be had the base not moved.
+//! The base (a plate that floats or is mounted on springs), its reaction wheel and the payload. If the base moves, base
+//! and machine are also outlined as if it had not moved.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -16,27 +16,27 @@ use crate::session::Run;
 use crate::simulation::frame::Frame;
 use crate::simulation::plant::{Base, BaseKind, Load};
 
-/// What a stage knows of base and payload; it can change without a new stage.
+/// Base and payload of a stage; they can change without a new stage.
 #[derive(Clone, Debug)]
 pub struct BaseStage {
     base: Base,
     load: Load,
     /// Whether there is no gravity.
     weightless: bool,
-    /// Drive that the link with the end effector follows, and which way.
+    /// Index of the drive of the link with the end effector, and its sign: 1 along the drive, −1 opposite.
     holder: (usize, f64),
-    /// Of a base that floats: outlines and ribs of its panels, before it moves.
+    /// Outlines and ribs of the panels of a floating base, in the frame of the base.
     panels: [Vec<Vec<[f32; 3]>>; 2],
 }
 
-/// Newtons for each metre that a hand pulls.
+/// Applied force per distance that the pointer is dragged from the end effector, N/m.
 pub const PULL: f64 = 20.0;
 
-/// Motion of the base below this is not spoken of, m and rad.
-const SILENT: f64 = 1e-12;
+/// Motion of the base below this counts as rest, m and rad.
+const REST_THRESHOLD: f64 = 1e-12;
 
 impl BaseStage {
-    /// Of a run whose machine is built like this.
+    /// Prepares base and payload of a run; `plant` is the machine with the lengths of the plant.
     pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
         let scenario = run.scenario();
         let holder = &plant.resolved_links()[plant.end_link()];
@@ -49,7 +49,7 @@ impl BaseStage {
         }
     }
 
-    /// Takes over what has changed of base and payload.
+    /// Updates base and payload from a run.
     pub fn refresh(&mut self, run: &Run) {
         let scenario = run.scenario();
         (self.base, self.load) = (scenario.base, scenario.plant.payload);
@@ -61,7 +61,7 @@ impl BaseStage {
         self.base.moves()
     }
 
-    /// What a base carries besides what motion makes, in words.
+    /// Returns the name of the constant force on the base.
     pub fn rest(&self, options: &ViewOptions) -> &'static str {
         match options.push {
             Some([x, y]) if x.hypot(y) > 0.0 && self.weightless => "the push",
@@ -70,7 +70,7 @@ impl BaseStage {
         }
     }
 
-    /// Glyphs under the machine: panels of a spacecraft, or springs between the plate and the ground.
+    /// Draws the symbols of the base: panels of a spacecraft, or springs between the plate and the ground.
     pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
         let reach = linkage.reach();
         let (z, top) = (linkage.bottom(), linkage.top());
@@ -130,7 +130,7 @@ impl BaseStage {
         let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
         let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
         let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
-        // Its colour tells whether it saturates.
+        // The colour shows whether the wheel is saturated.
         let line = |name: &'static str, strips: Vec<_>, width| Line {
             world_from_item: pose,
             ..Line::new(name, strips, width, colour).on_top()
@@ -141,21 +141,21 @@ impl BaseStage {
         scene.markers.push(Marker::disc("wheel/mark", at, 4.0, colour).edged(palette.background, 1.0));
     }
 
-    /// Where the payload is, m, while it is held.
+    /// Returns the drawn position of the payload, m, while the machine holds it.
     pub fn load_at(&self, shown: &Shown<'_>) -> Option<Vector> {
         let (drive, sign) = self.holder;
         let [x, y] = self.load.offset;
         shown.frame.loaded.then(|| shown.end_effector + shown.q.units()[drive] * Vector::new(x, y) * sign)
     }
 
-    /// Along and across the link that holds it, m, where the payload is if it is brought to a place.
+    /// Converts a drawn position of the payload, m, to offsets along and across the link that holds it, m.
     pub fn offset_at(&self, shown: &Shown<'_>, at: Vector) -> [f64; 2] {
         let (drive, sign) = self.holder;
         let off = (at - shown.end_effector) * shown.q.units()[drive].conj() * sign;
         [off.re, off.im]
     }
 
-    /// What the plant holds and the model does not know of, and what pushes.
+    /// Draws the payload, and the arrow of the applied force.
     pub fn load(
         &self,
         scene: &mut Scene,
@@ -202,7 +202,7 @@ impl BaseStage {
         scene.labels.push(Label::new("push/size", point(to, z), [aside, 0.0], words, palette.amber, 12.5, anchor));
     }
 
-    /// Where base and machine would be, had the base not moved; nothing if it has not.
+    /// Draws base and machine as if the base had not moved, if it has moved visibly, and writes its motion.
     pub fn unmoved(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>, times: f64) {
         let Pose2 { at, angle } = shown.base;
         let reach = linkage.reach();
@@ -234,15 +234,15 @@ impl BaseStage {
     }
 }
 
-/// How far a base has moved.
+/// Returns the text of the motion of the base.
 fn motion(frame: &Frame) -> String {
     let (Pose2 { at, angle }, totals) = (frame.base, &frame.totals);
-    // As many digits as the peak so far has; they do not change as it comes to rest.
-    let written = |x: f64, peak: f64| match peak > SILENT {
+    // The peak so far determines the number of decimals, so that it is constant as the base comes to rest.
+    let written = |x: f64, peak: f64| match peak > REST_THRESHOLD {
         true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
         false => "0".into(),
     };
-    match totals.shift > SILENT || totals.base_angle > SILENT {
+    match totals.shift > REST_THRESHOLD || totals.base_angle > REST_THRESHOLD {
         true => {
             format!("base {} mm, {} mrad", written(at.norm(), totals.shift), written(angle, totals.base_angle))
         }
@@ -250,7 +250,7 @@ fn motion(frame: &Frame) -> String {
     }
 }
 
-/// Outlines and ribs of the panels of a base that floats, before it moves.
+/// Returns outlines and ribs of the panels of a floating base, in the frame of the base.
 fn panels(linkage: &Linkage) -> [Vec<Vec<[f32; 3]>>; 2] {
     let (reach, z) = (linkage.reach(), linkage.bottom());
     let (near, far, half) = (PLATE[0] + 0.035, PLATE[0] + 0.19, 0.075);
@@ -267,20 +267,20 @@ fn panels(linkage: &Linkage) -> [Vec<Vec<[f32; 3]>>; 2] {
     [outlines, ribs]
 }
 
-/// A zigzag between two points.
+/// Returns a zigzag line between two points; `half` is its half width, m.
 fn spring(from: Vector, to: Vector, half: f64, z: f64) -> Vec<[f32; 3]> {
-    const TURNS: i32 = 9;
+    const SEGMENTS: i32 = 9;
     let way = to - from;
     let across = way / way.norm().max(1e-12) * Vector::new(0.0, half);
     let at = |i: i32| {
         let side = match i {
-            0 | TURNS => 0.0,
+            0 | SEGMENTS => 0.0,
             i if i % 2 == 0 => 1.0,
             _ => -1.0,
         };
         // Straight at both ends.
-        let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(TURNS) };
+        let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(SEGMENTS) };
         point(from + way * share + across * side, z)
     };
-    (0..=TURNS).map(at).chain([point(to, z)]).collect()
+    (0..=SEGMENTS).map(at).chain([point(to, z)]).collect()
 }

@@ -1,4 +1,4 @@
-//! Joint limits as arcs: at the pin where the arms of two drives meet, where the outer one may point.
+//! Joint limits as arcs at the pin between the links of two drives: the directions that the outer link can have.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,17 +13,18 @@ use crate::picture::scene::pick::{Grip, Pick, Pivot};
 use crate::picture::scene::pointer::Pointer;
 use crate::picture::scene::{Line, Marker, Name, Pose, Scene, Strips, place, point, posed};
 
-/// Radius of the innermost arc and the step to the next, parts of the reach.
-const RADIUS: f64 = 0.062;
-const STEP: f64 = 0.016;
+/// Radius of the innermost arc, as a fraction of the reach.
+const ARC_RADIUS: f64 = 0.062;
+/// Radial distance between arcs at one pin, as a fraction of the reach.
+const ARC_SPACING: f64 = 0.016;
 
-/// Ends of an arc stay apart by this at least, rad.
-const LEAST: f64 = PI / 180.0;
+/// Minimum distance between lower and upper limit, and of their span from a full turn, rad.
+const MIN_SPAN_RAD: f64 = PI / 180.0;
 
-/// An end this near to the present angle is shown, rad.
-const NEAR_END: f64 = 5.0 * PI / 180.0;
+/// A limit is marked if the present angle is nearer than this, rad.
+const MARK_WITHIN_RAD: f64 = 5.0 * PI / 180.0;
 
-/// The arcs of a machine.
+/// The arcs of the joint limits of a machine.
 #[derive(Clone, Debug)]
 pub struct Limits {
     arcs: Vec<Arc>,
@@ -32,19 +33,19 @@ pub struct Limits {
 #[derive(Clone, Debug)]
 struct Arc {
     name: Name,
-    /// Which relative angle, counted from 0.
+    /// Index of the relative angle, from 0.
     k: usize,
     angle: RelativeAngle,
-    /// Which pin of the linkage.
+    /// Index of the pin in the linkage.
     pin: usize,
-    /// Which way the outer arm points along its drive's direction.
+    /// 1 if the outer link points in the direction of its drive, −1 if opposite.
     sign: f64,
     radius: f64,
     strips: Strips,
 }
 
 impl Limits {
-    /// Of a machine that is drawn like this; an angle without limits, or whose arms meet at no pin, has no arc.
+    /// Returns the arcs of a machine. A relative angle has no arc if it has no limits, or if no pin connects its links.
     pub fn of(machine: &Machine, linkage: &Linkage) -> Self {
         let e = [Vector::new(1.0, 0.0); MAX_DRIVES];
         let pins: Vec<Vec<usize>> = linkage.joints(&e).map(|(_, links)| links.to_vec()).collect();
@@ -54,7 +55,7 @@ impl Limits {
             if !span.is_finite() || span >= TAU {
                 continue;
             }
-            // The arm of a drive among the links at a pin: rather one that carries the end effector.
+            // The link of a drive at a pin, preferably one between base and end effector.
             let arm = |links: &[usize], drive: usize| {
                 let all = links.iter().filter(|j| linkage.bars()[**j].drive == drive);
                 all.copied().max_by_key(|j| linkage.bars()[*j].carries_tip)
@@ -70,7 +71,7 @@ impl Limits {
             };
             let others = arcs.iter().filter(|arc| arc.pin == pin).count();
             let sign = linkage.bars()[outer].sign();
-            let radius = (RADIUS + STEP * others as f64) * linkage.reach();
+            let radius = (ARC_RADIUS + ARC_SPACING * others as f64) * linkage.reach();
             let mut arc = Arc {
                 name: format!("machine/limits/{}", angle.name).into(),
                 k,
@@ -91,7 +92,7 @@ impl Limits {
         Self { arcs }
     }
 
-    /// Draws them quietly; more clearly what the pointer is on, and an end that the machine is near to.
+    /// Draws the arcs; arcs under the pointer are highlighted, and limits near the present angle are marked.
     pub fn draw(
         &self,
         scene: &mut Scene,
@@ -111,7 +112,7 @@ impl Limits {
                 let limit = arc.limit(end);
                 let held = hot == Some(Handle::Limit(arc.k, end));
                 let now = shown.frame.a[arc.k];
-                if held || (now - limit).abs() < NEAR_END {
+                if held || (now - limit).abs() < MARK_WITHIN_RAD {
                     let at = place(&pose, point(arc.direction(limit) * arc.radius, 0.0));
                     let size = if held { 5.5 } else { 3.5 };
                     let disc = Marker::disc(format!("{}/end", arc.name), at, size, palette.background);
@@ -121,7 +122,7 @@ impl Limits {
         }
     }
 
-    /// The ends of all arcs in a frame as shown, to be taken hold of.
+    /// Returns the picks of the ends of all arcs at their drawn positions.
     pub fn ends<'a>(&'a self, linkage: &'a Linkage, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
         self.arcs.iter().flat_map(move |arc| {
             let pivot = arc.pivot(linkage, shown);
@@ -134,17 +135,18 @@ impl Limits {
         })
     }
 
-    /// What both limits of an angle are with one end pulled to the pointer in the plane of handles at a height, m; rad.
+    /// Returns both limits of an angle, rad, with one limit dragged to the pointer; `z` is the height of the plane of
+    /// handles, m.
     pub fn pulled(&self, (k, end): (usize, usize), pivot: &Pivot, z: f64, pointer: &Pointer) -> Option<[f64; 2]> {
         let arc = self.arcs.iter().find(|arc| arc.k == k)?;
         let [x, y] = pointer.ray()?.at_height(z)?;
         let off = Vector::new(x - pivot.at[0], y - pivot.at[1]) * arc.sign;
-        let asked = off.arg() - pivot.inner + arc.angle.offset;
+        let wanted = off.arg() - pivot.inner + arc.angle.offset;
         let mut ends = [arc.limit(0), arc.limit(1)];
-        let asked = closest_turn(asked, ends[end]);
+        let wanted = closest_turn(wanted, ends[end]);
         ends[end] = match end {
-            0 => asked.max(ends[1] - TAU + LEAST).max(-MAX_ANGLE).min(ends[1] - LEAST),
-            _ => asked.min(ends[0] + TAU - LEAST).min(MAX_ANGLE).max(ends[0] + LEAST),
+            0 => wanted.max(ends[1] - TAU + MIN_SPAN_RAD).max(-MAX_ANGLE).min(ends[1] - MIN_SPAN_RAD),
+            _ => wanted.min(ends[0] + TAU - MIN_SPAN_RAD).min(MAX_ANGLE).max(ends[0] + MIN_SPAN_RAD),
         };
         Some(ends)
     }
@@ -155,12 +157,12 @@ impl Arc {
         if end == 0 { *self.angle.limits.start() } else { *self.angle.limits.end() }
     }
 
-    /// Where the outer arm points at a relative angle, seen from the direction of the inner drive.
+    /// Returns the direction of the outer link at a relative angle, relative to the direction of the inner drive.
     fn direction(&self, a: f64) -> Vector {
         unit(a - self.angle.offset) * self.sign
     }
 
-    /// Where it turns about, and at which height.
+    /// Returns the centre of the arc with the angle of the inner drive, and the height, m.
     fn pivot(&self, linkage: &Linkage, shown: &Shown<'_>) -> Option<(Pivot, f64)> {
         let ([x, y, _], _) = linkage.joints(&shown.q.units()).nth(self.pin)?;
         let at = shown.base.at + Vector::new(x, y);

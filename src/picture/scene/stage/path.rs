@@ -1,4 +1,4 @@
-//! The planned path with its points, what is drawn by hand, and what was refused.
+//! The planned path with its points, curves drawn with the pointer, and refused curves.
 
 use crate::mechanics::machine::place_of;
 use crate::mechanics::planar::{Units, Vector};
@@ -8,28 +8,28 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point};
 use crate::session::{Run, Waiting};
 
-/// A planned motion as seen.
+/// A planned motion for drawing.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Of the handles, m.
+    /// Height of the handles, m.
     z: f64,
-    /// Where the path begins, m.
+    /// Start of the path, m.
     pub begins: Option<Vector>,
     path: Strips,
-    /// The pose at its start.
+    /// Pose at the start.
     pub start: Units,
-    /// Points of the task: their numbers, names and places, m.
+    /// Points of the task: index, name and position, m.
     pub waypoints: Vec<(usize, String, Vector)>,
-    /// Why the run waits, and the curve that cannot be followed, if that is it.
+    /// Reason why the run waits, and the curve that cannot be followed, if that is the reason.
     waiting: Option<(Waiting, Option<Refused>)>,
 }
 
 impl Plan {
-    /// Of a run, if a plan leads it; drawn at a height, m.
+    /// Returns the planned motion of a run, if it has a plan; it is drawn at height `z`, m.
     pub fn of(run: &Run, z: f64) -> Option<Self> {
         let (tip, motion) = (*run.scenario().machine.end_effector(), run.motion()?);
         let place = |s: f64| place_of(&tip, &motion.path.at(s).q.units());
-        // What waits has points, but no path.
+        // A waiting run has points, but no path.
         let points: Vec<Vector> = match run.waiting() {
             Some(_) => Vec::new(),
             None => stations(motion).map(place).collect(),
@@ -44,12 +44,12 @@ impl Plan {
         })
     }
 
-    /// Whether the run waits for something that it can do.
+    /// Whether the run waits because its task is infeasible.
     pub fn waits(&self) -> bool {
         self.waiting.is_some()
     }
 
-    /// The path and its points.
+    /// Draws the path and its points.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
         let path = Line::new("plan/path", self.path.clone(), 1.6, faded(palette.ink, 0.75));
         scene.lines.push(path.dashed(2.0, 4.0).on_top().still());
@@ -77,13 +77,13 @@ impl Plan {
         }
     }
 
-    /// The curve that the run waits to follow, if that is why it waits.
+    /// Returns the curve that cannot be followed, if that is why the run waits.
     pub fn blocked(&self) -> Option<&Refused> {
         self.waiting.as_ref().and_then(|(_, curve)| curve.as_ref())
     }
 }
 
-/// What is being drawn by hand, and what was refused, at a height, m.
+/// Draws the curve that the user is drawing, and a refused curve, at height `z`, m.
 pub fn by_hand(scene: &mut Scene, palette: &Palette, options: &ViewOptions, blocked: Option<&Refused>, z: f64) {
     let drawn = |points: &[Vector]| [points.iter().map(|p| point(*p, z)).collect()];
     if options.stroke.len() > 1 {

@@ -1,4 +1,4 @@
-//! What the pins carry: an arrow at each, in proportion, with their scale in words.
+//! Pin forces: an arrow at each pin, and a label with their scale.
 
 use crate::mechanics::joint_forces::Joints;
 use crate::mechanics::machine::{Chain, Machine, place_of};
@@ -10,7 +10,7 @@ use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::{Anchor, Label, Line, Name, Scene, point};
 
-/// The pins of a machine, none where statics does not determine their forces.
+/// The pins of a machine; empty if their forces are statically indeterminate.
 #[derive(Clone, Debug)]
 pub struct Pins(Vec<Pin>);
 
@@ -22,15 +22,16 @@ struct Pin {
 }
 
 impl Pins {
-    /// Of a machine.
+    /// Returns the pins of a machine.
     pub fn of(machine: &Machine) -> Self {
         let pins = Joints::of(machine).map(|joints| joints.pins().to_vec()).unwrap_or_default();
         let named = |name: &str| format!("pin_forces/{name}").into();
         Self(pins.into_iter().map(|pin| Pin { item: named(&pin.name), name: pin.name, at: pin.at }).collect())
     }
 
-    /// Force of each pin, of its first link on its second: plain, the largest in the colour of reactions and named. The
-    /// scale goes by the largest of the instant, because near a change point there is no bound to go by.
+    /// Draws the force of each pin, from its first link on its second. The largest force has the colour of reactions
+    /// and a label. The scale depends on the largest force of the instant, because near a change point forces are
+    /// unbounded.
     pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
         let Self(pins) = self;
         if pins.is_empty() {
@@ -62,7 +63,7 @@ impl Pins {
             0 => format!("pins: {:.3} m = {} N", 0.25 * reach, round_number(full)),
             n => format!("pins: {n} undefined at a change point"),
         };
-        // Below the words of the reaction.
+        // Below the labels of the reaction.
         let at = point(Vector::new(0.2 * reach, -0.11 * reach), z);
         scene.labels.push(Label::new("pin_forces/scale", at, [0.0, 90.0], text, palette.dim, 11.5, Anchor::Left));
     }

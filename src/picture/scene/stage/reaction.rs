@@ -1,4 +1,4 @@
-//! What reaches the base: a force arrow and a moment arc at B, in proportion, with their scale in words.
+//! The reaction on the base: an arrow of the force and an arc of the moment at B, with labels of their scale.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,8 +13,7 @@ use crate::picture::scene::reaction::{ARROW, RADIUS, Reaction, Scale};
 use crate::picture::scene::{Anchor, Label, Line, Scene, Strips, point, posed};
 use crate::simulation::frame::Frame;
 
-/// A force arrow and a moment arc at B, in proportion, with their scale in words; `rest` names what else the base
-/// carries.
+/// Draws the reaction on the base and the centre of mass; `rest` is the name of the constant force.
 pub fn draw(
     scene: &mut Scene,
     linkage: &Linkage,
@@ -28,7 +27,7 @@ pub fn draw(
     let so_far = || Scale::of(frame.peaks.force.max(felt.force.norm()), frame.peaks.moment);
     let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
-    // Where nothing is to be seen, it is said to be nothing.
+    // An invisible arrow or arc is a line without points.
     let mut line = |name: &'static str, own: Handle, strips: Vec<Vec<[f32; 3]>>| {
         let width = if options.hot == Some(own) { 5.0 } else { 3.0 };
         let line = Line::new(name, Strips::from(strips), width, palette.reaction).on_top();
@@ -82,7 +81,7 @@ pub fn draw(
     }
 }
 
-/// Where the centre of mass of a machine of a reach, m, is.
+/// Returns the text of the position of the centre of mass; `reach` of the machine in m.
 fn centre_of_mass(frame: &Frame, reach: f64) -> String {
     let off = (frame.com - frame.base.at).norm();
     match off < 1e-6 * reach {

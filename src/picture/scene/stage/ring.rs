@@ -1,4 +1,4 @@
-//! The ring about the base whose knob turns what is reached while b is held, for any number of drives.
+//! The ring about the base whose knob sets b and thereby rotates the workspace, for any number of drives.
 
 use std::f64::consts::TAU;
 
@@ -10,43 +10,43 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
 use crate::planning::pose_space::PoseSpace;
 
-/// Corners of the circle.
-const CORNERS: u32 = 96;
+/// Number of vertices of the circle.
+const CIRCLE_VERTICES: u32 = 96;
 
-/// The ring before the base moves.
+/// The ring in the frame of the base.
 #[derive(Clone, Debug)]
 pub struct Ring {
     circle: Strips,
-    /// m.
+    /// Radius, m.
     radius: f64,
-    /// Σλ: b over this is how far it turns, rad.
-    sum: f64,
+    /// Σλ; the knob is at the angle b/Σλ, rad.
+    lambda_sum: f64,
 }
 
 impl Ring {
-    /// Of a machine with a b, of a radius, m.
+    /// Returns the ring of a machine with a b; `radius` in m.
     pub fn of(space: &PoseSpace, radius: f64) -> Self {
-        let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CORNERS)) * radius, 0.0);
-        let circle = vec![(0..=CORNERS).map(corner).collect::<Vec<_>>()];
-        Self { circle: circle.into(), radius, sum: space.period() / TAU }
+        let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * radius, 0.0);
+        let circle = vec![(0..=CIRCLE_VERTICES).map(corner).collect::<Vec<_>>()];
+        Self { circle: circle.into(), radius, lambda_sum: space.period() / TAU }
     }
 
     /// Direction of the knob at the present b, rad.
     fn turn(&self, shown: &Shown<'_>) -> f64 {
-        shown.frame.b_reference / self.sum + shown.base.angle
+        shown.frame.b_reference / self.lambda_sum + shown.base.angle
     }
 
-    /// Where the knob is, m.
+    /// Returns the position of the knob, m.
     pub fn knob(&self, shown: &Shown<'_>) -> Vector {
         shown.base.at + unit(self.turn(shown)) * self.radius
     }
 
-    /// The b that a place of the knob stands for, nearest to another, rad.
+    /// Returns the b of a position of the knob, rad; of all full turns, the b nearest to `near`.
     pub fn b(&self, at: Vector, near: f64, shown: &Shown<'_>) -> f64 {
-        closest_turn(shown.in_base(at).arg(), near / self.sum) * self.sum
+        closest_turn(shown.in_base(at).arg(), near / self.lambda_sum) * self.lambda_sum
     }
 
-    /// Draws it at a height, m.
+    /// Draws the ring at height `z`, m.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
         let (at, base, turn) = (shown.base.at, shown.base.angle, self.turn(shown));
         let pose = posed(at, unit(base), z);

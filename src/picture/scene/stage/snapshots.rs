@@ -1,4 +1,4 @@
-//! Other poses beside the present one: snapshots along the motion as in Fig. 5, and other runs at the same instant.
+//! Further poses: snapshots along the motion as in Fig. 5, and other runs at the same instant.
 
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::scene::exaggeration::Shown;
@@ -7,7 +7,7 @@ use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Scene, point};
 
-/// The links that carry the end effector at instants along the motion, the later the stronger.
+/// Draws the links between base and end effector at instants along the motion; later ones are more opaque.
 pub fn snapshots(scene: &mut Scene, linkage: &Linkage, palette: &Palette, options: &ViewOptions) {
     let z = linkage.top();
     let last = options.snapshots.len().saturating_sub(1).max(1) as f32;
@@ -20,7 +20,7 @@ pub fn snapshots(scene: &mut Scene, linkage: &Linkage, palette: &Palette, option
     }
 }
 
-/// Other runs as thin skeletons, dashed, with their numbers.
+/// Draws other runs as thin dashed lines, with their numbers.
 pub fn others(scene: &mut Scene, linkage: &Linkage, palette: &Palette, options: &ViewOptions) {
     let (z, colour) = (linkage.top(), faded(palette.ink, 0.8));
     for other in &options.others {

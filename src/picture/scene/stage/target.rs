@@ -1,4 +1,4 @@
-//! The target, and what is said of it.
+//! The target and its labels.
 
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
@@ -9,17 +9,17 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, point};
 use crate::simulation::frame::{Frame, Reach};
 
-/// What the target's label says while it can be dragged.
+/// Text at the target while it can be dragged.
 const INVITATION: &str = "drag me";
 
-/// The end effector's distance from its target that is spoken of, m.
-const SEEN_MISS: f64 = 5e-4;
+/// Minimum distance of the end effector from its target that is labelled, m.
+const MIN_MISS_M: f64 = 5e-4;
 
 fn place(p: Vector) -> String {
     format!("{}, {}", signed(p.re, 3), signed(p.im, 3))
 }
 
-/// The end effector and its target at a height, m.
+/// Draws the end effector and its target at height `z`, m.
 pub fn draw(scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
     let frame = shown.frame;
     let hot = options.hot == Some(Handle::Target);
@@ -55,12 +55,13 @@ pub fn draw(scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &V
     }
 }
 
-/// How far the end effector is from its target, m, where that is to be spoken of.
+/// Returns the distance of the end effector from its target, m, if it is large enough to be labelled.
 fn miss(frame: &Frame) -> Option<f64> {
-    Some((frame.end_effector - target_handle(frame)).norm()).filter(|miss| *miss > SEEN_MISS)
+    Some((frame.end_effector - target_handle(frame)).norm()).filter(|miss| *miss > MIN_MISS_M)
 }
 
-/// What is said of the target, and whether a row leads: where things are, however the picture is exaggerated.
+/// Returns the rows of text at the target, each with a flag for a title. They give true positions, without
+/// exaggeration.
 fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
     let mut rows: Vec<(String, bool)> = Vec::new();
     match frame.target.reach {
@@ -82,7 +83,7 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
         reach => {
             rows.push((format!("{} m", place(target_handle(frame))), true));
             if let Some(miss) = miss(frame) {
-                // Two rows: beside the target there is little room.
+                // Two short rows, because there is little space beside the target.
                 rows.push((format!("end effector {} m", place(frame.end_effector)), false));
                 rows.push((format!("{} mm off", signed(1e3 * miss, 1)), false));
             }

@@ -1,5 +1,5 @@
-//! A link that the pointer turns: its drive follows the pointer about the link's root, and the others follow so that b
-//! stays.
+//! Rotation of a link by the pointer: its drive follows the pointer about the root of the link, and the other drives
+//! move such that b is constant.
 
 use std::f64::consts::PI;
 
@@ -12,31 +12,31 @@ use crate::picture::scene::pointer::Pointer;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 use crate::simulation::frame::Frame;
 
-/// Steps in which the angle of a drive is sought, rad.
-const LOOK: f64 = 0.02;
+/// Step of the search for the angle of a drive, rad.
+const SEARCH_STEP_RAD: f64 = 0.02;
 
-/// Where the pointer is in the plane of a link, as seen from the base, m.
+/// Returns the position of the pointer in the plane of a link, in the frame of the base, m.
 fn place(bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Vector> {
     let (.., z) = bar.pose(&shown.frame.q_reference.units());
     let [x, y] = pointer.ray()?.at_height(z)?;
     Some(shown.in_base(Vector::new(x, y)))
 }
 
-/// Angles of the drives relative to the base, rad.
+/// Drive angles relative to the base, rad.
 fn relative(frame: &Frame) -> DriveAngles {
     DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k)))
 }
 
-/// From the direction of the link to the pointer about its root, rad, from −π to π.
+/// Angle from the direction of the link to the pointer, about the root of the link, rad, from −π to π.
 fn off(bar: &Bar, q: &DriveAngles, at: Vector) -> f64 {
     let (root, along, _) = bar.pose(&q.units());
     ((at - root) * along.conj()).arg()
 }
 
-/// A link, taken hold of.
+/// Picks a link for rotation.
 pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
     let at = place(bar, shown, pointer)?;
-    // As the machine is, not as it should be: that is what is taken hold of.
+    // Actual, not reference angles: the user picks the link at its drawn position.
     let angle = off(bar, &relative(shown.frame), at);
     let from = map.project(&shown.frame.q_reference).a;
     let (.., z) = bar.pose(&shown.q.units());
@@ -44,7 +44,7 @@ pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &Shown<'_>, pointer: 
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
-/// A link, taken hold of to be pulled while the end effector stays.
+/// Picks a link for a drag while the end effector stays.
 pub fn hook(link: usize, bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
     let at = place(bar, shown, pointer)?;
     let q = relative(shown.frame);
@@ -55,14 +55,14 @@ pub fn hook(link: usize, bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Opt
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
-/// Where the pointer pulls it.
+/// Returns the change requested by dragging a link while the end effector stays.
 pub fn pulled(link: usize, bar: &Bar, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
     let at = place(bar, shown, pointer)?;
     Some(Aim::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
 }
 
-/// The angles (a_1, a_2), rad, at which the link points to the pointer, on the plane b: sought from the present angle of
-/// its drive the way that the pointer pulls, as far as the joint limits let it.
+/// Returns the angles (a_1, a_2), rad, on the plane b for which the link follows the pointer. The search starts at the
+/// present angle of the drive, goes in the direction of the pointer, and ends at the joint limits.
 pub fn turned(
     bar: &Bar,
     grip: &Hold,
@@ -77,20 +77,20 @@ pub fn turned(
         true => pose((angle / ROUND_ANGLE).round() * ROUND_ANGLE),
         false => pose(angle),
     };
-    let misses = |angle: f64| {
+    let residual = |angle: f64| {
         let q = DriveAngles::from(map.lift(PlanePoint { a: pose(angle), b }));
         let miss = off(bar, &q, at) - grip.angle;
         (miss + PI).rem_euclid(2.0 * PI) - PI
     };
     let [low, high] = map.range_of(bar.drive, b);
     let mut now = shown.frame.q_reference[bar.drive].clamp(low, high);
-    let first = misses(now);
-    let step = LOOK.copysign(first);
-    for _ in 0..(2.0 * PI / LOOK) as usize {
+    let first = residual(now);
+    let step = SEARCH_STEP_RAD.copysign(first);
+    for _ in 0..(2.0 * PI / SEARCH_STEP_RAD) as usize {
         let next = (now + step).clamp(low, high);
-        let miss = misses(next);
+        let miss = residual(next);
         if miss * first <= 0.0 && miss.abs() < 1.0 {
-            return Some(stops(bisected(&misses, now, next)));
+            return Some(stops(bisected(&residual, now, next)));
         }
         if next == now {
             break;
@@ -100,7 +100,7 @@ pub fn turned(
     Some(stops(now))
 }
 
-/// Where a function changes its sign between two places.
+/// Finds a change of sign of a function between two points by bisection.
 fn bisected(f: &impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     let sign = f(from);
     for _ in 0..50 {

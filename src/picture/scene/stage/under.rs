@@ -1,4 +1,4 @@
-//! What of the machine and of what is drawn about it lies under the pointer, and how it is lit up.
+//! Picking of the machine and the items around it, and their highlighting.
 
 use super::reaction;
 use crate::mechanics::planar::Vector;
@@ -9,42 +9,42 @@ use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::pointer::Pointer;
 use crate::picture::scene::{Line, Scene, Solid, place};
 
-/// How near the pointer has to be, px: to a link, a line, a pin and a payload.
-const NEAR_LINK: f64 = 6.0;
-const NEAR_LINE: f64 = 5.0;
-const NEAR_PIN: f64 = 6.0;
-const NEAR_PAYLOAD: f64 = 12.0;
+/// Distances within which the pointer picks a link, a line, a pin and a payload, px.
+const LINK_PICK_PX: f64 = 6.0;
+const LINE_PICK_PX: f64 = 5.0;
+const PIN_PICK_PX: f64 = 6.0;
+const PAYLOAD_PICK_PX: f64 = 12.0;
 
-/// How much lighter, or in a light picture darker, what the pointer is on is drawn.
-const LIT: f32 = 0.45;
+/// Fraction of the text colour that highlights the item under the pointer.
+const HIGHLIGHT: f32 = 0.45;
 
 fn seen_near(pointer: &Pointer, at: [f64; 3], most: f64) -> bool {
     pointer.distance(at).is_some_and(|d| d < most)
 }
 
-/// The number of the link under the pointer; the uppermost of several.
+/// Returns the index of the link under the pointer; the uppermost of several.
 pub fn link(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
     let (e, at) = (shown.q.units(), shown.base.at);
     let near = |ends: [[f64; 3]; 2]| {
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
-        pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINK)
+        pointer.distance_to_segment(ends).is_some_and(|d| d < LINK_PICK_PX)
     };
     let bars = linkage.bars().iter().enumerate();
     bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
 }
 
-/// The number of the pin under the pointer.
+/// Returns the index of the pin under the pointer.
 pub fn joint(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
     let (e, at) = (shown.q.units(), shown.base.at);
-    linkage.joints(&e).position(|([x, y, z], _)| seen_near(pointer, [x + at.re, y + at.im, z], NEAR_PIN))
+    linkage.joints(&e).position(|([x, y, z], _)| seen_near(pointer, [x + at.re, y + at.im, z], PIN_PICK_PX))
 }
 
-/// Whether the payload at a place is under the pointer.
+/// Whether the payload at a position, m, is under the pointer.
 pub fn payload(at: Vector, linkage: &Linkage, pointer: &Pointer) -> bool {
-    seen_near(pointer, [at.re, at.im, linkage.top()], NEAR_PAYLOAD)
+    seen_near(pointer, [at.re, at.im, linkage.top()], PAYLOAD_PICK_PX)
 }
 
-/// Whether what the machine stands on is.
+/// Whether the base is under the pointer.
 pub fn base(linkage: &Linkage, moves: bool, shown: &Shown<'_>, pointer: &Pointer) -> bool {
     let Some([x, y]) = pointer.ray().and_then(|ray| ray.at_height(linkage.bottom())) else { return false };
     let at = shown.in_base(Vector::new(x, y));
@@ -52,7 +52,7 @@ pub fn base(linkage: &Linkage, moves: bool, shown: &Shown<'_>, pointer: &Pointer
     at.norm() < linkage.foot() || (moves && at.re.abs() < length && at.im.abs() < width)
 }
 
-/// The arrow or the arc of the reaction.
+/// Returns the arrow or the arc of the reaction, if it is under the pointer.
 pub fn reaction(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
     let palette = palette(Theme::Dark);
     let mut drawn = Scene::new(palette.background, linkage.model.clone());
@@ -65,11 +65,11 @@ pub fn reaction(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Opti
 /// Whether a line is under the pointer.
 pub fn line(line: &Line, pointer: &Pointer) -> bool {
     let placed = |p: [f32; 3]| place(&line.world_from_item, p).map(f64::from);
-    let near = |ends: [[f64; 3]; 2]| pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINE);
+    let near = |ends: [[f64; 3]; 2]| pointer.distance_to_segment(ends).is_some_and(|d| d < LINE_PICK_PX);
     line.strips.iter().any(|strip| strip.windows(2).any(|pair| near([placed(pair[0]), placed(pair[1])])))
 }
 
-/// Lights up what the pointer is on.
+/// Highlights the item under the pointer.
 pub fn light(solids: &mut [Solid], linkage: &Linkage, hot: Option<Handle>, palette: &Palette) {
     let of = |solid: &Solid| match hot {
         Some(Handle::Link(i)) => linkage.bars().get(i).is_some_and(|bar| *bar.item() == solid.name),
@@ -77,9 +77,9 @@ pub fn light(solids: &mut [Solid], linkage: &Linkage, hot: Option<Handle>, palet
         _ => false,
     };
     for solid in solids.iter_mut().filter(|solid| of(solid)) {
-        solid.colour = mix(solid.colour, palette.ink, LIT);
+        solid.colour = mix(solid.colour, palette.ink, HIGHLIGHT);
     }
-    // Pins come in the order of their numbers.
+    // The solids of pins are in the order of their indices.
     let mut pins = solids.iter_mut().filter(|solid| solid.name == "machine/joints");
     if let Some(Handle::Joint(i)) = hot
         && let Some(pin) = pins.nth(i)

@@ -1,4 +1,4 @@
-//! What is reached while b is held: the reactionless workspace of any number of drives, and what runs inside it.
+//! The workspace for constant b: the reactionless workspace for any number of drives, and the curves inside it.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
@@ -17,67 +17,67 @@ use crate::planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
 use crate::query::{Portion, Query, Shared, Watch};
 use crate::simulation::frame::Frame;
 
-/// Chords are as near to the boundary as this, m for an arm of a metre: less than a pixel.
-const CHORD: f64 = 5e-4;
+/// Maximum distance of chords from the boundary, m for an arm of 1 m: less than a pixel.
+const CHORD_TOLERANCE: f64 = 5e-4;
 
-/// How much of the colour fills it, and how far below the boundary triangles lie, as a share of the reach.
-const FILL: f32 = 0.13;
-const BELOW: f64 = 1e-3;
+/// Opacity of the fill.
+const FILL_OPACITY: f32 = 0.13;
+/// Distance of the filling triangles below the boundary, as a fraction of the reach.
+const FILL_DEPTH: f64 = 1e-3;
 
-/// Words stand this far above their place on planes and elsewhere, points.
-const RAISED: [f32; 2] = [0.0, -26.0];
+/// Vertical offsets of the label, points, for machines with planes and without.
+const LABEL_OFFSETS_PT: [f32; 2] = [0.0, -26.0];
 
-/// A workspace before it is turned: a region, or the curve of two drives.
+/// A workspace at b = 0: a region, or the curve of two drives.
 #[derive(Clone, Debug)]
 pub struct Workspace {
     space: Arc<PoseSpace>,
     boundary: Strips,
-    /// The boundary as closed lines, m: a curve there and back.
+    /// Boundary as closed lines, m; a curve is traversed forwards and backwards.
     shape: Vec<Vec<Vector>>,
-    /// What it is, and its length or area.
+    /// Name, and length or area.
     words: [String; 2],
-    /// Where words about it have the most room, m.
+    /// Point with the most space for labels, m.
     middle: Option<Vector>,
-    /// Where a curve ends, m, and at which angle.
+    /// End points of a curve, m, and the labels of their angles.
     ends: Vec<(Vector, String)>,
     inside: Inside,
 }
 
-/// What fills a workspace.
+/// The inside of a workspace.
 #[derive(Clone, Debug)]
 enum Inside {
-    /// Planes know it by Eq. (16).
+    /// Sheets of Eq. (16), for machines with planes.
     Sheets(Sheets),
-    /// Triangles, none of a curve.
+    /// Triangles; empty for a curve.
     Filled(Arc<Mesh>),
 }
 
-/// What planes know of the inside.
+/// The sheets of a machine with planes, and the curves inside them.
 #[derive(Clone, Debug)]
 struct Sheets {
     planes: Arc<Planes>,
     folds: Strips,
     limits: Strips,
     change_points: Strips,
-    /// Where folds turn back, m.
+    /// Cusps of the folds, m.
     cusps: Vec<Vector>,
-    /// Least and greatest of each measure of dexterity within the limits. They follow from the planes alone, so they are
-    /// found once, when they are first shown.
+    /// Ends of the colour scale of each measure of dexterity within the joint limits; computed once, on first use.
     dexterity: [OnceLock<[f64; 2]>; 3],
 }
 
-/// What is reached while b is held, in words that promise no more than is true.
+/// Returns the name of a workspace or curve: "reactionless" or "nearly reactionless".
 fn held(noun: &str, is_reactionless: bool) -> String {
     format!("{}reactionless {noun}", if is_reactionless { "" } else { "nearly " })
 }
 
-/// The outline of what a pose space reaches while b is held.
+/// Query for the outline of the workspace of a pose space for constant b.
 #[derive(Debug)]
 pub struct Outlining(Shared<PoseSpace>);
 
 impl Query for Outlining {
     type Input = Shared<PoseSpace>;
-    /// Nothing of a machine that stays on a point.
+    /// `None` if the workspace is a single point.
     type Answer = Option<Arc<Workspace>>;
 
     fn begin(space: Self::Input) -> Self {
@@ -96,7 +96,7 @@ impl Query for Outlining {
 }
 
 impl Workspace {
-    /// Of a machine with planes, whose workspace is known at once.
+    /// Returns the workspace of a machine with planes, which is known in closed form; `None` for other machines.
     pub fn known(space: &Arc<PoseSpace>) -> Option<Self> {
         let planes = space.planes().ok()?;
         let boundary = planes.boundary();
@@ -133,10 +133,10 @@ impl Workspace {
         })
     }
 
-    /// Of any other machine with a pose constant; nothing of one that stays on a point, or if, told how much is done, the
-    /// caller wants the rest no more.
+    /// Computes the workspace of any other machine with a pose constant. `goes_on` is called with the completed
+    /// fraction. Returns `None` if the workspace is a single point, or if `goes_on` returns false.
     fn outlined(space: &Arc<PoseSpace>, goes_on: Watch<'_>) -> Option<Self> {
-        let outline = space.outline_within(0.0, CHORD, goes_on)?;
+        let outline = space.outline_within(0.0, CHORD_TOLERANCE, goes_on)?;
         let curve = vectors(&outline.curve);
         let (lines, words, middle) = if curve.len() > 1 {
             let words = [held("curve", space.is_reactionless()), format!("{:.3} m", outline.length)];
@@ -177,17 +177,17 @@ impl Workspace {
         })
     }
 
-    /// What it is of.
+    /// Pose space of the workspace.
     pub fn space(&self) -> &PoseSpace {
         &self.space
     }
 
-    /// Its boundary at b = 0 as closed lines, m: a curve there and back.
+    /// Boundary at b = 0 as closed lines, m; a curve is traversed forwards and backwards.
     pub fn shape(&self) -> &[Vec<Vector>] {
         &self.shape
     }
 
-    /// Triangles that fill it before it is turned, where it needs some.
+    /// Returns the triangles that fill it at b = 0; `None` for sheets and curves.
     pub fn fill(&self) -> Option<&Mesh> {
         match &self.inside {
             Inside::Filled(mesh) if !mesh.triangles.is_empty() => Some(mesh),
@@ -195,7 +195,7 @@ impl Workspace {
         }
     }
 
-    /// The planes it is of, if the machine has some.
+    /// Returns the planes, if the machine has any.
     pub fn planes(&self) -> Option<&Planes> {
         self.sheets().map(|sheets| &*sheets.planes)
     }
@@ -207,24 +207,24 @@ impl Workspace {
         }
     }
 
-    /// How far it is turned at a b on a base, rad.
+    /// Rotation of the workspace for a b and a pose of the base, rad.
     fn turn(&self, b: f64, base: Pose2) -> f64 {
         self.space.turn(b) + base.angle
     }
 
-    /// Its boundary at a height, m, where it is in a frame.
+    /// Returns its drawn boundary at height `z`, m.
     pub fn edge(&self, shown: &Shown<'_>, z: f64) -> Line {
         let line = Line::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
         line.moving(posed(shown.base.at, unit(self.turn(shown.frame.b_reference, shown.base)), z))
     }
 
-    /// From where to where a measure of dexterity is shaded; none where planes do not tell it.
+    /// Returns the ends of the colour scale of a measure of dexterity; `None` for machines without planes.
     pub fn shaded(&self, measure: Measure) -> Option<[f64; 2]> {
         let sheets = self.sheets()?;
         Some(*sheets.dexterity[measure as usize].get_or_init(|| measure.range(sheets.planes.map())))
     }
 
-    /// Points of its boundary at a b on the base of a frame, m.
+    /// Returns points of its boundary for a b and the base of a frame, m.
     pub fn points(&self, b: f64, frame: &Frame) -> Vec<Vector> {
         if let Some(sheets) = self.sheets() {
             let on_base = |[x, y]: [f64; 2]| frame.base.at + unit(frame.base.angle) * Vector::new(x, y);
@@ -235,7 +235,7 @@ impl Workspace {
         all.map(|[x, y, _]| frame.base.at + turn * Vector::new(f64::from(*x), f64::from(*y))).collect()
     }
 
-    /// The workspace to compare with, the own one, filled with a mesh, and the one that is looked at.
+    /// Draws the workspace for comparison, the workspace of the frame with its fill, and the previewed one.
     pub fn draw(
         &self,
         scene: &mut Scene,
@@ -246,7 +246,7 @@ impl Workspace {
     ) {
         let floor = linkage.floor();
         if let Some(b) = compared.filter(|_| options.compares) {
-            self.compared(scene, palette, b, shown.base, floor - 2.0 * BELOW * linkage.reach());
+            self.compared(scene, palette, b, shown.base, floor - 2.0 * FILL_DEPTH * linkage.reach());
         }
         self.fill_own(scene, (linkage, fill), palette, shown, options);
         self.own(scene, palette, shown, options, floor);
@@ -284,20 +284,21 @@ impl Workspace {
     ) {
         let (turn, z) = (self.turn(shown.frame.b_reference, shown.base), linkage.floor());
         let Some(sheets) = self.sheets() else {
-            // Under all lines.
-            let below = posed(shown.base.at, unit(turn), z - BELOW * linkage.reach());
+            // Below all lines.
+            let below = posed(shown.base.at, unit(turn), z - FILL_DEPTH * linkage.reach());
             scene.solids.extend(fill.map(|mesh| Solid {
                 name: "workspace".into(),
                 mesh,
                 world_from_item: below,
-                colour: faded(palette.amber, FILL),
+                colour: faded(palette.amber, FILL_OPACITY),
                 changes: Changes::Pose,
             }));
             return;
         };
-        let mut area = area(sheets.planes.map(), (turn, shown.base.at), "workspace", z, faded(palette.amber, FILL));
+        let mut area =
+            area(sheets.planes.map(), (turn, shown.base.at), "workspace", z, faded(palette.amber, FILL_OPACITY));
         if let Some((measure, [low, high])) = options.dexterity.and_then(|m| Some((m, self.shaded(m)?))) {
-            // By a measure, from its least to its greatest.
+            // Colour scale from the minimum to the maximum of the measure.
             let [least, most] = dexterity::colours(palette);
             let (empty, full) = (low as f32, high as f32);
             (area.colour, area.shade) = (least, Some(Shade { measure, colour: most, empty, full }));
@@ -331,11 +332,11 @@ impl Workspace {
             scene.labels.push(Label::new(name, there(*end), offset, words, palette.dim, 11.5, Anchor::Centre));
         }
         let Some(middle) = self.middle else { return };
-        // Whole turns of the machine make no other workspace.
+        // The workspace is periodic in b: a whole turn of the machine gives the same one.
         let within = b.rem_euclid(self.space.period());
         let [what, size] = &self.words;
         let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {within:.3} rad · {size}"), palette.dim, 11.5)];
-        let raised = RAISED[usize::from(self.sheets().is_none())];
+        let raised = LABEL_OFFSETS_PT[usize::from(self.sheets().is_none())];
         for (i, (text, colour, size)) in rows.into_iter().enumerate() {
             let offset = [0.0, raised + 17.0 * i as f32];
             let name = "workspace/label";
@@ -352,7 +353,7 @@ fn flat(points: &[Vector]) -> Vec<[f32; 3]> {
     points.iter().map(|p| point(*p, 0.0)).collect()
 }
 
-/// The workspace of a map turned and shifted, at a height, m.
+/// Returns the workspace of a map, rotated by `turn`, rad, shifted to `at`, m, at height `z`, m.
 fn area(map: &PlaneMap, (turn, at): (f64, Vector), name: impl Into<Name>, z: f64, colour: Rgba) -> Area {
     let limits = map.limits();
     Area {
@@ -362,7 +363,7 @@ fn area(map: &PlaneMap, (turn, at): (f64, Vector), name: impl Into<Name>, z: f64
         v: map.v().map(|x| x as f32),
         a_min: limits.map(|l| l.min as f32),
         a_max: limits.map(|l| l.max as f32),
-        // Whole turns are taken off in f64, where they cost nothing.
+        // Whole turns are subtracted in f64, before precision is lost in f32.
         turn: turn.rem_euclid(TAU) as f32,
         at: [at.re as f32, at.im as f32],
         z: z as f32,
@@ -371,7 +372,7 @@ fn area(map: &PlaneMap, (turn, at): (f64, Vector), name: impl Into<Name>, z: f64
     }
 }
 
-/// The point of the workspace that is farthest from its boundary, m, of those that the arm's root does not cover.
+/// Returns the point of a grid in the workspace that is farthest from its boundary, m, outside a circle about the base.
 fn roomiest_of_planes(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
     let map = planes.map();
     let [l1, l2] = map.limits();
@@ -387,19 +388,20 @@ fn roomiest_of_planes(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vecto
         .map(|(_, p)| p)
 }
 
-/// The point inside the loops that is farthest from them, m, of those of a coarse grid that the arm's root does not
-/// cover.
+/// Returns the point of a coarse grid inside the loops that is farthest from them, m, outside the circle of radius
+/// `root` about the base.
 fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], root: f64) -> Vector {
-    const GRID: i32 = 16;
-    /// Vertices of a loop that are looked at.
-    const THINNED: usize = 240;
+    const GRID_CELLS: i32 = 16;
+    /// Maximum number of vertices of a loop that are used.
+    const MAX_VERTICES: usize = 240;
     let thin = |line: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-        line.iter().step_by(line.len().div_ceil(THINNED).max(1)).copied().collect()
+        line.iter().step_by(line.len().div_ceil(MAX_VERTICES).max(1)).copied().collect()
     };
     let loops: Vec<Vec<[f64; 2]>> = loops.iter().map(thin).collect();
-    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID);
-    let points = (0..GRID * GRID).map(|k| Vector::new(at(k % GRID, x_min, x_max), at(k / GRID, y_min, y_max)));
-    // Edges above or below a point, counted: inside of an odd number.
+    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID_CELLS);
+    let points = (0..GRID_CELLS * GRID_CELLS)
+        .map(|k| Vector::new(at(k % GRID_CELLS, x_min, x_max), at(k / GRID_CELLS, y_min, y_max)));
+    // Even-odd rule.
     let is_inside = |p: &Vector| {
         let crossed = |line: &Vec<[f64; 2]>| {
             let crosses = |i: &usize| {
