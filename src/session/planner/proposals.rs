@@ -9,11 +9,13 @@ use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Shape, Task};
 
-/// How far inside a set of b, as a share of half its width, values are tried, and their decimals.
-const INWARDS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
+/// Depths inside an interval of b at which values are tried, as fractions of half its width.
+const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
+/// Number of decimals of these values.
 const DECIMALS: usize = 4;
 
-/// A refusal that proposes only what has been tried: points that share a b may still be joined by no path on its plane.
+/// Returns the refusal with only those proposals that `goes` finds feasible. Points that share a b may still have no
+/// path between them on its plane.
 pub(super) fn proved(
     task: &Task,
     space: &PoseSpace,
@@ -56,7 +58,8 @@ pub(super) fn proved(
     }
 }
 
-/// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
+/// Completes the refusal of a b that does not reach a point: with the nearest b at which the whole path is feasible, or
+/// with what stops the path.
 pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effort) -> Result<(), Refusal>) -> Refusal {
     let Refusal::Unreachable {
         point,
@@ -86,12 +89,12 @@ pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effo
     if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| goes(b.value(), Effort::Trial).is_ok())) {
         return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
     }
-    // What stops a path of four drives and more names its b itself.
+    // The refusal of a path of four drives and more names its b itself.
     let (said, at) = (stopped.to_string(), format!("at b = {shown} rad "));
     made(format!("another path: {at}{}", said.strip_prefix(&at).unwrap_or(&said)), None, None)
 }
 
-/// Values of b farther and farther inside a set, from its end beside a given b, rad, on to the other end.
+/// Yields values of b farther and farther inside a set, rad, from the end nearest to `near` towards the other end.
 pub(super) fn inner(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
-    INWARDS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
+    TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
 }
