@@ -8,8 +8,8 @@ use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive, unit};
 
-/// Where in its limits each relative angle is in the middle of the motion: beside their middle, where parallelograms go
-/// flat.
+/// Place of each relative angle within its limits in the middle of the motion, as a fraction of their width. In the
+/// very middle parallelograms go flat.
 const MID_POSE_FRACTION: f64 = 0.6;
 /// Fractions of the width of its limits through which each relative angle turns, in the order of the trials.
 const SPAN_FRACTIONS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];

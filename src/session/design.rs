@@ -17,7 +17,7 @@ use crate::settings::change::{DEFAULT, at, join, leaves, one};
 
 /// Penalty on a change of the mass of a counterweight, 1/kg.
 const MASS_PENALTY_PER_KG: f64 = 1.0;
-/// Penalty on a change of the place of a counterweight, or of a centre of mass across its link, 1/m.
+/// Penalty on a change of the place of a counterweight, 1/m.
 const PLACE_PENALTY_PER_M: f64 = 5.0;
 
 /// Weight of a kilogram in the objective, relative to a kg m² of Σ |D_k|: enough that no useless mass is added.
@@ -42,8 +42,9 @@ impl Brief {
             let place = machine.links().iter().position(|own| own.name == link)?;
             Some(machine.resolved_links()[place].length)
         };
-        let is_usual =
-            |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length - PLACE_TOLERANCE_M);
+        let is_usual = |weight: &Counterweight| {
+            length(&weight.link).is_some_and(|length| weight.at >= -length - PLACE_TOLERANCE_M)
+        };
         let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
         Self {
             thickness: thickest.unwrap_or(Disc::STEEL.thickness),
@@ -123,7 +124,8 @@ impl Brief {
         keep.measured_from(start)
     }
 
-    /// Returns the range of places of a counterweight: that of the Pareto front, widened to include its present places.
+    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and
+    /// that at the start, as far as it stays clear of pins.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> Hold {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));

@@ -86,7 +86,7 @@ impl Session {
         queries.grow(&self.scenario().step, &self.edits, usize::MAX)
     }
 
-    /// Returns all other events, from the cache of queries, which reads `at_most` new frames.
+    /// Returns all other events, from the cache of queries, which reads no more than `at_most` new frames.
     pub fn events(&self, queries: &Queries, at_most: usize) -> Grown<Watched> {
         queries.grow(&(self.scenario().step, self.machines.clone()), &self.frames, at_most)
     }

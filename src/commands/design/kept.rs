@@ -33,7 +33,7 @@ pub struct KeepArguments {
 }
 
 impl KeepArguments {
-    /// The machine with the least change, and what has changed.
+    /// Returns the machine with the least change, and the report on it.
     pub fn run(
         &self,
         machine: &Machine,
@@ -46,7 +46,7 @@ impl KeepArguments {
     }
 }
 
-/// What is asked for is wrong, or has no answer.
+/// Converts a refusal into a failure: wrong input, or no answer.
 fn unkept(why: NotKept) -> Failure {
     match why {
         NotKept::OutOfRange { .. } | NotKept::NoParameter(_) | NotKept::Twice(_) => Failure::wrong_input(why),
@@ -54,7 +54,7 @@ fn unkept(why: NotKept) -> Failure {
     }
 }
 
-/// As a person reads it.
+/// Formats the report as text.
 pub fn text(report: &KeptReport, machine: &Machine, by: &str) -> String {
     let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
     for KeptChange { key, from, to, penalty, unit } in &report.changes {

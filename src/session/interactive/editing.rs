@@ -8,8 +8,8 @@ use crate::session::edit::{Edit, TimedEdit};
 use crate::session::refusal::Refusal;
 
 impl Session {
-    /// Applies an edit. While the machine moves it applies at the present step. At rest, settings and poses change the
-    /// start, and the run so far is computed again.
+    /// Applies an edit. Drags and pushes apply at the present step, and so do other edits while the machine moves. At
+    /// rest, settings and poses change the start, and the run so far is computed again.
     ///
     /// # Errors
     /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,

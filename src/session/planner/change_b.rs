@@ -90,7 +90,8 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[Posed; 2], Refusal> {
     }
     let other = b_set(last, b)?;
     // If A is reached at the b of the task, the nearest b of B; otherwise the pair with the least change of b.
-    let pair = if a_reached { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
+    let pair =
+        if a_reached { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
     let inwards = |[from, to]: [f64; 2], share: f64| match a_reached {
         true => [from, other.inwards(to, share)],
         false => [own.inwards(from, share), other.inwards(to, share)],

@@ -122,7 +122,8 @@ fn way(
     for (i, p) in points.iter().enumerate().skip(1) {
         let miss = |delta: f64| (space.place(&integral.pose(b, delta)) - p).norm();
         let poses = elbows(task, space, i, *p).map_err(|why| (i, why))?;
-        let deltas = poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= CURVE_TOLERANCE * space.farthest());
+        let deltas =
+            poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= CURVE_TOLERANCE * space.farthest());
         let Some(delta) = deltas.min_by(|x, y| (x - now).abs().total_cmp(&(y - now).abs())) else {
             return Err((i, off_curve(task, space, integral, (b, now), i, *p)));
         };
@@ -133,7 +134,14 @@ fn way(
 }
 
 /// Refuses a point off the curve, with its distance from the curve and the nearest point of the curve, m.
-fn off_curve(task: &Task, space: &PoseSpace, integral: &BIntegral, (b, now): (f64, f64), i: usize, p: Vector) -> Refusal {
+fn off_curve(
+    task: &Task,
+    space: &PoseSpace,
+    integral: &BIntegral,
+    (b, now): (f64, f64),
+    i: usize,
+    p: Vector,
+) -> Refusal {
     let joint = space.joints()[0];
     let [low, high] = joint.bounds();
     let place = |delta: f64| space.place(&integral.pose(b, delta));

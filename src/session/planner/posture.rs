@@ -101,7 +101,9 @@ fn proposal(asked: &Asked<'_>, task: &Task) -> Option<String> {
             return Some("posture = least-rates".into());
         }
     }
-    let at = |curve: &Curve| (0..=INTERVALS_PER_CURVE).map(|i| curve.at(i as f64 / INTERVALS_PER_CURVE as f64).p).collect::<Vec<_>>();
+    let at = |curve: &Curve| {
+        (0..=INTERVALS_PER_CURVE).map(|i| curve.at(i as f64 / INTERVALS_PER_CURVE as f64).p).collect::<Vec<_>>()
+    };
     let points: Vec<Vector> = asked.curves.iter().flat_map(at).collect();
     let another = common(asked.space, &points).and_then(|serving| {
         let near = serving.nearest(asked.b)?;
