@@ -161,7 +161,7 @@ const STUDY: &str = "the command tolerance, or the window";
 /// effect.
 ///
 /// # Errors
-/// If there is no such scenario or setting, or what comes out is not valid.
+/// If there is no such scenario or setting, or the result is not valid.
 pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = stated(name, settings)?;
     none_idle(&scenario, settings)?;
@@ -191,7 +191,7 @@ pub fn tell_idle(scenario: &Scenario) {
 /// Returns a scenario with settings changed.
 ///
 /// # Errors
-/// If there is no such setting, it has no effect, or what comes out is not valid.
+/// If there is no such setting, it has no effect, or the result is not valid.
 pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = laid(scenario, settings)?;
     none_idle(&scenario, settings)?;
@@ -201,7 +201,7 @@ pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure>
 /// Returns a scenario with settings changed, whether or not they have an effect.
 ///
 /// # Errors
-/// If there is no such setting, or what comes out is not valid.
+/// If there is no such setting, or the result is not valid.
 pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = scenario.with(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;

@@ -120,7 +120,7 @@ impl Display for Table {
 /// Checks the name of an output file as [`check_new`] does, and its ending. Returns the ending.
 ///
 /// # Errors
-/// If the file may not be written, or with the allowed endings.
+/// If [`check_new`] refuses the file, or its ending is not allowed; the error names the allowed endings.
 pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Result<&'static str, Failure> {
     check_new(file, force)?;
     let own = file.extension().unwrap_or_default();

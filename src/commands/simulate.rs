@@ -240,8 +240,8 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     }
     row("peak |n_B|".into(), outcome.peak_base_moment, 9, "N m");
     row("root mean square of n_B".into(), outcome.rms_base_moment, 9, "N m");
-    if let Some(left) = outcome.peak_moment_past_wheel {
-        row("peak moment past the wheel".into(), left, 9, "N m");
+    if let Some(past_wheel) = outcome.peak_moment_past_wheel {
+        row("peak moment past the wheel".into(), past_wheel, 9, "N m");
     }
     row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
     row("the base shifts by".into(), outcome.base_shift, 9, "m");

@@ -124,8 +124,8 @@ impl Brief {
         keep.measured_from(start)
     }
 
-    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and
-    /// that at the start, as far as it stays clear of pins.
+    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and to
+    /// that at the start. The counterweight stays clear of pins in this range.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> Hold {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
@@ -139,7 +139,7 @@ impl Brief {
     }
 
     /// Returns the range of places, m, in which a counterweight of its present radius stays clear of the pins on either
-    /// side, or `None` if it is not clear of them now.
+    /// side. Returns `None` if it is not clear of them now.
     fn clear_of_pins(&self, pins: &[f64], weight: &Counterweight) -> Option<[f64; 2]> {
         let away = self.clearance? + weight.radius;
         let behind = pins.iter().filter(|pin| **pin <= weight.at).fold(f64::NEG_INFINITY, |most, pin| most.max(*pin));
@@ -220,7 +220,7 @@ pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
         let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
         let keys: BTreeSet<String> = before.keys().chain(after.keys()).cloned().collect();
         let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key));
-        // What a file leaves out is nought.
+        // A key that is left out counts as zero.
         let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| 0.0.into());
         changed.map(|key| at(&["link", &was.name, &key], value(&key))).collect::<Vec<_>>()
     });

@@ -137,8 +137,8 @@ impl Session {
         }
     }
 
-    /// Returns the pose constant nearest to `b`, rad, at which the points of the task stay where they are, or `None` if
-    /// no b reaches all of them.
+    /// Returns the pose constant nearest to `b`, rad, at which the points of the task stay where they are. Returns
+    /// `None` if no b reaches all of them.
     pub fn serving(&self, b: f64) -> Option<f64> {
         let task = &self.scenario().task;
         if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {

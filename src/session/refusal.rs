@@ -91,7 +91,7 @@ pub enum Refusal {
     LeavesLimits {
         /// Key of the limit.
         key: String,
-        /// What was given.
+        /// The value that was given.
         value: String,
     },
     /// A number out of range.
@@ -99,9 +99,9 @@ pub enum Refusal {
     OutOfRange {
         /// Key of the number.
         what: String,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What would be right.
+        /// Allowed values.
         want: Want,
     },
     /// The motion takes longer than the maximum.

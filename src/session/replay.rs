@@ -64,8 +64,8 @@ fn whole(
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
-/// Returns the dynamic f_Bx and f_By, N, and the moment that the base feels, N m, at every step of a scenario, and the
-/// first audit that the run has failed.
+/// Returns the dynamic f_Bx and f_By, N, and the moment that the base feels, N m, at every step of a scenario. Also
+/// returns the first audit that the run has failed.
 ///
 /// # Errors
 /// As [`replay`].

@@ -89,9 +89,9 @@ fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
 /// A remark on a verdict, in two or three words and in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// For a cell of a table.
+    /// Two or three words, for a cell of a table.
     pub short: String,
-    /// For a line.
+    /// A sentence, for a line of text.
     pub long: String,
 }
 
@@ -174,11 +174,11 @@ impl Verdict {
             );
             add("payload never held", long);
         }
-        if let Some(left) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
+        if let Some(past_wheel) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
                 "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",
-                significant(left)
+                significant(past_wheel)
             );
             add("the wheel takes it up", long);
         }
@@ -208,8 +208,8 @@ impl Verdict {
     /// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its target`.
     pub fn sentence(&self) -> String {
         let mut text = format!("{}: peak |n_B| {} N m", self.word(), significant(self.arm_moment));
-        if let Some(left) = self.past_wheel {
-            text += &format!(", past the wheel {} N m", significant(left));
+        if let Some(past_wheel) = self.past_wheel {
+            text += &format!(", past the wheel {} N m", significant(past_wheel));
         }
         text += &format!(", peak |f_B| {} N", significant(self.force));
         if let Some(figure) = &self.fault {

@@ -42,12 +42,12 @@ impl KeepArguments {
     ) -> Result<(Machine, KeptReport), Failure> {
         let mut asked = Keep::coms(machine, penalty);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        kept(machine, &asked, motion).map_err(unkept)
+        kept(machine, &asked, motion).map_err(as_failure)
     }
 }
 
 /// Converts a refusal into a failure: wrong input, or no answer.
-fn unkept(why: NotKept) -> Failure {
+fn as_failure(why: NotKept) -> Failure {
     match why {
         NotKept::OutOfRange { .. } | NotKept::NoParameter(_) | NotKept::Twice(_) => Failure::wrong_input(why),
         why => Failure::no_answer(why),

@@ -199,7 +199,7 @@ impl WeighArguments {
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balanced(machine, &asked, motion, &mut go_on).map_err(|why| match why {
-            NoCounterweights::Lengths(why) => unsought(why),
+            NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => unweighed(why),
             NoCounterweights::Machine(why) => why.into(),
@@ -223,7 +223,7 @@ pub fn tell_taken_off(machine: &Machine, of: &str) {
 }
 
 /// Converts the reason why there are no lengths into a failure: wrong input, or no answer.
-fn unsought(why: NoLengths) -> Failure {
+fn lengths_failure(why: NoLengths) -> Failure {
     match why {
         NoLengths::None { .. } => Failure::no_answer(why),
         NoLengths::Weights(why) => unweighed(why),

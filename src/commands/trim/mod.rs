@@ -131,7 +131,7 @@ impl Trim {
             ));
         }
         found.doubt.iter().for_each(|doubt| say(format!("note: {doubt}")));
-        let Found { report, taken, mended } = found.outcome.map_err(unread)?;
+        let Found { report, taken, mended } = found.outcome.map_err(as_failure)?;
         self.format.print(&report, |report| answer::text(report, &machine))?;
         let mended = mended.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
@@ -188,7 +188,7 @@ impl Trim {
 }
 
 /// Converts the reason why measurements cannot be used into a failure.
-fn unread(why: NoTrim) -> Failure {
+fn as_failure(why: NoTrim) -> Failure {
     match why {
         NoTrim::Unusable(why) => Failure::wrong_input(why),
         NoTrim::Doubted(doubt) => {

@@ -53,7 +53,7 @@ impl Session {
             edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
             // A motion in progress cannot change its time or its base.
             edit if edit.is_of_the_whole() => false,
-            // A slider that set the machine in motion goes on as it began.
+            // Edits of a gesture apply as its first edit did, even if that set the machine in motion.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
     }

@@ -95,7 +95,7 @@ impl Session {
             }
             (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
             (Some(edit), None) if self.is_running() && !change.plans() => {
-                self.append(edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
+                self.append(edit.clone(), watch).or_else(|why| self.restore_unless_stopped(why, &change.before, watch))
             }
             _ => self.return_to(&change.before, watch),
         }
@@ -145,7 +145,7 @@ impl Session {
 
     /// Restores a document after an edit that could not apply for the reason `why`, unless `watch` has cancelled the
     /// edit.
-    fn instead(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn restore_unless_stopped(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
         if why == Refusal::Stopped { Err(why) } else { self.return_to(document, watch) }
     }
 

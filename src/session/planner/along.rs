@@ -42,7 +42,7 @@ pub(super) fn along_parts(
 }
 
 /// Times the parts of a path, each from rest to rest. A time law gives each part a share of the time of the task in
-/// proportion to its length; the fastest laws find the least time of each part.
+/// proportion to its length. The fastest laws find the least time of each part.
 pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();

@@ -55,8 +55,8 @@ fn directly(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     }
 }
 
-/// Completes the refusal of a task that leaves its plane, for a b that does not reach A: proposes the nearest b at
-/// which the task can be planned.
+/// Completes the refusal of a task that leaves its plane, if its b does not reach A. Proposes the nearest b at which
+/// the task can be planned.
 fn elsewhere(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
     // The path does not depend on the time law.
     let law = TimeLaw::Quintic;

@@ -76,7 +76,7 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
     // farthest.
     let mut refused: Option<(usize, Refusal)> = None;
     for start in &starts {
-        match way(task, &space, integral, *start, &points) {
+        match deltas_along(task, &space, integral, *start, &points) {
             Ok(turns) => {
                 return in_rounds(scenario, *start, &|mut q, _| {
                     let mut parts = Vec::new();
@@ -109,7 +109,7 @@ fn elbows(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<Vec<Dri
 
 /// Returns δ, rad, of each point after A on the curve through a pose of A. Fails with the index of the first point that
 /// is not on the curve.
-fn way(
+fn deltas_along(
     task: &Task,
     space: &PoseSpace,
     integral: &BIntegral,

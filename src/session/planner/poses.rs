@@ -18,8 +18,9 @@ pub(super) fn serve(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result
     posed::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
-/// Returns a pose of the first point. It is at the b of the task if points are reached by ranges of b, and with planes
-/// on one sheet with the other points if possible. Otherwise it is at the nearest b that reaches the point.
+/// Returns a pose of the first point. If points are reached by ranges of b, the pose is at the b of the task; with
+/// planes it is on one sheet with the other points, if possible. Otherwise it is at the nearest b that reaches the
+/// point.
 pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
     match space {
@@ -107,7 +108,7 @@ pub(super) fn off(task: &Task, i: usize, p: Vector, reason: NoReach) -> Refusal 
     Refusal::Unreachable { point: task.name_of(i), unreachable: Unreachable::Anywhere { x: p.re, y: p.im, reason } }
 }
 
-/// Returns a pose of a point at the reachable b nearest to that of the task, for machines without a b to hold or with a
+/// Returns a pose of a point at the b nearest to that of the task. Used for machines without a b to hold, or with a
 /// single b for each point.
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
     space.reach(p).map_err(|reason| off(task, i, p, reason))?;

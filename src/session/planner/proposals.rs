@@ -58,8 +58,8 @@ pub(super) fn proved(
     }
 }
 
-/// Completes the refusal of a b that does not reach a point: with the nearest b at which the whole path is feasible, or
-/// with what stops the path.
+/// Completes the refusal of a b that does not reach a point. Proposes the nearest b at which the whole path is
+/// feasible, or states what stops the path.
 pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effort) -> Result<(), Refusal>) -> Refusal {
     let Refusal::Unreachable {
         point,

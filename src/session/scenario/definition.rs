@@ -17,7 +17,7 @@ use crate::simulation::plant::{Base, PlantDifferences};
 pub struct Scenario {
     /// Short name: `case-3`.
     pub name: String,
-    /// A line about it.
+    /// Description in one line.
     pub title: String,
     /// Nominal machine, which control assumes.
     pub machine: Machine,

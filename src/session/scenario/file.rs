@@ -85,8 +85,8 @@ pub enum Content {
     Scenario,
 }
 
-/// Returns whether a file is meant as machine or as scenario, by tables that only one of them has; `None` if it has
-/// tables of neither or of both.
+/// Returns whether a file is meant as machine or as scenario, by tables that only one of them has. Returns `None` if it
+/// has tables of neither or of both.
 pub fn content(text: &str) -> Option<Content> {
     let table: toml::Table = text.parse().ok()?;
     let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));

@@ -186,8 +186,8 @@ impl Tolerance {
     }
 }
 
-/// Returns the spreads that apply if none is given, those of careful workshop practice: centres of mass to 0.5 mm in
-/// both directions, masses to 0.5 %, inertias to 2 %, lengths with a name to 0.05 mm. All are normal, with these
+/// Returns the spreads that apply if none is given, those of careful workshop practice. Centres of mass vary by 0.5 mm
+/// in both directions, masses by 0.5 %, inertias by 2 %, lengths with a name by 0.05 mm. All are normal, with these
 /// standard deviations. Numbers that a machine does not have get no spread.
 pub fn default_spreads(machine: &Machine) -> BTreeMap<String, Spread> {
     let usual = |Varies { key, usual, has }: &Varies| {

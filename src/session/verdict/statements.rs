@@ -147,9 +147,9 @@ impl Statement {
         if verdict.reactionless {
             return Self::new(Lamp::Good, "transmitted nothing", figures);
         }
-        if let Some(left) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
+        if let Some(past_wheel) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
-            let why = format!("{figures}; the wheel leaves the base {} N m", significant(left));
+            let why = format!("{figures}; the wheel leaves the base {} N m", significant(past_wheel));
             return Self::new(Lamp::Good, words, why);
         }
         let parts = [
