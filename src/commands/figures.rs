@@ -55,8 +55,8 @@ const PICTURES: [(&str, &str, f64, Shown); 7] = [
 impl Figures {
     /// Draws the chosen pictures.
     pub fn run(&self) -> Result<(), Failure> {
-        let asked = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
-        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| asked(name)) {
+        let is_chosen = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
+        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| is_chosen(name)) {
             let mut app_state = opened(scenario, *time)?;
             if let Shown::Window(commands) = shown {
                 commands().into_iter().for_each(|command| app_state.carry_out(command));

@@ -62,13 +62,13 @@ impl Keys {
     /// Prints the settings.
     pub fn run(&self) -> Result<(), Failure> {
         let sought: Vec<String> = self.words.iter().flat_map(|w| w.split_whitespace()).map(str::to_lowercase).collect();
-        let asked = |key: &&Key| {
+        let matches_words = |key: &&Key| {
             let all = format!("{} {} {} {}", key.path, key.words, key.holds, key.when).to_lowercase();
             sought.iter().all(|word| all.contains(word) || key.matches(word))
         };
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
         let of_part = |&(part, tables): &(&'static str, &'static [&'static [Key]])| {
-            tables.iter().copied().flatten().filter(asked).map(move |key| Row {
+            tables.iter().copied().flatten().filter(matches_words).map(move |key| Row {
                 key: key.path,
                 holds: key.holds.to_string(),
                 unit: some(key.unit()),

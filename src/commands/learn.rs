@@ -73,7 +73,7 @@ fn figure(text: &str) -> Result<f64, String> {
 }
 
 /// Subject of the equations.
-enum Asked {
+enum Subject {
     Scenario(Box<Scenario>),
     Machine(Box<Machine>),
 }
@@ -81,10 +81,10 @@ enum Asked {
 impl Learn {
     /// Prints the equations.
     pub fn run(&self) -> Result<(), Failure> {
-        let (machine, state) = self.asked()?;
+        let (machine, state) = self.machine_and_state()?;
         let all = equations(&machine, &state, Preset::Table1);
-        let asked = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
-        let chosen: Vec<&Equation> = all.iter().filter(asked).collect();
+        let is_chosen = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
+        let chosen: Vec<&Equation> = all.iter().filter(is_chosen).collect();
         let answer = Stated::of(&machine, &state, chosen.iter().copied());
         self.format.print(&answer, |_| {
             let texts: Vec<String> = chosen.iter().map(|equation| text(equation)).collect();
@@ -93,15 +93,15 @@ impl Learn {
     }
 
     /// Returns the machine and its state at the instant.
-    fn asked(&self) -> Result<(Machine, State), Failure> {
+    fn machine_and_state(&self) -> Result<(Machine, State), Failure> {
         let machine = match self.find()? {
-            Asked::Scenario(scenario) if self.pose.is_empty() => {
+            Subject::Scenario(scenario) if self.pose.is_empty() => {
                 let state = self.state(&scenario)?;
                 return Ok((scenario.machine, state));
             }
-            Asked::Machine(_) if self.at.is_some() => return Err(no_use("--at", "a scenario, or --pose")),
-            Asked::Scenario(scenario) => scenario.machine,
-            Asked::Machine(machine) => *machine,
+            Subject::Machine(_) if self.at.is_some() => return Err(no_use("--at", "a scenario, or --pose")),
+            Subject::Scenario(scenario) => scenario.machine,
+            Subject::Machine(machine) => *machine,
         };
         let n = machine.drives();
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
@@ -122,18 +122,18 @@ impl Learn {
     }
 
     /// Returns the scenario or the machine of the name.
-    fn find(&self) -> Result<Asked, Failure> {
+    fn find(&self) -> Result<Subject, Failure> {
         let machine = || self.settings.apply(stillbase::files::machine(&self.what, None)?);
         match stillbase::files::scenario(&self.what) {
             // For a machine, no scenario made around it is used.
-            Ok(found) if found.made.is_some() => Ok(Asked::Machine(Box::new(machine()?))),
+            Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
                 let scenario = set(found.scenario, &self.settings)?;
                 self.settings.none_of_tolerance()?;
-                Ok(Asked::Scenario(Box::new(scenario)))
+                Ok(Subject::Scenario(Box::new(scenario)))
             }
             // A machine for which no task can be made is accepted, too.
-            Err(why) => Ok(Asked::Machine(Box::new(machine().map_err(|_| why)?))),
+            Err(why) => Ok(Subject::Machine(Box::new(machine().map_err(|_| why)?))),
         }
     }
 

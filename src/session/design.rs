@@ -68,10 +68,10 @@ impl Brief {
         }
         let changed = machine.with(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
-        let asked = self.asked(&changed, start, &named);
-        let kept = keep(&changed, &asked).map_err(|why| why.to_string())?;
+        let problem = self.free_numbers(&changed, start, &named);
+        let kept = keep(&changed, &problem).map_err(|why| why.to_string())?;
         // All numbers that are free, changed or not, so that the next edit of a drag replaces this one.
-        let follows = asked.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
+        let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
         let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
@@ -80,7 +80,7 @@ impl Brief {
 
     /// Returns the numbers that may change: mass and place of counterweights if one is not fixed, otherwise the centres
     /// of mass of links. Numbers named by the edit are fixed.
-    fn asked(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
+    fn free_numbers(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
         let spec = machine.spec();
         let free: Vec<(Parameter, &str)> = match spec.counterweights.iter().all(|weight| weight.fixed) {
             true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),

@@ -37,11 +37,11 @@ impl Waiting {
         let task = &scenario.task;
         let Some(space) = space else { return Self { why, points: Vec::new() } };
         let unserved = |(i, p): (usize, Vector)| {
-            let would_do = || {
+            let nearest_b = || {
                 let set = space.reach(p).ok()?;
                 set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
             };
-            (!space.reaches(p, task.b)).then(|| (i, would_do()))
+            (!space.reaches(p, task.b)).then(|| (i, nearest_b()))
         };
         Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
     }
@@ -386,7 +386,7 @@ const NO_FREEDOMS: &str =
 /// Returns bounds of the follower on |ä| and |b̈|. They exceed no torque limit, in any direction of ä and also while b
 /// changes.
 fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
-    // Bound on |ä| without torque limits.
+    // Upper bound of |ä|, also without torque limits.
     const MAX_ACCELERATION_RAD_S2: f64 = 30.0;
     // Maximum fraction of a torque limit that a change of b may use.
     const MAX_SLIDE_FRACTION: f64 = 0.5;

@@ -22,12 +22,12 @@ pub(super) fn held(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusa
         let Ok(known) = space else { return refusal };
         // The path does not depend on the time law.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
-        let goes = |task: &Task, effort| match known.planes() {
+        let try_path = |task: &Task, effort| match known.planes() {
             // A path that is followed on a plane keeps the limits.
             Ok(_) => reactionless(&own(task), space, effort).map(|_| ()),
             Err(_) => along_parts(&own(task), &|scenario| reactionless(scenario, space, effort)).map(|_| ()),
         };
-        proved(task, known, &goes, refusal)
+        proved(task, known, &try_path, refusal)
     })
 }
 

@@ -36,7 +36,7 @@ pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) ->
     }
 }
 
-/// Returns the refusal of a point that the b of the task feasible not reach, with the name of the point.
+/// Returns the refusal of a point that the b of the task does not reach, with the name of the point.
 pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
     match unreachable {
         Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
@@ -69,8 +69,8 @@ pub(super) fn faced(
     };
     let (drive, turned) = hand_of(scenario);
     let poses = |angle: f64| space.facing(p, task.b, (drive, angle - turned), near);
-    let goes = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
-    if let Some(q) = poses(angle).into_iter().find(goes) {
+    let keeps_angle = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
+    if let Some(q) = poses(angle).into_iter().find(keeps_angle) {
         return Ok(q);
     }
     // The point itself may be out of reach.
@@ -79,7 +79,7 @@ pub(super) fn faced(
     let feasible: Vec<bool> =
         (0..steps).map(|k| !poses(angle + TAU * f64::from(k) / f64::from(steps)).is_empty()).collect();
     let at = |k: i32| feasible[k.rem_euclid(steps) as usize];
-    let would_do = match (0..=steps / 2).flat_map(|k| [k, -k]).find(|k| at(*k)) {
+    let proposal = match (0..=steps / 2).flat_map(|k| [k, -k]).find(|k| at(*k)) {
         None => "another b, or no orientation".into(),
         Some(k) => {
             let low = (0..steps).map(|j| k - j).find(|k| !at(*k)).map_or(k, |k| k + 1);
@@ -89,7 +89,7 @@ pub(super) fn faced(
         }
     };
     Err(Refusal::NoWay(format!(
-        "at {} no pose of b = {} rad has the last link point to {} rad: want {would_do}",
+        "at {} no pose of b = {} rad has the last link point to {} rad: want {proposal}",
         task.name_of(i),
         nine_digits(task.b),
         Short(angle)

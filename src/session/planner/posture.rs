@@ -58,8 +58,8 @@ pub(super) fn tables(
         return Ok(tables);
     }
     let tried = (effort == Effort::Whole).then(|| proposal(&asked, task)).flatten();
-    let would_do = tried.unwrap_or_else(|| "another path, or wider limits".into());
-    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {would_do}", nine_digits(task.b))))
+    let proposed = tried.unwrap_or_else(|| "another path, or wider limits".into());
+    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
 
 /// Follows each curve with least rates, from the pose nearest to the middle of all ranges.

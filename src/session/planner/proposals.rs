@@ -14,12 +14,12 @@ const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
 /// Number of decimals of these values.
 const DECIMALS: usize = 4;
 
-/// Returns the refusal with only those proposals that `goes` finds feasible. Points that share a b may still have no
+/// Returns the refusal with only those proposals that `try_path` finds feasible. Points that share a b may still have no
 /// path between them on its plane.
 pub(super) fn proved(
     task: &Task,
     space: &PoseSpace,
-    goes: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
+    try_path: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
     refusal: Refusal,
 ) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
@@ -32,7 +32,7 @@ pub(super) fn proved(
         Refusal::NoCommonPlane { mut why, .. } => {
             if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
                 let moved = task.moved(mend.point, shown.point());
-                let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value()), Effort::Trial));
+                let result = moved.as_ref().map(|moved| try_path(&at(moved, shown.b.value()), Effort::Trial));
                 shown.does = match result {
                     Some(Ok(_)) => true,
                     Some(Err(stopped)) => {
@@ -40,7 +40,7 @@ pub(super) fn proved(
                             let moved = moved.as_ref()?;
                             let serving = common(space, &moved.points())?;
                             inner(&serving, shown.b.value())
-                                .find(|b| goes(&at(moved, b.value()), Effort::Trial).is_ok())
+                                .find(|b| try_path(&at(moved, b.value()), Effort::Trial).is_ok())
                         });
                         shown.b = other.unwrap_or(shown.b);
                         other.is_some()
@@ -52,7 +52,7 @@ pub(super) fn proved(
             Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
         }
         Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
-            tried(space, refusal, |b, effort| goes(&at(task, b), effort))
+            tried(space, refusal, |b, effort| try_path(&at(task, b), effort))
         }
         other => other,
     }
@@ -60,7 +60,11 @@ pub(super) fn proved(
 
 /// Completes the refusal of a b that does not reach a point. Proposes the nearest b at which the whole path is
 /// feasible, or states what stops the path.
-pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effort) -> Result<(), Refusal>) -> Refusal {
+pub(super) fn tried(
+    space: &PoseSpace,
+    refusal: Refusal,
+    try_path: impl Fn(f64, Effort) -> Result<(), Refusal>,
+) -> Refusal {
     let Refusal::Unreachable {
         point,
         unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
@@ -72,9 +76,9 @@ pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effo
         let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
-    let stopped = match goes(shown.value(), Effort::Whole) {
+    let stopped = match try_path(shown.value(), Effort::Whole) {
         Ok(()) => {
-            let exact = if goes(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
+            let exact = if try_path(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
             return made(format!("b = {shown} rad"), Some(exact), Some(*shown));
         }
         Err(stopped) => stopped,
@@ -86,7 +90,8 @@ pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effo
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
     let own = space.reach(Vector::new(*x, *y)).ok();
-    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| goes(b.value(), Effort::Trial).is_ok())) {
+    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| try_path(b.value(), Effort::Trial).is_ok()))
+    {
         return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
     }
     // The refusal of a path of four drives and more names its b itself.
