@@ -55,8 +55,8 @@ pub(super) fn posed(
     space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
 
-/// Does the same as [`posed()`], with the orientation of the last link, if the task sets one. `kept` is the angle of its
-/// drive at the first point, rad, which the drive has to keep.
+/// Does the same as [`posed()`], with the orientation of the last link, if the task sets one. `kept` is the angle of
+/// its drive at the first point, rad, which the drive has to keep.
 pub(super) fn faced(
     scenario: &Scenario,
     space: &PoseSpace,
