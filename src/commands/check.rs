@@ -27,7 +27,7 @@ pub struct Check {
     format: Format,
 }
 
-/// One row a drive, then one a pair of drives.
+/// Formats the balance constants, with a row for each drive, then one for each pair of drives.
 pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
     let drives = &machine.spec().drives;
     let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
@@ -54,7 +54,7 @@ struct Answer {
     balance: BalanceConstants,
     force_balanced: bool,
     invariant: bool,
-    /// What window and recordings say of it.
+    /// Statement on the machine, as in window and recordings.
     machine: Statement,
     /// Whether some b(q) is kept by all motions of zero angular momentum.
     integrable: bool,

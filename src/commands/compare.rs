@@ -50,7 +50,7 @@ struct Answer {
 }
 
 impl Compare {
-    /// Runs all and prints a row of each.
+    /// Runs all scenarios and prints a row for each.
     pub fn run(&self) -> Result<(), Failure> {
         let ending = match &self.output {
             Some(file) => check_output(file, self.force, &["csv", "rrd"])?,
@@ -149,7 +149,7 @@ impl Compare {
     }
 }
 
-/// The machines of the runs, each beside that of the first; columns that hold nothing are left out.
+/// Formats the machines of the runs, compared with that of the first run; empty columns are left out.
 fn designs(rows: &[Row]) -> String {
     let all = || rows.iter().filter_map(|row| Some((row, row.design.as_ref()?)));
     let columns: Vec<_> = DESIGN.iter().filter(|c| all().any(|(_, design)| (c.value)(design).is_some())).collect();
@@ -167,7 +167,7 @@ fn designs(rows: &[Row]) -> String {
     format!("{table}{apart}")
 }
 
-/// Runs downwards, figures across; columns that hold nothing are left out.
+/// Formats the runs, one in each row; empty columns are left out.
 fn table(rows: &[Row]) -> String {
     let good: Vec<&Summary> = rows.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
     let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);

@@ -32,7 +32,7 @@ impl Csv {
         Ok(csv)
     }
 
-    /// One more row; zero goes without a sign, and nothing leaves its cell empty.
+    /// Writes a row. Zero has no sign, and `None` gives an empty cell.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -43,7 +43,7 @@ impl Csv {
         self.checked(done)
     }
 
-    /// The last row is written; says which file it is.
+    /// Completes the file and prints its name.
     ///
     /// # Errors
     /// If it cannot be written.

@@ -48,7 +48,7 @@ struct Answer {
 }
 
 impl Dynamics {
-    /// Prints one result a state.
+    /// Prints one result for each state.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let inertia = Inertia::of(&machine);
@@ -64,7 +64,7 @@ fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure>
     states_in(&read(file)?, &file.display().to_string(), machine)
 }
 
-/// The same from text; `file` is what errors call it.
+/// Reads states from text; errors name `file`.
 pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
     let wrong = |line: usize, what: String| Failure::WrongInput(format!("{file}:{line}: {what}"));
     let states: Vec<State> = serde_json::from_str(text).map_err(|e| {

@@ -1,13 +1,13 @@
-//! Two numbers of a word of the command line, alone or behind a name.
+//! Parses lower and upper bound in an argument of the command line, alone or after a name.
 
-/// LO,HI, both finite.
+/// Parses LO,HI, both finite.
 pub fn ends(text: &str) -> Option<[f64; 2]> {
     let (low, high) = text.split_once(',')?;
     let end = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
     Some([end(low)?, end(high)?])
 }
 
-/// NAME=LO,HI, both finite.
+/// Parses NAME=LO,HI, both finite.
 pub fn named(text: &str) -> Option<(String, [f64; 2])> {
     let (name, rest) = text.split_once('=')?;
     Some((name.trim().into(), ends(rest)?))

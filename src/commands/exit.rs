@@ -1,4 +1,4 @@
-//! How the program ends: why, in one line, and its exit status.
+//! Messages on standard error, and the exit status.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -8,7 +8,7 @@ use stillbase::settings::text::{brief, plain};
 
 use super::failure::Failure;
 
-/// A message on standard error, in one line.
+/// Prints a message on standard error, in one line.
 pub fn say(message: impl Display) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
@@ -18,7 +18,7 @@ pub fn say(message: impl Display) {
     let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
 
-/// Says why, in one line, and gives the exit status.
+/// Prints the reason of a failure, in one line, and returns the exit status.
 pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
     match done {
         Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
@@ -42,7 +42,7 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
 }
 
-/// What is wrong and the tips, without the usage that follows.
+/// Returns the error and its tips in one line, without the usage that follows.
 fn in_one_line(rendered: &str) -> String {
     let parts = rendered.split("\n\n").filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more information"));
     let mut line = String::new();

@@ -59,14 +59,14 @@ enum What {
     Simulated,
 }
 
-/// Columns of a base that moves: where B is, how the base is turned, and the rates of both.
+/// Columns of a base that moves: place of B, angle of the base, and the rates of both.
 const OF_BASE: [&str; 6] = ["base_x", "base_y", "theta", "base_xd", "base_yd", "thetad"];
 
-/// Columns of what reaches the base, force and moment about B.
+/// Columns of the force and the moment about B that reach the base.
 const TO_BASE: [&str; 3] = ["fx", "fy", "nz"];
 
-/// The most rows: more are asked for by a slip of the hand.
-const MOST_ROWS: f64 = 2e6;
+/// Maximum number of rows; more are asked for by mistake.
+const MAX_ROWS: f64 = 2e6;
 
 fn rate(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|x| (0.01..=1e6).contains(x)).ok_or_else(|| "want 0.01 to 1000000 Hz".into())
@@ -78,7 +78,7 @@ struct Answer {
     what: &'static str,
     rate: f64,
     duration: f64,
-    /// s from the last row but one to the last.
+    /// Time from the last row but one to the last, s.
     last_interval: f64,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
@@ -150,7 +150,7 @@ impl Export {
         trusted(&answer.scenario, answer.audit_failed)
     }
 
-    /// Rows of the planned motion, and its duration, s.
+    /// Returns the rows of the planned motion, and its duration, s.
     fn reference(&self, run: &Run) -> Result<(Rows, f64), Failure> {
         let (motion, machine) = (&run.plan().motion, &run.scenario().machine);
         let (model, whole) = (Inertia::of(machine), motion.duration());
@@ -172,7 +172,7 @@ impl Export {
         Ok(((0..=spaces).map(row).collect(), whole))
     }
 
-    /// Rows of what the machine does, how long it is seen, s, and the audit that it fails.
+    /// Returns the rows of the simulated motion, its duration, s, and the audit that it fails, if it does.
     fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();
@@ -213,10 +213,10 @@ impl Export {
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {
         let rows = duration * self.rate;
-        match rows <= MOST_ROWS {
+        match rows <= MAX_ROWS {
             true => Ok(()),
             false => Err(Failure::wrong_input(format!(
-                "--rate {}: {rows:.0} rows: want at most {MOST_ROWS:.0}, a lower rate",
+                "--rate {}: {rows:.0} rows: want at most {MAX_ROWS:.0}, a lower rate",
                 self.rate
             ))),
         }

@@ -73,7 +73,7 @@ enum Written {
     Mjcf {
         /// Angles of the drives in the keyframe, rad.
         pose: Vec<f64>,
-        /// The same as MuJoCo has it: of each hinge, rad.
+        /// Angles of all hinges in the keyframe, as in MuJoCo, rad.
         qpos: Vec<f64>,
     },
     Urdf {
@@ -81,14 +81,14 @@ enum Written {
         joints: Vec<String>,
     },
     Drawing {
-        /// Of the sheet, m.
+        /// Size of the sheet, m.
         size: [f64; 2],
         links: usize,
     },
     List {
         links: usize,
         counterweights: usize,
-        /// Of the machine, kg.
+        /// Mass of the machine, kg.
         mass: f64,
     },
 }
@@ -105,7 +105,7 @@ impl ExportModel {
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
         let cut = self.cut();
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
-        let of = told(&machine, form, pose, &cut)?;
+        let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
         say(format!("wrote {}", self.output.display()));
         let answer = Answer { file: self.output.display().to_string(), of };
@@ -122,7 +122,7 @@ impl ExportModel {
         }
     }
 
-    /// Refuses what has no effect on the file.
+    /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
         let all: [Counting; 5] = [
             ("--pose", self.pose.is_empty(), |shows| shows == Shows::Pose),
@@ -142,10 +142,11 @@ impl ExportModel {
     }
 }
 
-/// An option, whether it is left out, and of which files it counts.
+/// An option, whether it is left out, and for which files it has an effect.
 type Counting = (&'static str, bool, fn(Shows) -> bool);
 
-fn told(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
+/// Describes what was written.
+fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
     let links = machine.links().len();
     Ok(match form.shows {
         Shows::Pose => {

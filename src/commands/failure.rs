@@ -1,4 +1,4 @@
-//! What ends a command early, and with which exit status.
+//! Failures of commands.
 
 use std::fmt::Display;
 use std::io;
@@ -19,7 +19,7 @@ use super::remedy::option;
 /// Why a command did not finish.
 #[derive(Debug)]
 pub enum Failure {
-    /// Whoever read standard output has enough, as `head` does: not an error.
+    /// The reader of standard output has closed it, as `head` does: not an error.
     ReaderGone,
     /// The question has no answer: why, and what would have one.
     NoAnswer(String),
@@ -28,22 +28,22 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// There is no answer.
+    /// Returns the failure of a question without an answer.
     pub fn no_answer(why: impl Display) -> Self {
         Self::NoAnswer(why.to_string())
     }
 
-    /// The input is wrong.
+    /// Returns the failure of wrong input.
     pub fn wrong_input(why: impl Display) -> Self {
         Self::WrongInput(why.to_string())
     }
 
-    /// An audit of a run has failed: its figures are no answer.
+    /// Returns the failure of a run whose audit has failed: its figures are no answer.
     pub fn untrusted(scenario: &str, why: impl Display) -> Self {
         Self::NoAnswer(format!("{scenario}: audit failed: {why}; want a smaller step, as --set step=0.0002"))
     }
 
-    /// Standard output could not be written.
+    /// Returns the failure to write standard output.
     pub fn standard_output(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::ReaderGone,
@@ -51,7 +51,7 @@ impl Failure {
         }
     }
 
-    /// The same failure of one thing among several.
+    /// Returns the failure with the name of what has failed.
     #[must_use]
     pub fn of(self, what: impl Display) -> Self {
         match self {
@@ -123,7 +123,7 @@ impl From<Refusal> for Failure {
                 Self::NoAnswer(_) => Self::NoAnswer(whole),
                 _ => Self::WrongInput(whole),
             },
-            // What limits the motion has yet to be said.
+            // The machine lacks limits of its drives.
             Refusal::Time(TimeError::NoJerkLimit | TimeError::Unlimited { .. } | TimeError::SpeedOnly) => {
                 Self::wrong_input(e)
             }

@@ -41,7 +41,7 @@ enum Shown {
     Scene(ViewKind),
 }
 
-/// A picture: name, scenario, instant in s, what of it is shown.
+/// The pictures: name, scenario, instant, s, and what is shown.
 const PICTURES: [(&str, &str, f64, Shown); 7] = [
     ("window", "case-3", 0.62, Shown::Window(Vec::new)),
     ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
@@ -53,15 +53,15 @@ const PICTURES: [(&str, &str, f64, Shown); 7] = [
 ];
 
 impl Figures {
-    /// Draws those that are asked for.
+    /// Draws the chosen pictures.
     pub fn run(&self) -> Result<(), Failure> {
-        let asked = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
-        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| asked(name)) {
+        let is_chosen = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
+        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| is_chosen(name)) {
             let mut app_state = opened(scenario, *time)?;
             if let Shown::Window(commands) = shown {
                 commands().into_iter().for_each(|command| app_state.carry_out(command));
             }
-            // Both themes on one canvas, which knows its fonts.
+            // Both themes share a canvas, so that its fonts are loaded once.
             let mut canvas = shown.canvas().map_err(Failure::no_answer)?;
             for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
                 let picture = shown.draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
@@ -103,7 +103,7 @@ impl Shown {
     }
 }
 
-/// Two of the other ways laid over plots and scene, and snapshots along the motion.
+/// Shows two alternatives in plots and scene, and snapshots along the motion.
 fn side_by_side() -> Vec<Command> {
     let show = |row| Command::Window(WindowCommand::Comparison(ComparisonCommand::Show(row, true)));
     vec![
@@ -114,7 +114,7 @@ fn side_by_side() -> Vec<Command> {
     ]
 }
 
-/// The bare bars with counterweights between the lightest and the quickest.
+/// Shows the bare bars with counterweights between those of least mass and those of least inertia.
 fn designed() -> Vec<Command> {
     vec![
         Command::View(ViewChange::Kind(ViewKind::Design)),
@@ -123,7 +123,7 @@ fn designed() -> Vec<Command> {
     ]
 }
 
-/// Tolerances against a limit on |n_B| of 10 mN m.
+/// Shows a study of tolerances with a limit on |n_B| of 10 mN m.
 fn study() -> Vec<Command> {
     let limit: (String, Value) = ("moment_limit".into(), 0.01.into());
     vec![
@@ -132,7 +132,7 @@ fn study() -> Vec<Command> {
     ]
 }
 
-/// A scenario run through once, shown at an instant.
+/// Opens a scenario, runs it to its end and shows an instant, s.
 fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase::files::scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;

@@ -73,17 +73,17 @@ struct Row {
     peak_torque: Vec<f64>,
     peak_base_force: f64,
     peak_base_moment: f64,
-    /// With a reaction wheel: what it leaves of n_B for the base.
+    /// Largest moment past the reaction wheel, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
-    /// The limit of a drive that is passed by most, and by what factor.
+    /// Limit of a drive that is exceeded by the largest factor, and that factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     over: Option<(String, f64)>,
     #[serde(skip_serializing_if = "Option::is_none")]
     audit_failed: Option<String>,
     verdict: String,
-    /// What can be said of machine, plan and run.
+    /// Statements on machine, plan and run.
     statements: Statements,
     #[serde(skip)]
     answer: String,
@@ -146,7 +146,7 @@ impl Headless {
     }
 }
 
-/// A recording without pictures that replaces nothing.
+/// Returns options of a recording without pictures that replaces no file.
 pub fn unpictured() -> Options {
     Options { pictures: None, force: false }
 }
@@ -186,7 +186,7 @@ impl From<RecordError> for Failure {
 fn table(answer: &Answer) -> String {
     let drives = answer.recordings.iter().map(|r| r.peak_torque.len()).max().unwrap_or(0);
     let torques = (1..=drives).map(|k| format!("peak |τ_{k}| N m"));
-    // What a reaction wheel leaves is another quantity than what the arm transmits.
+    // The moment past a reaction wheel is another quantity than the moment that the arm transmits.
     let wheels = answer.recordings.iter().any(|r| r.peak_moment_past_wheel.is_some());
     let past = wheels.then(|| "peak past the wheel N m".to_owned());
     let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);

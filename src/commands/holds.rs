@@ -1,4 +1,4 @@
-//! `--fix`, `--free` and `--bound`: what may change for the sake of balance, and how far.
+//! `--fix`, `--free` and `--bound`: numbers that may change to achieve balance, and their bounds.
 
 use stillbase::mechanics::balance::{Hold, Keep, Parameter};
 use stillbase::mechanics::machine::Machine;
@@ -6,12 +6,12 @@ use stillbase::mechanics::machine::Machine;
 use super::ends::named;
 use super::failure::Failure;
 
-/// KEY=LO,HI, m or kg.
+/// Parses KEY=LO,HI, m or kg.
 pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
     named(text).ok_or_else(|| "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned())
 }
 
-/// Says in `asked` what is fixed, free and bounded.
+/// Enters in `asked` which numbers are fixed, free or bounded.
 ///
 /// # Errors
 /// If there is no such number, or one is held in two ways.

@@ -107,7 +107,7 @@ impl From<ImportError> for Failure {
 impl Import {
     /// Reads the samples, prints what they do to the base, and writes the proposal if asked.
     pub fn run(&self) -> Result<(), Failure> {
-        let files = self.output.as_deref().map(|file| [file.to_owned(), beside(file)]);
+        let files = self.output.as_deref().map(|file| [file.to_owned(), given_path(file)]);
         for file in files.iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
@@ -152,7 +152,7 @@ impl Import {
             return Err(Failure::no_answer(imported.reason.unwrap_or_default()));
         };
         if let Some([file, given_file]) = &files {
-            // Where the proposal is, what it was made of is too.
+            // The given motion first, so that it exists whenever the proposal does.
             let given_first = [(given_file, given.to_toml()), (file, proposed.to_toml())];
             let [given_made, made] = given_first.map(|(file, text)| made(file, text.as_bytes(), self.force));
             finish_all([given_made?, made?])?;
@@ -162,8 +162,8 @@ impl Import {
     }
 }
 
-/// `quiet.toml` gives `quiet-given.toml`.
-fn beside(file: &FilePath) -> PathBuf {
+/// Returns the file of the given motion: `quiet-given.toml` for `quiet.toml`.
+fn given_path(file: &FilePath) -> PathBuf {
     file.with_file_name(format!("{}-given.toml", stem(file)))
 }
 

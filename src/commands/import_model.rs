@@ -62,7 +62,7 @@ struct Answer {
     links: usize,
     /// kg.
     mass: f64,
-    /// Of the drives, where all joints of URDF are at 0, or in the keyframe of MJCF, rad.
+    /// Drive angles where all joints of URDF are at 0, or in the keyframe of MJCF, rad.
     pose: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     base: Option<OfBase>,
@@ -71,19 +71,19 @@ struct Answer {
     invariant: bool,
 }
 
-/// What the machine stands on.
+/// Base on which the machine stands.
 #[derive(Serialize)]
 struct OfBase {
     /// kg.
     mass: f64,
     /// About its centre of mass, kg m².
     inertia: f64,
-    /// Its centre of mass, seen from the axis of the drives, m.
+    /// Centre of mass relative to the axis of the drives, m.
     com: [f64; 2],
 }
 
 impl ImportModel {
-    /// Reads the model, says what it is, and writes the machine if asked.
+    /// Reads the model, prints a summary, and writes the machine if asked.
     pub fn run(&self) -> Result<(), Failure> {
         for file in [&self.output, &self.scenario].into_iter().flatten() {
             check_output(file, self.force, &["toml"])?;
@@ -143,11 +143,11 @@ impl ImportModel {
     }
 }
 
-/// A task for a machine, on the base that it came with.
+/// Returns a scenario with a task for a machine, on the base of its file, if it has one.
 fn scenario(machine: &Machine, base: Option<BaseBody>) -> Result<Scenario, Failure> {
     let scenario = around(machine)?;
     let Some(BaseBody { mass, inertia, com }) = base else { return Ok(scenario) };
     let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
-    // What a file may hold is asked of what is written.
+    // Parsed again, so that what a file may not hold is refused.
     Ok(Scenario::parse(&Scenario { base, ..scenario }.to_toml(), "[base] of the file", None)?)
 }

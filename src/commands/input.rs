@@ -1,4 +1,4 @@
-//! What commands share of their input: machines, scenarios, settings, points.
+//! Input that commands share: machines, scenarios, settings, points.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -19,10 +19,10 @@ use stillbase::settings::word::Choice;
 use super::exit::say;
 use super::failure::Failure;
 
-/// The scenario of a command that is given none: the paper's reactionless case.
+/// Default scenario of a command: the paper's reactionless case.
 pub const DEFAULT_SCENARIO: &str = "case-3";
 
-/// Reads the word of a choice; help lists what each of them means.
+/// Returns a parser of the words of a choice; help lists the meaning of each.
 pub fn choice<T: Choice>(all: impl IntoIterator<Item = T>) -> impl TypedValueParser<Value = T> {
     let words = all.into_iter().map(T::words);
     let values = words.map(|words| PossibleValue::new(words.file).help(words.meaning));
@@ -39,20 +39,20 @@ pub struct Settings {
     pairs: Vec<(String, String)>,
 }
 
-/// The most parts of a key, joined by dots; none has more than four.
-const MOST_PARTS: usize = 16;
+/// Maximum number of parts of a key, joined by dots; no key has more than four.
+const MAX_KEY_PARTS: usize = 16;
 
 fn setting(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("want KEY=VALUE, such as link.5.com=-0.02")?;
-    // Keys are taken apart one part after the other, each within the one before.
-    if key.split('.').count() > MOST_PARTS {
-        return Err(format!("the key has more than {MOST_PARTS} parts: want one such as plant.payload.mass"));
+    // Each part of a key is nested in the one before, so their number is bounded.
+    if key.split('.').count() > MAX_KEY_PARTS {
+        return Err(format!("the key has more than {MAX_KEY_PARTS} parts: want one such as plant.payload.mass"));
     }
     Ok((key.trim().into(), value.trim().into()))
 }
 
 impl Settings {
-    /// The machine with all changes made together.
+    /// Returns the machine with all settings changed together.
     ///
     /// # Errors
     /// If there is no such setting, or the machine would not be valid.
@@ -68,10 +68,10 @@ impl Settings {
         }
     }
 
-    /// Refuses settings of tolerances, which have no use where no machines are drawn.
+    /// Refuses settings of tolerances, which have no effect in a command that draws no machines.
     ///
     /// # Errors
-    /// If there is one.
+    /// If there is such a setting.
     pub fn none_of_tolerance(&self) -> Result<(), Failure> {
         let given = |(key, value): &&(String, String)| {
             key.split('.').next() == Some("tolerance") && ![change::DEFAULT, Key::NONE].contains(&value.as_str())
@@ -84,7 +84,7 @@ impl Settings {
         self.pairs.iter().any(|(given, _)| given == key)
     }
 
-    /// All of them as they would stand in a file; the last word on a key counts.
+    /// Returns all settings as a file would state them; the last value of a key counts.
     fn change(&self) -> Change {
         let one = |(key, value): &(String, String)| change::one(key, change::value(value));
         self.pairs.iter().map(one).fold(Change::new(), |all, one| change::join(all, &one))
@@ -102,7 +102,7 @@ pub struct MachineArgument {
 }
 
 impl MachineArgument {
-    /// The machine with its changes.
+    /// Returns the machine with its settings changed.
     ///
     /// # Errors
     /// If there is no such machine, or it is not valid.
@@ -110,10 +110,10 @@ impl MachineArgument {
         self.settings.apply(stillbase::files::machine(&self.name, None)?)
     }
 
-    /// It and others beside it with the same changes, each under a name of its own.
+    /// Returns the machine and others, with the same settings changed, each under a name of its own.
     ///
     /// # Errors
-    /// As [`load`](Self::load), with what the machine is called on the command line.
+    /// As [`load`](Self::load), with the name of the machine on the command line.
     pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
         let mut all: Vec<(String, Machine)> = Vec::new();
         for called in std::iter::once(&self.name).chain(others) {
@@ -125,7 +125,7 @@ impl MachineArgument {
     }
 }
 
-/// A name that is not taken: its own, or that with the first number that tells it apart.
+/// Returns a name that is not taken: `own`, or `own` with the first free number, from 2 on.
 pub fn told_apart(own: &str, taken: impl Fn(&str) -> bool) -> String {
     let (mut name, mut count) = (own.to_owned(), 1);
     while taken(&name) {
@@ -135,8 +135,8 @@ pub fn told_apart(own: &str, taken: impl Fn(&str) -> bool) -> String {
     name
 }
 
-/// A scenario by name or file, with settings laid over it before anything is planned, for a command that draws no
-/// machines: what it says of tolerances is told to have no use.
+/// Returns a scenario by name or file, with settings changed before anything is planned, for a command that draws no
+/// machines. Prints a note if the scenario has tolerances.
 ///
 /// # Errors
 /// As [`studied`], or if a setting is of tolerances.
@@ -147,20 +147,21 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// Says that what a scenario says of tolerances has no use, for a command that draws no machines.
+/// Prints a note if a scenario has tolerances, which have no effect in a command that draws no machines.
 pub fn tell_tolerance(scenario: &Scenario) {
     if !scenario.tolerance.is_empty() {
         say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
     }
 }
 
-/// Where tolerances count.
+/// Where tolerances have an effect.
 const STUDY: &str = "the command tolerance, or the window";
 
-/// A scenario by name or file, with settings laid over it before anything is planned.
+/// Returns a scenario by name or file, with settings changed before anything is planned. Refuses settings without an
+/// effect.
 ///
 /// # Errors
-/// If there is no such scenario or setting, or what comes out is not valid.
+/// If there is no such scenario or setting, or the result is not valid.
 pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = stated(name, settings)?;
     none_idle(&scenario, settings)?;
@@ -168,10 +169,10 @@ pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// The same, whether or not all of it has an effect: what else is typed may change that.
+/// Does the same as [`studied`], but accepts settings without an effect, because other arguments may give them one.
 ///
 /// # Errors
-/// As [`studied`], but for settings without an effect.
+/// As [`studied`], except for settings without an effect.
 pub fn stated(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase::files::scenario(name)?;
     if let Some(made) = &found.made {
@@ -180,27 +181,27 @@ pub fn stated(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     laid(found.scenario, settings)
 }
 
-/// Says which keys of a scenario have no effect.
+/// Prints which keys of a scenario have no effect.
 pub fn tell_idle(scenario: &Scenario) {
     for (path, want) in scenario.idle_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }
 }
 
-/// A scenario with settings laid over it.
+/// Returns a scenario with settings changed.
 ///
 /// # Errors
-/// If there is no such setting, it has no effect, or what comes out is not valid.
+/// If there is no such setting, it has no effect, or the result is not valid.
 pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = laid(scenario, settings)?;
     none_idle(&scenario, settings)?;
     Ok(scenario)
 }
 
-/// A scenario with settings laid over it, whether or not they have an effect as it is.
+/// Returns a scenario with settings changed, whether or not they have an effect.
 ///
 /// # Errors
-/// If there is no such setting, or what comes out is not valid.
+/// If there is no such setting, or the result is not valid.
 pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = scenario.with(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
@@ -210,7 +211,7 @@ pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure
 /// Refuses settings that have no effect on a scenario as it is.
 ///
 /// # Errors
-/// If there is one, with what it would want.
+/// If there is one, with the condition for an effect.
 pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT, Key::NONE].contains(&word));
@@ -221,7 +222,7 @@ pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure
     Ok(())
 }
 
-/// The failure of an option that would have no effect here.
+/// Returns the failure of an option that has no effect here.
 pub fn no_use(what: &str, want: &str) -> Failure {
     Failure::wrong_input(format!("{what} has no use here: want {want}"))
 }
@@ -239,7 +240,7 @@ pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failu
     Ok(())
 }
 
-/// The pose space of a machine; says so if b is only nearly constant.
+/// Returns the pose space of a machine. Prints a note if b is only nearly constant.
 ///
 /// # Errors
 /// If it has none.
@@ -251,8 +252,8 @@ pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
     Ok(space)
 }
 
-/// The command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not taken
-/// for options; no option begins with a digit.
+/// Returns the command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not
+/// parsed as options. No option begins with a digit.
 pub fn words(words: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
     words.map(|word| match word.to_str().map(str::as_bytes) {
         Some([b'-', b'0'..=b'9' | b'.', .., last]) if !last.is_ascii_alphabetic() => padded(word),
@@ -267,13 +268,13 @@ fn padded(word: OsString) -> OsString {
     padded
 }
 
-/// A point X,Y, m.
+/// Parses a point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, String> {
     let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, PLACE)?, number(y, PLACE)?)));
     both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {PLACE}"))
 }
 
-/// A pose constant, rad.
+/// Parses a pose constant, rad.
 pub fn pose_constant(text: &str) -> Result<f64, String> {
     number(text, POSE_CONSTANT).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT}"))
 }
@@ -282,12 +283,12 @@ fn number(text: &str, range: Range) -> Option<f64> {
     text.trim().parse().ok().filter(|x| range.contains(*x))
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 pub fn above_zero(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
 }
 
-/// A text file.
+/// Reads a text file.
 ///
 /// # Errors
 /// If it cannot be read.

@@ -1,6 +1,6 @@
-//! On every signal that ends the program and can be heard: half-written files are removed before it ends.
+//! Removes half-written files before a signal ends the program, if the signal can be caught.
 
-/// Watches for signals that end the program, in a thread of its own.
+/// Starts a thread that waits for signals that end the program.
 #[cfg(unix)]
 pub fn watch() {
     use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ};

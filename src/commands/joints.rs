@@ -41,7 +41,7 @@ pub struct JointsCommand {
 }
 
 impl JointsCommand {
-    /// Runs the scenario and prints what it finds.
+    /// Runs the scenario and prints the extremes of pin forces, transmission and tilt.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let machine = scenario.plant.machine(&scenario.machine)?;
@@ -90,7 +90,7 @@ impl JointsCommand {
     }
 }
 
-/// Time, forces, tilt; cells at a change point stay empty.
+/// Returns a row of time, forces and tilt; cells at a change point are empty.
 fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
     let forces = (0..pins).flat_map(|i| {
         let force = frame.inside.pin(i);

@@ -41,34 +41,34 @@ struct Row {
     holds: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'static str>,
-    /// What stands there if nothing is given; none for what has to be given.
+    /// Default; `None` for a key that has to be given, or without a default.
     #[serde(skip_serializing_if = "Option::is_none")]
     default: Option<&'static str>,
-    /// What counts where nothing is given, if there is no default.
+    /// Meaning of a missing key without a default.
     #[serde(skip_serializing_if = "Option::is_none")]
     instead: Option<&'static str>,
     words: &'static str,
-    /// What it wants to have an effect.
+    /// Condition for an effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     when: Option<&'static str>,
     #[serde(skip)]
     part: &'static str,
-    /// The default as a person reads it.
+    /// Default as text.
     #[serde(skip)]
     usual: String,
 }
 
 impl Keys {
-    /// Prints them.
+    /// Prints the settings.
     pub fn run(&self) -> Result<(), Failure> {
         let sought: Vec<String> = self.words.iter().flat_map(|w| w.split_whitespace()).map(str::to_lowercase).collect();
-        let asked = |key: &&Key| {
+        let matches_words = |key: &&Key| {
             let all = format!("{} {} {} {}", key.path, key.words, key.holds, key.when).to_lowercase();
             sought.iter().all(|word| all.contains(word) || key.matches(word))
         };
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
         let of_part = |&(part, tables): &(&'static str, &'static [&'static [Key]])| {
-            tables.iter().copied().flatten().filter(asked).map(move |key| Row {
+            tables.iter().copied().flatten().filter(matches_words).map(move |key| Row {
                 key: key.path,
                 holds: key.holds.to_string(),
                 unit: some(key.unit()),
@@ -91,7 +91,7 @@ impl Keys {
     }
 }
 
-/// Part by part, a line of each key and what it means below.
+/// Formats the keys part by part, each with its meaning below.
 fn list(rows: &[Row]) -> String {
     let mut text = String::new();
     for rows in rows.chunk_by(|a, b| a.part == b.part) {
@@ -111,7 +111,7 @@ fn list(rows: &[Row]) -> String {
     text
 }
 
-/// The page of the guide.
+/// Formats the page of the guide.
 fn page(rows: &[Row]) -> String {
     let mut text = String::from(
         "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \

@@ -72,8 +72,8 @@ fn figure(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "want numbers, such as 1.7,-0.5,2.2".into())
 }
 
-/// What is asked about.
-enum Asked {
+/// Subject of the equations.
+enum Subject {
     Scenario(Box<Scenario>),
     Machine(Box<Machine>),
 }
@@ -81,10 +81,10 @@ enum Asked {
 impl Learn {
     /// Prints the equations.
     pub fn run(&self) -> Result<(), Failure> {
-        let (machine, state) = self.asked()?;
+        let (machine, state) = self.machine_and_state()?;
         let all = equations(&machine, &state, Preset::Table1);
-        let asked = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
-        let chosen: Vec<&Equation> = all.iter().filter(asked).collect();
+        let is_chosen = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
+        let chosen: Vec<&Equation> = all.iter().filter(is_chosen).collect();
         let answer = Stated::of(&machine, &state, chosen.iter().copied());
         self.format.print(&answer, |_| {
             let texts: Vec<String> = chosen.iter().map(|equation| text(equation)).collect();
@@ -92,25 +92,27 @@ impl Learn {
         })
     }
 
-    /// The machine, and the instant.
-    fn asked(&self) -> Result<(Machine, State), Failure> {
+    /// Returns the machine and its state at the instant.
+    fn machine_and_state(&self) -> Result<(Machine, State), Failure> {
         let machine = match self.find()? {
-            Asked::Scenario(scenario) if self.pose.is_empty() => {
+            Subject::Scenario(scenario) if self.pose.is_empty() => {
                 let state = self.state(&scenario)?;
                 return Ok((scenario.machine, state));
             }
-            Asked::Machine(_) if self.at.is_some() => return Err(no_use("--at", "a scenario, or --pose")),
-            Asked::Scenario(scenario) => scenario.machine,
-            Asked::Machine(machine) => *machine,
+            Subject::Machine(_) if self.at.is_some() => return Err(no_use("--at", "a scenario, or --pose")),
+            Subject::Scenario(scenario) => scenario.machine,
+            Subject::Machine(machine) => *machine,
         };
         let n = machine.drives();
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
         let given = |option: &str, values: &[f64]| {
             let all = if values.is_empty() { vec![0.0; n] } else { values.to_vec() };
-            let fits = all.len() == n && all.iter().all(|x| x.is_finite() && x.abs() <= MOST);
+            let fits = all.len() == n && all.iter().all(|x| x.is_finite() && x.abs() <= MAX_MAGNITUDE);
             let wrong = || {
                 let drives = counted(n, "drive");
-                Failure::wrong_input(format!("{option}: want a number from −{MOST} to {MOST} for each of {drives}"))
+                Failure::wrong_input(format!(
+                    "{option}: want a number from −{MAX_MAGNITUDE} to {MAX_MAGNITUDE} for each of {drives}"
+                ))
             };
             PerDrive::from_slice(&all).filter(|_| fits).ok_or_else(wrong)
         };
@@ -119,19 +121,19 @@ impl Learn {
         Ok((machine, State::given(Reference { q, qd, qdd })))
     }
 
-    /// The scenario or machine of the name.
-    fn find(&self) -> Result<Asked, Failure> {
+    /// Returns the scenario or the machine of the name.
+    fn find(&self) -> Result<Subject, Failure> {
         let machine = || self.settings.apply(stillbase::files::machine(&self.what, None)?);
         match stillbase::files::scenario(&self.what) {
-            // A task that is made up for a machine is not what is asked for.
-            Ok(found) if found.made.is_some() => Ok(Asked::Machine(Box::new(machine()?))),
+            // For a machine, no scenario made around it is used.
+            Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
                 let scenario = set(found.scenario, &self.settings)?;
                 self.settings.none_of_tolerance()?;
-                Ok(Asked::Scenario(Box::new(scenario)))
+                Ok(Subject::Scenario(Box::new(scenario)))
             }
-            // Of a machine for which no task can be made, too.
-            Err(why) => Ok(Asked::Machine(Box::new(machine().map_err(|_| why)?))),
+            // A machine for which no task can be made is accepted, too.
+            Err(why) => Ok(Subject::Machine(Box::new(machine().map_err(|_| why)?))),
         }
     }
 
@@ -147,8 +149,8 @@ impl Learn {
     }
 }
 
-/// The largest angle, rate or acceleration that is taken.
-const MOST: f64 = 1e6;
+/// Maximum magnitude of a given angle, rate or acceleration, rad, rad/s or rad/s².
+const MAX_MAGNITUDE: f64 = 1e6;
 
 fn head(machine: &Machine, state: &State) -> String {
     let when = match state.when {
@@ -162,13 +164,14 @@ fn head(machine: &Machine, state: &State) -> String {
     format!("{}, {when}\n{motion}", machine.name())
 }
 
-/// How wide lines of terms are at most, characters.
-const WIDTH: usize = 100;
+/// Maximum width of a line of terms, characters.
+const MAX_WIDTH: usize = 100;
+/// Indent of lines, characters.
 const INDENT: usize = 4;
 /// Decimals of numbers.
 const DECIMALS: usize = 6;
 
-/// An equation in lines.
+/// Formats an equation.
 fn text(equation: &Equation) -> String {
     let colon = if equation.form.is_empty() { "" } else { ": " };
     let mut text = format!("({}) {}{colon}{}\n", equation.number, equation.title, plain(equation.form));
@@ -185,7 +188,7 @@ fn text(equation: &Equation) -> String {
     text
 }
 
-/// Whether both sides are alike.
+/// States whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
     let Some(worst) = equation.worst() else { return String::new() };
     let off = worst.off().abs();
@@ -198,10 +201,10 @@ fn verdict(equation: &Equation) -> String {
     }
 }
 
-/// Symbols, and below each its number.
+/// Formats a line of terms: symbols, and below each its number.
 fn of_terms(line: &Line) -> String {
     let mut rows: Vec<[String; 2]> = Vec::new();
-    let mut width = WIDTH;
+    let mut width = MAX_WIDTH;
     let cells = cells(line, DECIMALS);
     for (i, cell) in cells.iter().enumerate() {
         let [mut symbol, mut number] = both(cell);
@@ -212,7 +215,7 @@ fn of_terms(line: &Line) -> String {
         for text in [&mut symbol, &mut number] {
             *text += &" ".repeat(wide - text.chars().count());
         }
-        if width + wide + 1 > WIDTH {
+        if width + wide + 1 > MAX_WIDTH {
             rows.push(Default::default());
             width = 0;
         }

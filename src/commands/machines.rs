@@ -31,7 +31,7 @@ struct Row {
 }
 
 impl Machines {
-    /// Prints them.
+    /// Prints the machines.
     pub fn run(&self) -> Result<(), Failure> {
         let mut machines = Vec::new();
         for machine in builtins() {

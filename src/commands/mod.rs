@@ -1,4 +1,4 @@
-//! The command line, one file a subcommand: each reads its input, asks the library, prints.
+//! The command line, one file for each subcommand: each reads its input, calls the library and prints.
 //!
 //! Names and JSON keys are a contract that scripts depend on. Results go to standard output, messages and the progress
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
@@ -46,7 +46,7 @@ pub use open::Open;
 
 use failure::Failure;
 
-/// The subcommands from one list: the name of each and what reads its words and runs.
+/// Declares the subcommands from one list: the name of each, and the type that reads its arguments and runs it.
 macro_rules! subcommands {
     ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident,)*) => {
         /// What the program can be asked to do.

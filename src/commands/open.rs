@@ -42,10 +42,10 @@ impl From<ThemeName> for Theme {
 }
 
 impl Open {
-    /// Shows the scenario, or records it beside the reader.
+    /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = studied(&self.scenario, &self.settings).map_err(|failure| match failure {
-            // Most likely a command mistyped.
+            // Most likely a mistyped command.
             Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
                 Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
             }

@@ -35,7 +35,7 @@ impl Format {
     }
 }
 
-/// JSON has no word for infinity or NaN, and `null` would go unnoticed.
+/// A formatter that refuses infinity and NaN, which JSON cannot state. Written as `null` they would go unnoticed.
 struct FiniteOnly;
 
 impl Formatter for FiniteOnly {
@@ -50,14 +50,14 @@ fn json(answer: &impl Serialize) -> Result<String, Failure> {
     answer.serialize(&mut serializer).map_err(Failure::wrong_input)?;
     let mut text = String::from_utf8(text).map_err(Failure::wrong_input)?;
     text.push('\n');
-    // JSON spells out what steers a terminal but for a few, which stand in strings only.
+    // JSON escapes most characters that steer a terminal; the others can only be in strings.
     Ok(match plain(&text) {
         Cow::Borrowed(_) => text,
         Cow::Owned(_) => text.chars().map(spelled).collect(),
     })
 }
 
-/// A character as JSON may have it.
+/// Escapes a character for JSON if it steers a terminal.
 fn spelled(c: char) -> String {
     let mut own = [0; 4];
     match plain(c.encode_utf8(&mut own)) {
@@ -66,33 +66,33 @@ fn spelled(c: char) -> String {
     }
 }
 
-/// `yes` or `no`.
+/// Returns `yes` or `no`.
 pub fn yes(is_so: bool) -> &'static str {
     if is_so { "yes" } else { "no" }
 }
 
-/// Aligned columns: the first to the left, numbers to the right.
+/// A table with aligned columns: the first to the left, numbers to the right.
 pub struct Table {
     rows: Vec<Vec<String>>,
-    /// A further column that is set to the left.
+    /// Index of a further column that is aligned to the left.
     words: Option<usize>,
 }
 
 impl Table {
-    /// A table with a head; each column's unit stands behind its name.
+    /// Returns a table with a head; the unit of each column follows its name.
     pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
         Self { rows: vec![head.into_iter().map(Into::into).collect()], words: None }
     }
 
-    /// Sets a column of words to the left.
+    /// Aligns a column of words to the left.
     #[must_use]
     pub fn with_words(self, column: usize) -> Self {
         Self { words: Some(column), ..self }
     }
 
-    /// One more row.
+    /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        // A name may hold anything, but a row is a line.
+        // A name may contain line breaks, but a row is one line.
         let line = |cell: String| if cell.contains('\n') { cell.replace('\n', "\\n") } else { cell };
         self.rows.push(cells.into_iter().map(line).map(|cell| plain(&cell).into_owned()).collect());
     }
@@ -117,10 +117,10 @@ impl Display for Table {
     }
 }
 
-/// Refuses what [`check_new`] does, and a name whose ending promises something else than what is written.
+/// Checks the name of an output file as [`check_new`] does, and its ending. Returns the ending.
 ///
 /// # Errors
-/// Which endings there are.
+/// If [`check_new`] refuses the file, or its ending is not allowed; the error names the allowed endings.
 pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Result<&'static str, Failure> {
     check_new(file, force)?;
     let own = file.extension().unwrap_or_default();
@@ -130,17 +130,19 @@ pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Resul
     })
 }
 
-/// The most bytes that a command writes, and the most where all of them are held in memory: more are asked for by a
-/// slip of the hand.
-const MOST_BYTES: [f64; 2] = [4e9, 1e9];
-/// What a number takes, at most.
-const A_NUMBER: f64 = 20.0;
+/// Maximum size of an output, bytes; a larger one is asked for by mistake.
+const MAX_BYTES: f64 = 4e9;
+/// Maximum size of an output that is held in memory as a whole, bytes.
+const MAX_HELD_BYTES: f64 = 1e9;
+/// Maximum size of a number, bytes.
+const MAX_BYTES_PER_NUMBER: f64 = 20.0;
 
-/// Refuses a table that would take more bytes than may be.
+/// Refuses a table of numbers that would be too large. `held`: all of it is held in memory.
 ///
 /// # Errors
-/// If it would.
+/// If it would be too large.
 pub fn check_size(rows: u64, columns: usize, held: bool) -> Result<(), Refusal> {
-    let (bytes, most) = (rows as f64 * columns as f64 * A_NUMBER, MOST_BYTES[usize::from(held)]);
+    let bytes = rows as f64 * columns as f64 * MAX_BYTES_PER_NUMBER;
+    let most = if held { MAX_HELD_BYTES } else { MAX_BYTES };
     if bytes <= most { Ok(()) } else { Err(Refusal::TooLarge { rows, columns, bytes, most }) }
 }

@@ -26,8 +26,8 @@ use super::output::{Format, Table, check_output};
 use stillbase::settings::number::{counted, fixed};
 use stillbase::settings::word::Choice;
 
-/// What a plan of a machine is called until a file gives it a name.
-const NAMELESS: &str = "plan";
+/// Name of a plan of a machine until a file gives it one.
+const DEFAULT_NAME: &str = "plan";
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
 ///
@@ -103,7 +103,7 @@ fn floating_base(text: &str) -> Result<FloatingBase, String> {
     }
 }
 
-/// The kinds that a person can plan by points alone.
+/// Returns the kinds of tasks that can be planned by points alone.
 fn kinds() -> impl Iterator<Item = TaskKind> {
     TaskKind::ALL.iter().copied().filter(|kind| !matches!(kind, TaskKind::SameTip | TaskKind::Given))
 }
@@ -115,7 +115,7 @@ impl Plan {
             check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
-        // What a machine without a b can do all the same, its plan says.
+        // The plan says what a machine without a b can do.
         let space = pose_space(&scenario.machine).ok();
         let run = Run::new(&scenario);
         let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());
@@ -125,9 +125,9 @@ impl Plan {
         }
         run?;
         if let Some(file) = &self.output {
-            // Several plans can stand in one recording or table then.
-            if scenario.name == NAMELESS {
-                scenario.name = file.file_stem().map_or_else(|| NAMELESS.into(), |s| s.to_string_lossy().into());
+            // The name of the file tells plans apart in a recording or a table.
+            if scenario.name == DEFAULT_NAME {
+                scenario.name = file.file_stem().map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
             }
             write_new(file, scenario.to_toml().as_bytes(), self.force)?;
             say(format!("wrote {}", file.display()));
@@ -135,7 +135,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Refuses options that the task has no use for, and tells what it leaves out.
+    /// Refuses options that have no effect on the task, and prints what the plan leaves out.
     fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
         let task = &scenario.task;
         for (given, key) in [
@@ -163,7 +163,7 @@ impl Plan {
         Ok(())
     }
 
-    /// The scenario that the arguments ask for.
+    /// Returns the scenario that the arguments define.
     fn scenario(&self) -> Result<Scenario, Failure> {
         let as_machine = stillbase::files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
@@ -176,14 +176,15 @@ impl Plan {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }
                 let own = stated(DEFAULT_SCENARIO, &Settings::default())?;
-                let with = Scenario { machine, name: NAMELESS.into(), title: String::new(), compare_b: None, ..own };
+                let with =
+                    Scenario { machine, name: DEFAULT_NAME.into(), title: String::new(), compare_b: None, ..own };
                 laid(with, &self.settings)?
             }
-            // The reader of machines or of scenarios says what is wrong with the file, by what it was meant to be.
+            // A wrong file that is meant as a machine gives the error of a machine, any other that of a scenario.
             Err(wrong) if meant(&self.name) == Some(Content::Machine) => return Err(wrong.into()),
             _ => {
                 let found = stated(&self.name, &self.settings)?;
-                // What is written keeps its tolerances for others.
+                // A written scenario keeps its tolerances for other commands.
                 if self.output.is_none() {
                     tell_tolerance(&found);
                 }
@@ -228,7 +229,7 @@ impl Plan {
         change_task(&mut scenario, &change)?;
         let points = scenario.task.points();
         let chosen = self.kind.is_some() || self.settings.sets("task.kind") || known;
-        // What has no b to hold moves by least rates.
+        // A machine without a b moves with least rates.
         if !chosen
             && !self.points.is_empty()
             && let none @ PoseConstant::None(_) = PoseConstant::of(&scenario.machine)
@@ -241,7 +242,7 @@ impl Plan {
         }
         self.check_use(&scenario)?;
         none_idle(&scenario, &self.settings)?;
-        // What a built-in task says for its own kind is no word of the person's, who asks for another.
+        // With another kind, keys of a built-in task may lose their effect, but the user has not given them.
         if self.kind.is_none() || Scenario::builtin(&scenario.name).is_none() {
             tell_idle(&scenario);
         }
@@ -254,7 +255,7 @@ impl Plan {
     }
 }
 
-/// What a file is meant to be, if there is one of that name.
+/// Returns whether a file is meant as a machine or as a scenario, if there is one of that name.
 fn meant(name: &str) -> Option<Content> {
     if Scenario::builtin(name).is_some() { None } else { content(&text::read(Path::new(name)).ok()?) }
 }

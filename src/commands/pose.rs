@@ -43,7 +43,7 @@ struct Answer {
 }
 
 impl Pose {
-    /// Prints every pose; none is no answer.
+    /// Prints every pose. Fails if there is none.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;

@@ -48,7 +48,7 @@ struct OfPoint {
 }
 
 impl Reach {
-    /// Prints the b of each point and of all; none in common is no answer.
+    /// Prints the b of each point and of all. Fails if the points have no b in common.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
@@ -73,8 +73,8 @@ impl Reach {
     }
 }
 
-/// Both ends of an interval with so many decimals, rounded into it, so that each still serves; as they are of one b, and of
-/// a whole circle.
+/// Rounds the bounds of an interval of b, rad, to a number of decimals, inwards, so that each is still feasible. Bounds
+/// of a single b and of a whole period are rounded to the nearest decimal.
 fn inward([from, to]: [f64; 2], decimals: usize, period: f64) -> [String; 2] {
     let last = 10f64.powi(-(decimals as i32));
     let printed = |x: f64| fixed(x, decimals);

@@ -1,8 +1,8 @@
-//! How the program names the ways out that its answers point at.
+//! Names of remedies on the command line.
 
 use stillbase::study::advice::Remedy;
 
-/// The option or the command that is a way out.
+/// Returns the option or the command of a remedy.
 pub fn option(remedy: Remedy) -> &'static str {
     match remedy {
         Remedy::Gaps => "--gaps",

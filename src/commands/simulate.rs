@@ -49,7 +49,7 @@ fn every(text: &str) -> Result<NonZeroU64, String> {
     text.trim().parse().map_err(|_| "want a whole number of steps, 1 or more".into())
 }
 
-/// What a run comes to.
+/// Results of a run.
 #[derive(Serialize)]
 struct Outcome {
     steps: u64,
@@ -58,7 +58,7 @@ struct Outcome {
     peak_base_moment: f64,
     rms_base_force: f64,
     rms_base_moment: f64,
-    /// With a reaction wheel: what it leaves of n_B for the base.
+    /// Largest moment past the reaction wheel, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -69,7 +69,7 @@ struct Outcome {
     miss: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
-    /// The limit of a drive that is passed by most, and by what factor.
+    /// Limit of a drive that is exceeded by the largest factor, and that factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     over: Option<(String, f64)>,
     moved: bool,
@@ -77,7 +77,7 @@ struct Outcome {
     #[serde(skip)]
     answer: String,
     sentence: String,
-    /// What can be said of machine, plan and run.
+    /// Statements on machine, plan and run.
     statements: Statements,
     remarks: Vec<String>,
     audit: Columns<f64>,
@@ -85,7 +85,7 @@ struct Outcome {
     audit_failed: Option<String>,
 }
 
-/// A relative joint angle that passed its limit, and by how much, rad.
+/// A relative joint angle that exceeded its limit, and by how much, rad.
 #[derive(Serialize)]
 struct Past {
     angle: String,
@@ -152,10 +152,10 @@ impl Simulate {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["csv"])?;
         }
-        // Begun with the first step: what cannot start prints nothing.
+        // Opened at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
-        // A run cannot be left half-way; after a failure nothing more is written.
+        // The run cannot be stopped; after a failure to write, no more rows are written.
         let mut written = Ok(());
         let fits = |last: u64| check_size(last / self.every + 2, table.len() + 1, self.format.json);
         let run = replay_if(&scenario, fits, |run, frame| {
@@ -211,12 +211,12 @@ impl Simulate {
         trusted(&name, fault)
     }
 
-    /// Whether every row goes anywhere: not to a terminal.
+    /// Whether rows are written: to a file, or to standard output if it is not a terminal.
     fn writes_csv(&self) -> bool {
         self.output.is_some() || !(self.format.json || std::io::stdout().is_terminal())
     }
 
-    /// Where rows go; begins it with a head.
+    /// Returns the CSV file; the first call opens it and writes its head.
     fn csv<'a>(&self, begun: &'a mut Option<Csv>, table: &[Signal]) -> Result<&'a mut Csv, Failure> {
         match begun {
             Some(csv) => Ok(csv),
@@ -229,7 +229,7 @@ impl Simulate {
     }
 }
 
-/// What a terminal gets in place of every row.
+/// Formats the summary that a terminal gets instead of rows.
 fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     let mut table = Table::new(["", "", ""]).with_words(2);
     let mut row = |name: String, value: f64, decimals: usize, unit: &str| {
@@ -240,8 +240,8 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     }
     row("peak |n_B|".into(), outcome.peak_base_moment, 9, "N m");
     row("root mean square of n_B".into(), outcome.rms_base_moment, 9, "N m");
-    if let Some(left) = outcome.peak_moment_past_wheel {
-        row("peak moment past the wheel".into(), left, 9, "N m");
+    if let Some(past_wheel) = outcome.peak_moment_past_wheel {
+        row("peak moment past the wheel".into(), past_wheel, 9, "N m");
     }
     row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
     row("the base shifts by".into(), outcome.base_shift, 9, "m");
@@ -255,7 +255,7 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     format!("{}\n{}\n{shown}", lines.concat(), table.to_string().trim_start())
 }
 
-/// Fails if an audit has: the figures stand there, but they are no answer.
+/// Fails if an audit has failed: the figures are printed, but they are no answer.
 pub fn trusted(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
     match fault {
         Some(why) => Err(Failure::untrusted(scenario, why)),
@@ -263,7 +263,7 @@ pub fn trusted(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
     }
 }
 
-/// The value of a signal, zero without a sign.
+/// Returns the value of a signal, zero without a sign.
 fn value(signal: &Signal, frame: &Frame) -> f64 {
     signal.value(frame) + 0.0
 }

@@ -6,15 +6,15 @@ use stillbase::mechanics::machine::Machine;
 use super::ends::named;
 use super::failure::Failure;
 
-/// NAME=LO,HI: of a link, m, or of something else.
+/// Parses NAME=LO,HI, such as places on a link, m.
 pub fn range(text: &str) -> Result<(String, [f64; 2]), String> {
     named(text).ok_or_else(|| "want NAME=LO,HI, as 1=-0.3,0.5".to_owned())
 }
 
-/// The place of a link by its name.
+/// Returns the index of a link by its name.
 ///
 /// # Errors
-/// If there is none.
+/// If there is no such link.
 pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
     let links = machine.links();
     links.iter().position(|link| link.name == name).ok_or_else(|| {
@@ -23,7 +23,7 @@ pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
     })
 }
 
-/// The links that are named; every link, from its length behind the root to the tip, where none is.
+/// Returns the sites on the named links, or on every link from its length behind the root to the tip, if none is named.
 ///
 /// # Errors
 /// If there is no such link.

@@ -68,7 +68,7 @@ struct Answer {
     audit_failed: Option<String>,
 }
 
-/// A run that cannot be done is called by its scenario.
+/// Converts an error into a failure; that of a run names its scenario.
 fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
     match why {
         NoBaseSpectrum::Run(why) => Failure::from(why).of(scenario),
@@ -78,7 +78,7 @@ fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
 }
 
 impl SpectrumOf {
-    /// Prints the spectra, and how they stand against limits.
+    /// Prints the spectra, and whether they keep within limits.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         if let Some(file) = &self.output {

@@ -37,7 +37,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Prints area, extent and boundary, what lies inside, and what is asked of points.
+    /// Prints area, extent and boundary of the workspace, what lies inside, and the measures of given points.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
@@ -59,7 +59,7 @@ impl Workspace {
     }
 }
 
-/// Of other numbers of drives than three: with two a curve.
+/// Returns the table for machines that do not have three drives; with two drives the workspace is a curve.
 fn outline(a: &WorkspaceReport) -> Table {
     let mut table = Table::new(["", "", ""]).with_words(2);
     let size = match a.length.filter(|_| is_curve(a)) {
@@ -79,7 +79,7 @@ fn is_curve(a: &WorkspaceReport) -> bool {
 
 fn table(a: &WorkspaceReport, inside: &Inside) -> Table {
     let mut table = Table::new(["", "", ""]).with_words(2);
-    // Nine decimals say nothing of a workspace of millimetres.
+    // Nine decimals are too few digits for a workspace of millimetres.
     let small = (a.x_max - a.x_min).hypot(a.y_max - a.y_min) < 1e-2;
     let number = |x: f64| if small { format!("{x:.9e}") } else { fixed(x, 9) };
     for (name, value, unit) in [
@@ -92,7 +92,7 @@ fn table(a: &WorkspaceReport, inside: &Inside) -> Table {
     ] {
         table.row([name.into(), number(value), unit.into()]);
     }
-    // One change curve makes two parts; where there are many, the table would no longer be calm.
+    // One curve of change points makes two parts; with more parts the table would be too long.
     if let [first, second] = &inside.areas_by_side[..] {
         for part in [first, second] {
             let [k, l] = part.pair;
@@ -141,7 +141,7 @@ fn remarks(a: &WorkspaceReport, inside: &Inside) -> String {
     )
 }
 
-/// Points with their poses: angles and measures of each.
+/// Returns the table of points: angles and measures of each pose.
 fn points(a: &WorkspaceReport, angles: &[String]) -> Table {
     let from = if is_curve(a) { "from curve m" } else { "from boundary m" };
     let det = a.inside.is_some().then_some("det m²");
@@ -158,7 +158,7 @@ fn points(a: &WorkspaceReport, angles: &[String]) -> Table {
     table
 }
 
-/// The rows of a point: one for each pose, the first with its place.
+/// Adds the rows of a point, one for each pose; the first states its place.
 fn add_point(table: &mut Table, [x, y]: [f64; 2], distance: f64, poses: Vec<Vec<f64>>) {
     let mut first = [format!("{x}, {y}"), fixed(distance, 9)];
     if poses.is_empty() {

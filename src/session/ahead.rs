@@ -1,13 +1,13 @@
-//! [`Ahead`]: a run on to where its planned motion ends, to know how far the base will move.
+//! [`Ahead`]: continues a copy of a run to the end of its planned motion, to predict how far the base will move.
 
 use super::run::Run;
 use crate::query::{Portion, Query, Same, Watch};
 use crate::simulation::frame::Totals;
 
-/// Steps of a portion.
-const STEPS: u64 = 256;
+/// Number of steps in a portion of the work.
+const STEPS_PER_PORTION: u64 = 256;
 
-/// A run that goes on beside the one on display.
+/// A copy of the run on display that goes ahead of it.
 #[derive(Debug)]
 pub struct Ahead {
     run: Run,
@@ -26,7 +26,7 @@ impl Query for Ahead {
 
     fn go_on(&mut self, _: Watch<'_>) -> Portion<Totals> {
         let done = |run: &Run| run.simulation().step_count();
-        let until = self.last.min(done(&self.run) + STEPS);
+        let until = self.last.min(done(&self.run) + STEPS_PER_PORTION);
         while done(&self.run) < until {
             self.run.advance();
         }

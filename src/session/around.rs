@@ -1,4 +1,4 @@
-//! [`around`]: a scenario around a machine that comes without one.
+//! [`around`]: makes a scenario for a machine that comes without one.
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
@@ -8,29 +8,30 @@ use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive, unit};
 
-/// Where in its limits each relative angle is in the middle of the motion: beside their middle, where parallelograms go
-/// flat.
-const SHARE: f64 = 0.6;
-/// How much of its limits an angle passes, the first that can be, and how far it turns at most, rad.
-const SPANS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];
-const FARTHEST: f64 = 0.8;
-/// Where the end effector is seen from the base pin, rad.
-const TOWARDS: f64 = 0.3 * PI;
-/// How long the motion takes, s: the first of these in which no limit of a drive is passed.
-const TIMES: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
+/// Place of each relative angle within its limits in the middle of the motion, as a fraction of their width. In the
+/// very middle parallelograms go flat.
+const MID_POSE_FRACTION: f64 = 0.6;
+/// Fractions of the width of its limits through which each relative angle turns, in the order of the trials.
+const SPAN_FRACTIONS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];
+/// Maximum turn of a relative angle, rad.
+const MAX_SPAN_RAD: f64 = 0.8;
+/// Direction of the end effector from the base pin in the middle of the motion, rad.
+const DIRECTION_RAD: f64 = 0.3 * PI;
+/// Durations of the motion, s; the first at which no limit of a drive is exceeded is taken.
+const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
-/// A gentle motion about the middle of the joint limits: reactionless where the machine can do that, else along a
-/// straight line. Where none is found, what was tried last, which the planner refuses in words.
+/// Returns a scenario with a small motion near the middle of the joint limits: reactionless if the machine can do that,
+/// otherwise along a straight line. If no trial succeeds, returns the last trial; the planner or the run then says why.
 ///
 /// # Errors
-/// If no task at all can be stated of it.
+/// If no task can be stated for the machine.
 pub fn around(machine: &Machine) -> Result<Scenario, ScenarioError> {
     let (mut slow, mut refused) = (None, None);
     for kind in ["reactionless", "minimum-norm"] {
-        for span in SPANS {
+        for span in SPAN_FRACTIONS {
             for is_round in [true, false] {
                 let task = task(machine, kind, span, is_round);
-                for time in TIMES {
+                for time in DURATIONS_S {
                     let scenario = stated(machine, &format!("{task}time = {time:?}\n"))?;
                     let plan = Run::new(&scenario).map(|run| run.plan().forecast.over.is_none());
                     match plan {
@@ -45,11 +46,11 @@ pub fn around(machine: &Machine) -> Result<Scenario, ScenarioError> {
             }
         }
     }
-    // The limits of the drives are passed, which the run tells; or else the planner says what is in the way.
+    // If limits of the drives are exceeded, the run reports it; otherwise the planner says what prevents the motion.
     slow.or(refused).map_or_else(|| stated(machine, &task(machine, "minimum-norm", 0.0, false)), Ok)
 }
 
-/// A machine with a task as a file has it.
+/// Returns a scenario of a machine with a task, given as TOML.
 fn stated(machine: &Machine, task: &str) -> Result<Scenario, ScenarioError> {
     let text = format!("machine = \"own\"\n[task]\n{task}");
     let scenario = Scenario::parse(&text, machine.name(), Some(&|_| Ok(machine.clone())))?;
@@ -57,7 +58,7 @@ fn stated(machine: &Machine, task: &str) -> Result<Scenario, ScenarioError> {
     Ok(Scenario { name: machine.name().to_owned(), title, ..scenario })
 }
 
-/// The task but for its time.
+/// Returns the task as TOML, without its time.
 fn task(machine: &Machine, kind: &str, span: f64, is_round: bool) -> String {
     let lambda = Inertia::of(machine).lambda();
     let (middle, step) = (middle(machine), step(machine, &lambda, span));
@@ -65,8 +66,8 @@ fn task(machine: &Machine, kind: &str, span: f64, is_round: bool) -> String {
         let q = PerDrive::from_fn(middle.len(), |k| middle[k] + share * step[k]);
         end_effector(machine.end_effector(), &DriveAngles(q).units())
     };
-    // So that the arm points where a picture has room for it.
-    let turn = TOWARDS - tip(0.0).arg();
+    // Turns the arm to where a picture has room for it.
+    let turn = DIRECTION_RAD - tip(0.0).arg();
     let b: f64 = middle.iter().zip(lambda.iter()).map(|(q, lambda)| lambda * (q + turn)).sum();
     let round = |x: f64| if is_round { (1e3 * x).round() / 1e3 } else { x };
     let place = |share: f64| {
@@ -77,37 +78,37 @@ fn task(machine: &Machine, kind: &str, span: f64, is_round: bool) -> String {
     format!("kind = \"{kind}\"\nfrom = {from:?}\nto = {to:?}\nb = {b:?}\n")
 }
 
-/// Every drive angle, rad, with relative angles beside the middle of their limits.
+/// Returns all drive angles, rad, with relative angles near the middle of their limits.
 fn middle(machine: &Machine) -> PerDrive {
     let beside = |i: usize| {
         let angle = &machine.angles()[i];
         let (low, width) = (angle.limits.start(), angle.limits.end() - angle.limits.start());
-        // What may turn without end is bent a little.
-        let at = if width >= TAU - 1e-9 { FRAC_PI_3 } else { low + SHARE * width };
+        // An angle without limits is set to a fixed bend.
+        let at = if width >= TAU - 1e-9 { FRAC_PI_3 } else { low + MID_POSE_FRACTION * width };
         at - angle.offset
     };
     spread(machine, beside, FRAC_PI_3)
 }
 
-/// What the drive angles change by, rad, while relative angles turn against each other and b stays.
+/// Returns changes of the drive angles, rad, by which relative angles turn in alternating directions and b stays.
 fn step(machine: &Machine, lambda: &PerDrive, span: f64) -> PerDrive {
     let turned = |i: usize| {
         let limits = &machine.angles()[i].limits;
-        let size = (span * (limits.end() - limits.start())).min(FARTHEST);
+        let size = (span * (limits.end() - limits.start())).min(MAX_SPAN_RAD);
         if i.is_multiple_of(2) { size } else { -size }
     };
     let way = spread(machine, turned, span);
     let (sum, all) = way.iter().zip(lambda.iter()).fold((0.0, 0.0), |(sum, all), (q, l)| (sum + q * l, all + l));
     match machine.drives() {
-        // Alone it has no b to hold.
+        // A single drive has no b to hold.
         1 => PerDrive::from([span]),
         n if all == 0.0 => PerDrive::from_fn(n, |k| way[k]),
         n => PerDrive::from_fn(n, |k| way[k] - sum / all),
     }
 }
 
-/// Drive angles that give every relative angle i the difference `of(i)`, rad; a drive that none of them reaches is
-/// `loose` from the one before it.
+/// Returns drive angles that give every relative angle i the difference `of(i)`, rad. A drive in no relative angle
+/// differs by `loose`, rad, from the one before it.
 fn spread(machine: &Machine, of: impl Fn(usize) -> f64, loose: f64) -> PerDrive {
     let n = machine.drives();
     let mut known: Vec<Option<f64>> = vec![None; n];

@@ -1,4 +1,4 @@
-//! A scenario as edits leave it, and edits in their order.
+//! Applies edits to a scenario, and sorts edits by step.
 
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
@@ -9,7 +9,8 @@ use crate::planning::posed::carried;
 use crate::query::{Queries, Whole};
 use crate::settings::range::shortened;
 
-/// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
+/// Returns the scenario with the settings or the push of an edit. Nothing is planned or checked; see [`checked`]. Drags
+/// and poses do not change the scenario.
 pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {
@@ -26,7 +27,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
     Ok(scenario)
 }
 
-/// A scenario that an edit of its settings has left sound.
+/// Returns the scenario if it is valid after an edit of its settings or of the push.
 pub(super) fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     match edit {
         Edit::Push { .. } | Edit::Set { .. } => sound(scenario, edit.name()),
@@ -39,7 +40,7 @@ pub(super) fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
     Ok(scenario)
 }
 
-/// A scenario as an edit before its first step leaves it.
+/// Returns the scenario with an edit applied before the first step.
 pub(super) fn amended(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
@@ -47,7 +48,8 @@ pub(super) fn amended(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Re
     Ok(Scenario { task: posed(scenario, Result::as_deref(&space).ok(), *b), ..scenario.clone() })
 }
 
-/// The task at another b: where that does not reach all its points, they turn with what is reached.
+/// Returns the task at another pose constant b, rad. Points turn with the reactionless workspace if b does not reach
+/// all of them.
 pub(super) fn posed(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) -> Task {
     if let Some(task) = scenario.task.posed(&scenario.machine, b) {
         return task;
@@ -62,24 +64,24 @@ pub(super) fn posed(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) -> T
     task
 }
 
-/// How many edits come before the first step, up to the first that leads the machine.
+/// Returns the number of edits at step 0 before the first drag.
 pub(super) fn opening<'a>(script: impl IntoIterator<Item = &'a TimedEdit>) -> usize {
     script.into_iter().take_while(|e| e.step == 0 && !e.edit.leads()).count()
 }
 
-/// Places of edits in the order of their steps; those of one step stay in theirs.
+/// Returns the indices of the edits sorted by step; edits of one step keep their order.
 pub(super) fn order_of(edits: &[TimedEdit]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..edits.len()).collect();
     order.sort_by_key(|i| edits[*i].step);
     order
 }
 
-/// Edits in the order of their steps; those of one step stay in theirs.
+/// Returns the edits sorted by step; edits of one step keep their order.
 pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
     order_of(edits).into_iter().map(|i| edits[i].clone()).collect()
 }
 
-/// Why a script cannot be carried out, and which of its edits is to blame, counted from 0, if it is one.
+/// Reason why a script cannot be carried out, and the index of the edit that causes it, if one does.
 pub(super) struct Failed {
     edit: Option<usize>,
     refusal: Refusal,
@@ -90,12 +92,12 @@ impl Failed {
         Self { edit: Some(edit), refusal }
     }
 
-    /// The refusal alone.
+    /// Returns the refusal without the edit.
     pub(super) fn refusal(self) -> Refusal {
         self.refusal
     }
 
-    /// Why, with the entry of the file that the script was made of.
+    /// Returns the refusal with the number of the edit in `edits`, which are in the order of the file.
     pub(super) fn named(self, edits: &[TimedEdit]) -> Refusal {
         let order = order_of(edits);
         match self.edit.and_then(|i| order.get(i)).and_then(|&i| Some((i, edits.get(i)?))) {
@@ -116,15 +118,15 @@ impl<E: Into<Refusal>> From<E> for Failed {
     }
 }
 
-/// A scenario with the edits before its first step made, up to the first that leads the machine, and their number; it
-/// carries no edits any more.
+/// Applies the edits at step 0 before the first drag. Returns the scenario, without any edits, and the number of edits
+/// applied.
 pub(super) fn folded(
     scenario: &Scenario,
     script: &[TimedEdit],
     queries: &Queries,
 ) -> Result<(Scenario, usize), Failed> {
     let count = opening(script);
-    // Every copy below would copy its edits too.
+    // Edits are removed first, because every copy below would copy them too.
     let mut start = scenario.without_edits();
     for (i, timed) in script[..count].iter().enumerate() {
         start = amended(&start, &timed.edit, queries).map_err(|refusal| Failed::at(i, refusal))?;

@@ -1,4 +1,4 @@
-//! What follows from a [`Brief`]: the edits of a machine that is kept balanced, and counterweights to take.
+//! Applies a [`Brief`]: edits that keep a machine balanced, and choices of counterweights.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -15,22 +15,24 @@ use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Mac
 use crate::session::scenario::Scenario;
 use crate::settings::change::{DEFAULT, at, join, leaves, one};
 
-/// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
-const MASS: f64 = 1.0;
-const PLACE: f64 = 5.0;
+/// Penalty on a change of the mass of a counterweight, 1/kg.
+const MASS_PENALTY_PER_KG: f64 = 1.0;
+/// Penalty on a change of the place of a counterweight, 1/m.
+const PLACE_PENALTY_PER_M: f64 = 5.0;
 
-/// What a kilogram counts beside a kg m² of momentum: enough that none is added for nothing.
-const GRAM: f64 = 1e-3;
+/// Weight of a kilogram in the objective, relative to a kg m² of Σ |D_k|: enough that no useless mass is added.
+const MASS_WEIGHT: f64 = 1e-3;
 
-/// A counterweight may be so much further back, m: what found it has rounded.
-const ROUNDING: f64 = 1e-6;
+/// A counterweight may be this much farther behind the root, m, because of rounding.
+const PLACE_TOLERANCE_M: f64 = 1e-6;
 
 impl Brief {
-    /// Counterweights like those that a machine has: of a plate of their density, as far back as the farthest of them.
+    /// Returns a brief for counterweights like those of a machine: discs of steel of their thickness, as far behind the
+    /// root as the farthest of them.
     pub fn of(machine: &Machine) -> Self {
         let weights = &machine.spec().counterweights;
         let plates = weights.iter().filter(|weight| weight.radius > 0.0);
-        // What each square metre weighs is all that is known of it: thickness, of steel.
+        // Only the mass per area of a disc is known; it gives the thickness if the disc is of steel.
         let thickest = plates
             .map(|weight| weight.mass / (PI * weight.radius.powi(2) * Disc::STEEL.density))
             .fold(None, |thickest: Option<f64>, thickness| {
@@ -40,8 +42,9 @@ impl Brief {
             let place = machine.links().iter().position(|own| own.name == link)?;
             Some(machine.resolved_links()[place].length)
         };
-        let is_usual =
-            |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length - ROUNDING);
+        let is_usual = |weight: &Counterweight| {
+            length(&weight.link).is_some_and(|length| weight.at >= -length - PLACE_TOLERANCE_M)
+        };
         let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
         Self {
             thickness: thickest.unwrap_or(Disc::STEEL.thickness),
@@ -50,11 +53,11 @@ impl Brief {
         }
     }
 
-    /// A change of a machine as an edit; one that is kept balanced with all that follows from it, each number as little
-    /// as it can from where it was in `start`.
+    /// Returns a change of a machine as an edit. If the machine is kept balanced, all free numbers follow, each as near
+    /// as possible to its value in `start`.
     ///
     /// # Errors
-    /// If there is no such machine, or none that is balanced: what stands in the way, and what would do.
+    /// If there is no such machine, or none that is balanced: what prevents it, and what would be feasible.
     pub fn edit(&self, machine: &Machine, start: &Machine, change: &Table) -> Result<Edit, String> {
         self.followed(machine, start, change).map(|change| Edit::Set { change })
     }
@@ -65,18 +68,19 @@ impl Brief {
         }
         let changed = machine.with(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
-        let asked = self.asked(&changed, start, &named);
-        let kept = keep(&changed, &asked).map_err(|why| why.to_string())?;
-        // All that may follow, whether it has or not: so the next edit of a drag replaces this one.
-        let follows = asked.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
+        let problem = self.free_numbers(&changed, start, &named);
+        let kept = keep(&changed, &problem).map_err(|why| why.to_string())?;
+        // All numbers that are free, changed or not, so that the next edit of a drag replaces this one.
+        let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
         let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
         Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &one(&key, value))))
     }
 
-    /// What may change: the counterweights of a machine that has some which are not fixed, else the centres of mass of its links.
-    fn asked(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
+    /// Returns the numbers that may change: mass and place of counterweights if one is not fixed, otherwise the centres
+    /// of mass of links. Numbers named by the edit are fixed.
+    fn free_numbers(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
         let spec = machine.spec();
         let free: Vec<(Parameter, &str)> = match spec.counterweights.iter().all(|weight| weight.fixed) {
             true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),
@@ -90,7 +94,7 @@ impl Brief {
                     .collect()
             }
         };
-        // Those of the paper are for nine links.
+        // The penalties of the paper are for nine links.
         let penalties = self.penalties.penalty(spec.links.len()).unwrap_or_default();
         let adjusted = |(parameter, link): (Parameter, &str)| {
             let is_fixed = matches!(parameter.body, Body::Counterweight(i) if spec.counterweights[i].fixed);
@@ -103,9 +107,9 @@ impl Brief {
                     _ => Hold::Free,
                 },
                 penalty: match (parameter.quantity, parameter.body) {
-                    (Quantity::Mass, _) => MASS,
+                    (Quantity::Mass, _) => MASS_PENALTY_PER_KG,
                     (_, Body::Link(j)) => penalties.get(j).copied().unwrap_or(1.0),
-                    _ => PLACE,
+                    _ => PLACE_PENALTY_PER_M,
                 },
                 from: parameter.value(spec).unwrap_or_default(),
             }
@@ -120,7 +124,8 @@ impl Brief {
         keep.measured_from(start)
     }
 
-    /// Where a counterweight may go: as far as on the front, and no nearer than where it is.
+    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and to
+    /// that at the start. The counterweight stays clear of pins in this range.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> Hold {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
@@ -133,8 +138,8 @@ impl Brief {
         Hold::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
     }
 
-    /// Between which places a counterweight of its present radius stays clear of the pins that it is between, m; none if
-    /// it is not clear of them now.
+    /// Returns the range of places, m, in which a counterweight of its present radius stays clear of the pins on either
+    /// side. Returns `None` if it is not clear of them now.
     fn clear_of_pins(&self, pins: &[f64], weight: &Counterweight) -> Option<[f64; 2]> {
         let away = self.clearance? + weight.radius;
         let behind = pins.iter().filter(|pin| **pin <= weight.at).fold(f64::NEG_INFINITY, |most, pin| most.max(*pin));
@@ -143,7 +148,7 @@ impl Brief {
         (from..=to).contains(&weight.at).then_some([from, to])
     }
 
-    /// Counterweights that balance the links alone: what less inertia costs in mass, in so many machines.
+    /// Returns the Pareto front of added mass against inertia, for counterweights alone, as `count` machines.
     ///
     /// # Errors
     /// If nothing within the bounds balances it.
@@ -151,12 +156,13 @@ impl Brief {
         front(machine, &self.weighing(machine), count)
     }
 
-    /// Counterweights, and ratios of rotors, with which what the drives give to the base, Σ |D_k|, is least.
+    /// Returns the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
+    /// base.
     ///
     /// # Errors
     /// If nothing within the bounds balances the machine.
     pub fn stillest(&self, machine: &Machine) -> Result<Placed, NoWeights> {
-        let objective = Objective { momentum: 1.0, mass: GRAM, ..Objective::mass() };
+        let objective = Objective { momentum: 1.0, mass: MASS_WEIGHT, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
         let rotors = drives.filter_map(|(drive, of)| {
             let ends = *self.ratio.get(&of.name)?;
@@ -165,7 +171,7 @@ impl Brief {
         place(machine, &Weighing { objective, rotors: rotors.collect(), ..self.weighing(machine) })
     }
 
-    /// What is asked of counterweights of a machine: the lightest.
+    /// Returns the problem of the lightest counterweights for a machine within the bounds of the brief.
     pub fn weighing(&self, machine: &Machine) -> Weighing {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
@@ -183,7 +189,7 @@ impl Brief {
     }
 }
 
-/// The edit that makes a link so long, m; with it all that share its length.
+/// Returns the edit that sets the length of a link, m, and of all links that share it.
 pub fn length_of(link: &Link, to: f64) -> Edit {
     match &link.length {
         Length::Named(name) => Edit::at(&["length", name], to),
@@ -191,10 +197,11 @@ pub fn length_of(link: &Link, to: f64) -> Edit {
     }
 }
 
-/// A change of the brief of a scenario; where a machine that is not balanced is kept so from now on, with what balances it.
+/// Returns the edit that changes the brief of a scenario. If balance is kept from now on, the edit also balances the
+/// machine.
 ///
 /// # Errors
-/// If the brief cannot be changed so, or nothing balances the machine: what stands in the way, and what would do.
+/// If the brief cannot be changed so, or nothing balances the machine: what prevents it, and what would be feasible.
 pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     let next = scenario.with(change).map_err(|why| why.to_string())?;
     let begins = next.design.keep_balanced && !scenario.design.keep_balanced;
@@ -205,15 +212,15 @@ pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     Ok(Edit::Set { change: join(follows, change) })
 }
 
-/// The edit that makes a machine another one with the same links: numbers of these, lengths, and counterweights; none where
-/// it is that.
+/// Returns the edit that turns the machine into another one with the same links: numbers of links, lengths, and
+/// counterweights. Returns `None` if nothing differs.
 pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
         let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
         let keys: BTreeSet<String> = before.keys().chain(after.keys()).cloned().collect();
         let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key));
-        // What a file leaves out is nought.
+        // A key that is left out counts as zero.
         let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| 0.0.into());
         changed.map(|key| at(&["link", &was.name, &key], value(&key))).collect::<Vec<_>>()
     });
@@ -228,8 +235,8 @@ pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     (!change.is_empty()).then_some(Edit::Set { change })
 }
 
-/// The edit that gives a machine the counterweights of another, what that holds, with which they balance it, and the
-/// ratios of its rotors. How numbers of the counterweights before were held is forgotten where it would be said of others.
+/// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. Holds of
+/// numbers of counterweights are removed if the counterweights are on other links.
 pub fn weights_of(scenario: &Scenario, of: &Machine) -> Edit {
     let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());

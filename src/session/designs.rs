@@ -1,4 +1,4 @@
-//! [`Designed`]: the machine as one change after the other has left it.
+//! [`Designed`]: the states of the machine after each of its changes.
 
 use toml::Table;
 
@@ -9,27 +9,27 @@ use super::refusal::Refusal;
 use super::scenario::Scenario;
 use crate::mechanics::machine::{Machine, is_of_machine};
 
-/// A state of a design.
+/// A state of the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Designed {
-    /// How many changes of the machine have led to it.
+    /// Number of changes of the machine up to this state.
     pub changes: usize,
-    /// Steps since the start at which it holds.
+    /// Step from which it holds.
     pub step: u64,
-    /// The change that made it, in words; empty of the first, which is the scenario's machine.
+    /// Description of the change that made it; empty for the first state, the machine of the scenario.
     pub words: String,
     /// The machine.
     pub machine: Machine,
 }
 
-/// The most states that are told apart; of more the first and the newest.
-const MOST: usize = 200;
+/// Maximum number of states that are kept; of more, the first and the newest.
+const MAX_STATES: usize = 200;
 
-/// The states of a scenario's machine in the order of its edits, the first before all of them. What a drag passes while
-/// time runs is one change.
+/// Returns the states of a scenario's machine in the order of its edits, beginning before the first edit. All edits of
+/// a drag while time passes count as one change.
 ///
 /// # Errors
-/// If an edit cannot be made of the machine.
+/// If an edit cannot be applied to the machine.
 pub fn designs(scenario: &Scenario) -> Result<Vec<Designed>, Refusal> {
     let mut now = scenario.without_edits();
     let mut all = vec![Designed { changes: 0, step: 0, words: String::new(), machine: now.machine.clone() }];
@@ -45,14 +45,14 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<Designed>, Refusal> {
         changes += 1;
         let (step, words) = (timed.step, Edit::Set { change: of_machine }.title());
         all.push(Designed { changes, step, words, machine: now.machine.clone() });
-        if all.len() > MOST {
+        if all.len() > MAX_STATES {
             all.remove(1);
         }
     }
     Ok(all)
 }
 
-/// Whether an edit is on the way of a drag that the next one goes on with; steps last so long, s.
+/// Whether an edit belongs to a drag that the next edit continues. `step` is the step size, s.
 fn is_dragged_on(timed: &TimedEdit, next: &TimedEdit, step: f64) -> bool {
     let later = next.step - timed.step;
     later > 0 && later as f64 * step <= GESTURE + 1e-9 && timed.edit.is_replaced_by(&next.edit)

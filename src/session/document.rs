@@ -1,4 +1,4 @@
-//! A [`Document`]: everything that makes a run, and what an edit before its first step makes of it.
+//! A [`Document`]: everything that determines a run, and how an edit before its first step changes it.
 
 use std::sync::Arc;
 
@@ -12,62 +12,62 @@ use crate::query::Sequence;
 use crate::session::scenario::{Bookmark, Scenario};
 use crate::simulation::frame::Frame;
 
-/// Hears how much is done, from 0 to 1, and says whether the rest is still wanted.
+/// Callback that receives the progress, from 0 to 1, and returns whether the work is to go on.
 pub use crate::query::Watch;
 
-/// Frames between two words to whoever watches.
+/// Number of frames between two progress reports.
 pub(super) const WORD: usize = 256;
 
-/// What is kept beside a run.
+/// Kind of data that is saved with a run and on which no frame depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// Names of instants.
+    /// Named instants.
     Bookmarks,
-    /// Runs that it left.
+    /// Earlier courses of the run that other edits have replaced.
     Branches,
 }
 
-/// Everything that makes a run, and what is kept beside it: what undo restores and what is saved.
+/// Everything that determines a run, with its bookmarks and branches. Undo restores a document; a saved session is one.
 #[derive(Clone, Debug)]
 pub(super) struct Document {
-    /// Without edits and what is kept; they stand below.
+    /// Scenario without its edits, bookmarks and branches; these are the fields below.
     pub scenario: Arc<Scenario>,
-    /// None beyond `end`.
+    /// Edits in the order of steps, none after `end`.
     pub script: Script,
-    /// Steps done.
+    /// Number of steps done.
     pub end: u64,
-    /// Instants to find again, by time.
+    /// Bookmarks in the order of time.
     pub bookmarks: Arc<Vec<Bookmark>>,
-    /// How it went on before somebody went back, the oldest first.
+    /// Courses of the run that were replaced when the user went back in time and edited, the oldest first.
     pub branches: Arc<Vec<Left>>,
 }
 
-/// What a document comes to.
+/// Result of running a document.
 pub(super) struct Performed {
-    /// At its end.
+    /// Run at its last step.
     pub run: Run,
-    /// One a step.
+    /// One frame for each step.
     pub frames: Sequence<Frame>,
     pub machines: Machines,
 }
 
-/// A branch that was left: the same scenario with another script.
+/// A branch: the same scenario with a script that was replaced by another one.
 #[derive(Clone, Debug)]
 pub(super) struct Left {
     pub script: Script,
-    /// Steps to its end.
+    /// Number of steps to its end.
     pub end: u64,
-    /// How long a step lasts in it, s.
+    /// Step size of the branch, s.
     pub step: f64,
 }
 
 impl Document {
-    /// One beside which nothing is kept.
+    /// Returns a document without bookmarks and branches.
     pub fn new(scenario: Scenario, script: Script, end: u64) -> Self {
         Self { scenario: Arc::new(scenario), script, end, bookmarks: Arc::default(), branches: Arc::default() }
     }
 
-    /// Keeps this beside the run as another one does.
+    /// Takes the bookmarks or the branches of another document over.
     pub fn keep_as(&mut self, other: &Self, kept: Kept) {
         match kept {
             Kept::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
@@ -75,7 +75,8 @@ impl Document {
         }
     }
 
-    /// Runs it from its start to its end.
+    /// Runs the document from its first to its last step, with the queries of a `known` run, if there is one. If
+    /// `patient`, a task that does not fit its machine waits at the first step instead of failing.
     pub fn perform(&self, known: Option<&Run>, patient: bool, watch: Watch<'_>) -> Result<Performed, Failed> {
         let (mut frames, mut machines) = (Sequence::default(), Machines::default());
         let see = |run: &Run, frame: &Frame| {
@@ -88,8 +89,8 @@ impl Document {
         Ok(Performed { run, frames, machines })
     }
 
-    /// Whether it gives the same frames as another because nothing else differs than keys on which no frame depends, and
-    /// how far it has got; then the scenario of the run with those keys as this one leaves them.
+    /// Compares scenario and script with those of another document. If they differ at most in settings on which no
+    /// frame depends, returns the scenario of the run with these settings as in `self`; otherwise `None`.
     pub fn aside_of(&self, other: &Self) -> Option<Scenario> {
         fn moving(document: &Document) -> impl Iterator<Item = &TimedEdit> {
             document.script.in_order().into_iter().filter(|timed| !timed.edit.is_aside())
@@ -101,12 +102,13 @@ impl Document {
         asides.try_fold(Scenario::clone(&self.scenario), |now, edit| changed(&now, &edit).ok())
     }
 
-    /// With an edit before the first step.
+    /// Returns the document with an edit inserted before the first step.
     pub fn amended(&self, timed: &TimedEdit) -> Self {
         let mut document = self.clone();
         let mut timed = timed.clone();
         if let Some(change) = timed.edit.take("duration") {
-            // A saved session says there how long it took, so no edit may say otherwise.
+            // A saved session stores its length as `duration`, so this setting changes the scenario and no edit holds
+            // it.
             if let Ok(scenario) = document.scenario.with(&change) {
                 document.scenario = Arc::new(scenario);
             }
@@ -117,7 +119,7 @@ impl Document {
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if timed.edit.sets_path() && document.script.is_led() {
-            // A new plan puts a machine that was led back on its path: the edits that led it go, the settings stay.
+            // A new plan puts a dragged machine back on its path: the edits that dragged it are dropped, settings stay.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.leads()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
@@ -129,10 +131,10 @@ impl Document {
             script = kept;
             document.end = 0;
         }
-        // An edit that leads the machine from the start does so from where this one puts it.
+        // It goes before the first drag, so that a drag at step 0 starts from the pose that this edit gives.
         let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
-        let says_nothing = timed.edit.part("task").is_some_and(toml::Table::is_empty);
-        if !says_nothing {
+        let sets_no_key = timed.edit.part("task").is_some_and(toml::Table::is_empty);
+        if !sets_no_key {
             script.insert(place.unwrap_or(script.len()), timed.clone());
         }
         document.script = document.script.replaced(script);

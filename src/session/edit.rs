@@ -1,4 +1,4 @@
-//! [`Edit`]: every change a person can make, as data. A session is its scenario and its edits, nothing else.
+//! [`Edit`]: every change that the user can make, as data. Scenario and edits determine a session completely.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
@@ -16,50 +16,50 @@ use crate::settings::range::{Check, shortened};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Edit {
-    /// Sends the end effector to a point, m; the machine follows on its plane.
+    /// Drags the target of the end effector to a point, m; the machine follows with b held.
     DragTarget {
         /// m.
         x: f64,
         /// m.
         y: f64,
     },
-    /// Sends the relative joint angles to (a₁, a₂), rad: a hand that turns a link; the machine stays on its plane.
+    /// Drags the relative joint angles to (a₁, a₂), rad, by turning a link; b is held.
     DragAngles {
         /// rad.
         a1: f64,
         /// rad.
         a2: f64,
     },
-    /// Pulls a point of a link to a place, m, while the end effector and b stay: what four drives and more have left.
+    /// Pulls a point of a link to a place, m, while the end effector and b are held; needs four drives or more.
     PullLink {
-        /// Its name.
+        /// Name of the link.
         link: String,
-        /// m from its root.
+        /// Distance of the point from the root of the link, m.
         along: f64,
         /// m.
         x: f64,
         /// m.
         y: f64,
     },
-    /// Sends the pose constant to b, rad, in motion: the base feels n_B = −D_1 b̈.
+    /// Moves the pose constant to b, rad, while time passes: the base feels n_B = −D_1 b̈.
     SlideB {
         /// rad.
         b: f64,
     },
-    /// Puts the machine on the plane b, rad, without a motion between.
+    /// Puts the machine on the plane b, rad, at once and without a motion.
     PoseB {
         /// rad.
         b: f64,
     },
-    /// A force held at the end effector from now on, N: a hand that pushes; zero lets go.
+    /// Applies a constant force to the end effector from this step on, N; zero removes it.
     Push {
         /// N.
         x: f64,
         /// N.
         y: f64,
     },
-    /// Settings laid over the scenario, as a file has them: of task, plant, base, control, tolerance, design, machine and
-    /// of the scenario itself; `default` takes a key out.
+    /// Changes settings as a file states them: of task, plant, base, control, tolerance, design, machine and of the
+    /// scenario itself. The value `default` removes a key.
     Set {
         /// Such as `{ task = { shape = "spline" }, link = { 5 = { com = -0.02 } } }`.
         change: Table,
@@ -77,17 +77,17 @@ pub struct TimedEdit {
 }
 
 impl<'de> Deserialize<'de> for TimedEdit {
-    /// By hand, because a flattened enum would accept keys that it does not know.
+    /// Written by hand, because a flattened enum would accept unknown keys.
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         Self::from_table(Table::deserialize(from)?).map_err(D::Error::custom)
     }
 }
 
 impl TimedEdit {
-    /// An entry of a file.
+    /// Reads an `[[edit]]` entry of a file.
     ///
     /// # Errors
-    /// What is wrong with it, and what would be right.
+    /// If it is not a valid edit: what is wrong, and what would be right.
     pub fn from_table(mut table: Table) -> Result<Self, String> {
         let step = table.remove("step").ok_or("missing field `step`")?;
         let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
@@ -99,7 +99,7 @@ impl TimedEdit {
         Ok(Self { step, edit })
     }
 
-    /// As an entry of a file.
+    /// Returns the edit as an `[[edit]]` entry of a file.
     ///
     /// # Panics
     /// Never: every edit can be written.
@@ -109,22 +109,22 @@ impl TimedEdit {
 }
 
 impl Edit {
-    /// One setting by its path, such as `plant.payload.mass`.
+    /// Returns an edit of one setting by its path, such as `plant.payload.mass`.
     pub fn set(path: &str, value: impl Into<Value>) -> Self {
         Self::Set { change: change::one(path, value) }
     }
 
-    /// One setting by the parts of its path.
+    /// Returns an edit of one setting by the parts of its path.
     pub fn at(path: &[&str], value: impl Into<Value>) -> Self {
         Self::Set { change: change::at(path, value) }
     }
 
-    /// Settings of one part, such as `task`.
+    /// Returns an edit of settings of one part, such as `task`.
     pub fn of(part: &str, change: Table) -> Self {
         Self::Set { change: Table::from_iter([(part.to_owned(), change.into())]) }
     }
 
-    /// What it sets.
+    /// Returns the settings that it changes.
     fn settings(&self) -> Option<&Table> {
         match self {
             Self::Set { change } => Some(change),
@@ -132,48 +132,48 @@ impl Edit {
         }
     }
 
-    /// What it sets of a part.
+    /// Returns the settings of one part that it changes.
     pub fn part(&self, part: &str) -> Option<&Table> {
         self.settings()?.get(part)?.as_table()
     }
 
-    /// A number of the scenario's own that it sets.
+    /// Returns the number that it gives to a key of the scenario itself, such as `step`.
     pub(super) fn own_number(&self, key: &str) -> Option<f64> {
         change::number(self.settings()?.get(key)?)
     }
 
-    /// Takes a key of the scenario's own out of what it sets; as a change of its own, if it is there.
+    /// Removes a key of the scenario itself from the edit. Returns the key as a change of its own, if it was there.
     pub(super) fn take(&mut self, key: &str) -> Option<Table> {
         let Self::Set { change } = self else { return None };
         Some(Table::from_iter([(key.to_owned(), change.remove(key)?)]))
     }
 
-    /// Whether it is an edit of settings without any.
+    /// Whether it is a [`Set`](Self::Set) without settings.
     pub(super) fn sets_nothing(&self) -> bool {
         self.settings().is_some_and(Table::is_empty)
     }
 
-    /// Whether it sets something of one of these parts.
+    /// Whether it changes a setting of one of these parts.
     pub fn sets(&self, parts: &[&str]) -> bool {
         self.settings().is_some_and(|change| change.keys().any(|key| parts.contains(&key.as_str())))
     }
 
-    /// Whether it sets where the path goes, or sends a machine that is led back to it: anything of the task but its time.
+    /// Whether it changes the path, or sends a dragged machine back to it: any setting of the task except its time.
     pub fn sets_path(&self) -> bool {
         self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
     }
 
-    /// What it reaches, as its keys say.
+    /// Returns the largest effect of its keys; `Motion` for an edit that is not of settings.
     pub fn effect(&self) -> Effect {
         self.settings().map_or(Effect::Motion, effect_of)
     }
 
-    /// Whether no frame depends on what it sets, and it holds for the run as a whole.
+    /// Whether no frame depends on its settings; they then hold for the whole run.
     pub fn is_aside(&self) -> bool {
         self.effect() == Effect::Aside
     }
 
-    /// What it sets of the keys that no frame depends on.
+    /// Returns the settings that it changes and on which no frame depends, if there are any.
     pub(super) fn asides(&self) -> Option<Self> {
         let change = self.settings()?;
         let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::Aside;
@@ -186,10 +186,10 @@ impl Edit {
         self.sets(&PARTS)
     }
 
-    /// Whether its own numbers may stand there; what it sets is checked where the rest of the scenario is known.
+    /// Checks the range of the numbers of a drag or pose. Settings are checked together with the rest of the scenario.
     ///
     /// # Errors
-    /// The first that may not.
+    /// The first number that is out of range.
     pub fn check(&self) -> Result<(), Check> {
         let found: Vec<Check> = match self {
             Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
@@ -203,20 +203,20 @@ impl Edit {
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
     }
 
-    /// Whether what it sets holds for the whole run, from its first step: what is planned, and what no frame depends on.
+    /// Whether its settings hold for the whole run: those of the plan, and those on which no frame depends.
     pub fn is_of_the_whole(&self) -> bool {
         self.is_of_the_start() || self.is_aside()
     }
 
-    /// Why an edit [of the start](Self::is_of_the_start) is refused later.
+    /// Refusal of an edit [of the start](Self::is_of_the_start) after the first step.
     pub(super) const AT_START: &str = "task, time, base and step can change only before the first step: want step = 0";
 
-    /// Whether it changes what a motion is planned from, so that it can stand only before the first step.
+    /// Whether it changes the plan of the motion, so that it is allowed only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
         self.effect() == Effect::Plan
     }
 
-    /// Whether a later edit sets all that this one sets, so that only the last edit of a drag is kept.
+    /// Whether a later edit overwrites everything that this one sets, so that only the last edit of a drag is kept.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::Set { change: earlier }, Self::Set { change: later }) => change::covers(later, earlier),
@@ -224,7 +224,7 @@ impl Edit {
         }
     }
 
-    /// Which part of a scenario it changes, for messages.
+    /// Returns the name of the part of the scenario that it changes, for messages.
     pub(super) fn name(&self) -> &str {
         match self {
             Self::DragTarget { .. } => "target",
@@ -240,17 +240,17 @@ impl Edit {
         }
     }
 
-    /// Whether it sends the machine somewhere: the pointer or the slider.
+    /// Whether it drags the machine: by the target, the angles, a link, or the slider of b.
     pub fn leads(&self) -> bool {
         matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::PullLink { .. } | Self::SlideB { .. })
     }
 
-    /// Whether it sets limits of joints.
+    /// Whether it changes joint limits.
     pub fn sets_limits(&self) -> bool {
         self.sets(&["limits"])
     }
 
-    /// The first joint limit that it sets, as it would be typed.
+    /// Returns key and value of the first joint limit that it changes, as the user would type them.
     pub(super) fn limits(&self) -> Option<(String, String)> {
         let (name, value) = self.part("limits")?.iter().next()?;
         Some((format!("limits.{name}"), change::typed(value)))
@@ -264,7 +264,7 @@ impl Edit {
         }
     }
 
-    /// What it does, for menus and the event log.
+    /// Describes the edit, for menus and the event log.
     pub fn title(&self) -> String {
         match self {
             Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
@@ -281,7 +281,7 @@ impl Edit {
     }
 }
 
-/// All of them at once, in words.
+/// Describes a change of the whole list of counterweights.
 fn counterweights(value: &Value) -> String {
     let mass = |weight: &Value| weight.get("mass").and_then(change::number).unwrap_or_default();
     match value.as_array() {
@@ -290,7 +290,7 @@ fn counterweights(value: &Value) -> String {
     }
 }
 
-/// What settings do.
+/// Describes a change of settings.
 fn title_of(change: &Table) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
     match task {
@@ -311,7 +311,7 @@ fn title_of(change: &Table) -> String {
         let back = value.as_str() == Some(change::DEFAULT);
         match (path.as_str(), number) {
             ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
-            // The task is what most edits are of: it goes without saying.
+            // Most edits are of the task, so its name is left out.
             (path, number) => {
                 let words = match is_of_machine(path) {
                     true => path.to_owned(),

@@ -1,14 +1,14 @@
-//! What is wrong with the edits of a file, as far as it can be told without planning or simulating.
+//! Checks the edits of a file without planning or simulating.
 
 use super::changes::{changed, opening, order_of};
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use crate::session::scenario::Scenario;
 
-/// Looks at every edit of a scenario in the order of steps: whether its numbers and what it sets may stand there.
+/// Checks numbers and settings of every edit of a scenario, in the order of steps.
 ///
 /// # Errors
-/// The entry to blame, counted from 0, and what is wrong with it.
+/// The index of the first wrong entry, and what is wrong with it.
 pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
     let edits = &scenario.edits;
     if edits.is_empty() {

@@ -1,5 +1,5 @@
-//! What happens in a run, in words: changes by hand, the payload, limits, the base, the target. The time line of the
-//! window and a recording tell the same.
+//! Events of a run, in words: edits by the user, payload, limits, base, target. The time line of the window and a
+//! recording show the same events.
 
 use std::mem::discriminant;
 use std::sync::Arc;
@@ -13,22 +13,22 @@ use crate::session::scenario::Bookmark;
 use crate::settings::number::{Short, significant};
 use crate::simulation::frame::{Frame, Phase, Reach};
 
-/// What an event is about.
+/// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A hand has changed something.
+    /// The user has changed something.
     Edit,
-    /// A hand wants to find this instant again.
+    /// The user has set a bookmark.
     Bookmark,
-    /// The motion, the payload, or what becomes good again.
+    /// A change of the motion or of the payload, or the end of a warning.
     Note,
     /// The target comes within reach.
     Within,
-    /// It goes out of reach.
+    /// The target goes out of reach.
     Beyond,
     /// Something is at its limit, or the base begins to feel the arm.
     Warning,
-    /// The base feels most.
+    /// |n_B| has its peak.
     Peak,
     /// An audit fails.
     Fault,
@@ -39,34 +39,36 @@ pub enum Kind {
 pub struct Event {
     /// Steps since the start.
     pub step: u64,
-    /// What happens.
+    /// Description.
     pub words: String,
-    /// What it is about.
+    /// Kind.
     pub kind: Kind,
 }
 
-/// Changes go on as one gesture while they come so close, s: a screen brings one a frame.
+/// Edits form one gesture while they follow each other within this time, s; a drag sends one for each picture.
 pub(super) const GESTURE: f64 = 0.25;
 
-/// The base has to feel nothing for so long, s, before it is said that it does: a moment also passes zero.
-const QUIET: f64 = 0.05;
+/// The base has to feel nothing for this long, s, before an event says so, because a moment may only pass through zero.
+const MIN_QUIET_S: f64 = 0.05;
 
-/// A motor is at its limit from this share of it on, and away from it below the other.
-const AT_LIMIT: [f64; 2] = [0.999, 0.98];
+/// A motor is at its torque limit from this fraction of it on, until it is below the second fraction (hysteresis).
+const AT_LIMIT_FROM: f64 = 0.999;
+/// See [`AT_LIMIT_FROM`].
+const AT_LIMIT_UNTIL: f64 = 0.98;
 
-/// What hands have done, each gesture as one event, at its beginning; steps last so long, s.
+/// Returns the gestures of the user, each as one event at its first step. `step` is the step size, s.
 pub fn gestures(edits: &[TimedEdit], step: f64) -> Vec<Event> {
     let mut order: Vec<&TimedEdit> = edits.iter().collect();
     order.sort_by_key(|timed| timed.step);
     grouped(order, step).told().collect()
 }
 
-/// The first of them, of edits in the order of steps.
+/// Returns the first gesture of edits in the order of steps.
 pub(super) fn first_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
     grouped(edits.iter().copied(), step).told().next()
 }
 
-/// The last of them.
+/// Returns the last gesture of edits in the order of steps.
 pub(super) fn last_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
     grouped(edits.iter().copied(), step).told().next_back()
 }
@@ -77,20 +79,20 @@ fn grouped<'a>(edits: impl IntoIterator<Item = &'a TimedEdit>, step: f64) -> Ges
     all
 }
 
-/// The gestures of edits that come in the order of steps.
+/// Gestures of edits that come in the order of steps.
 #[derive(Clone, Debug)]
 pub struct Gestures {
-    /// How long a step lasts, s.
+    /// Step size, s.
     step: f64,
     all: Vec<Gesture>,
-    /// The last of them before the newest edit, if that goes on with it.
+    /// The last gesture without the newest edit, if that edit continues it.
     before: Option<Gesture>,
 }
 
 impl Gestures {
-    /// What they are, one after the other.
+    /// Returns the gestures as events, in order.
     pub fn told(&self) -> impl DoubleEndedIterator<Item = Event> {
-        self.all.iter().map(|gesture| gesture.told(self.step))
+        self.all.iter().map(|gesture| gesture.event(self.step))
     }
 
     fn see(&mut self, timed: &TimedEdit) {
@@ -105,7 +107,7 @@ impl Gestures {
 
 impl Growing for Gestures {
     type Item = TimedEdit;
-    /// How long a step lasts, s.
+    /// Step size, s.
     type Input = f64;
 
     fn begin(step: &f64) -> Self {
@@ -127,14 +129,14 @@ impl Growing for Gestures {
     }
 }
 
-/// Edits that are one: a push until it is let go, a drag until the pointer rests.
+/// Edits that form one gesture: a push until its force is zero, a drag until the pointer rests.
 #[derive(Clone, Debug)]
 struct Gesture {
     first: u64,
     last: TimedEdit,
-    /// The largest push, N.
+    /// Largest force, N.
     push: f64,
-    /// Edits up to its last.
+    /// Number of edits up to the last one of this gesture.
     count: usize,
 }
 
@@ -148,7 +150,7 @@ fn force(edit: &Edit) -> f64 {
 impl Gesture {
     fn goes_on(&self, next: &TimedEdit, step: f64) -> bool {
         let last = &self.last.edit;
-        // A push lasts until it is let go, however still the hand is.
+        // A push lasts until its force is zero, however long the pointer rests.
         let goes_on = match &next.edit {
             Edit::Push { .. } => force(&next.edit) > 0.0 && force(last) > 0.0,
             _ => (next.step - self.last.step) as f64 * step <= GESTURE + 1e-9,
@@ -156,7 +158,7 @@ impl Gesture {
         goes_on && last.is_replaced_by(&next.edit)
     }
 
-    fn told(&self, step: f64) -> Event {
+    fn event(&self, step: f64) -> Event {
         let TimedEdit { step: last, edit } = &self.last;
         let words = match edit {
             Edit::Push { .. } if *last > self.first => format!("push with up to {:.2} N", self.push),
@@ -170,7 +172,7 @@ impl Gesture {
     }
 }
 
-/// Bookmarks as events.
+/// Returns bookmarks as events. `step` is the step size, s.
 pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
     let event = |mark: &Bookmark| Event {
         step: (mark.time / step).round() as u64,
@@ -180,19 +182,19 @@ pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
     bookmarks.iter().map(event).collect()
 }
 
-/// What frames tell, read one after the other, one a step from the start on.
+/// Events found in frames, which are read in order, one for each step from the start on.
 #[derive(Clone, Debug)]
 pub struct Watched {
-    /// How long a step lasts, s.
+    /// Step size, s.
     step: f64,
     machines: Machines,
     events: Arc<Vec<Event>>,
     now: Seen,
-    /// Before the newest frame, which an edit may change.
+    /// State before the newest frame, which an edit may change.
     before: Seen,
 }
 
-/// What is known of the frames so far.
+/// State after the frames so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     frames: usize,
@@ -205,16 +207,17 @@ struct Seen {
     past: bool,
     /// Motors at their limits, one bit for each.
     limited: u32,
-    /// Whether the base has felt something, ever and of late; and since when it has not.
+    /// Whether the base has felt the arm: at any time, and recently.
     felt: [bool; 2],
+    /// Step since which the base has felt nothing.
     quiet: Option<u64>,
-    /// When the arm exerted most on the base, and how much, N m.
+    /// Step at which |n_B| was largest, and its value there, N m.
     peak: (u64, f64),
 }
 
 impl Growing for Watched {
     type Item = Frame;
-    /// How long a step lasts, s, and which machine there was when.
+    /// Step size, s, and the machine at each step.
     type Input = (f64, Machines);
 
     fn begin((step, machines): &Self::Input) -> Self {
@@ -253,23 +256,23 @@ impl Growing for Watched {
 }
 
 impl Watched {
-    /// What has happened, apart from what hands did.
+    /// Returns the events that are not edits of the user.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// The same, to be kept.
+    /// Returns the same events as a shared value.
     pub fn shared_events(&self) -> Shared<Vec<Event>> {
         Shared(self.events.clone())
     }
 
-    /// When the arm exerted most on its base.
+    /// Returns the event of the largest |n_B|.
     pub fn peak(&self) -> Event {
         let (step, moment) = self.now.peak;
         Event { step, words: format!("peak |n_B| {} N m", significant(moment)), kind: Kind::Peak }
     }
 
-    /// Takes one more instant of a run whose frames are not kept. Steps last so long, s, and it has this machine by then.
+    /// Reads one more frame of a run whose frames are not kept, with the step size, s, and the machine at that step.
     pub fn see(&mut self, frame: &Frame, (step, machine): (f64, &Machine)) {
         self.step = step;
         self.machines.hold(frame.step, machine);
@@ -301,7 +304,7 @@ impl Watched {
         Arc::make_mut(&mut self.events).push(Event { step, words: words.into(), kind });
     }
 
-    /// What becomes of payload and wheel, and the first time that an audit fails.
+    /// Adds events of payload and wheel, and the first failure of an audit.
     fn carried(&mut self, frame: &Frame) {
         let step = frame.step;
         match (self.now.held.replace(frame.loaded), frame.loaded) {
@@ -325,17 +328,17 @@ impl Watched {
         }
     }
 
-    /// Motors that come to their limits, and the first joint that passes its own.
+    /// Adds events of motors that come to their torque limits, and of the first joint that passes its limit.
     fn limits(&mut self, frame: &Frame, machine: &Machine) {
         let drives = &machine.spec().drives;
         for (k, (torque, drive)) in frame.torque.iter().zip(drives).enumerate() {
             let (Some(limit), bit) = (drive.torque_limit, 1 << k) else { continue };
             let share = torque.abs() / limit;
-            if share >= AT_LIMIT[0] && self.now.limited & bit == 0 {
+            if share >= AT_LIMIT_FROM && self.now.limited & bit == 0 {
                 self.now.limited |= bit;
                 let text = format!("drive {} comes to its torque limit, {} N m", k + 1, Short(limit));
                 self.add(frame.step, Kind::Warning, text);
-            } else if share < AT_LIMIT[1] {
+            } else if share < AT_LIMIT_UNTIL {
                 self.now.limited &= !bit;
             }
         }
@@ -347,7 +350,7 @@ impl Watched {
         }
     }
 
-    /// When the base begins to feel the arm, and when it feels nothing again.
+    /// Adds events at which the base begins to feel the arm or feels nothing again. `dt` is the step size, s.
     fn base(&mut self, frame: &Frame, dt: f64) {
         let [ever, of_late] = self.now.felt;
         if !frame.base_feels_nothing() && !frame.peaks.base_feels_nothing() {
@@ -360,7 +363,7 @@ impl Watched {
             }
         } else if of_late {
             let since = *self.now.quiet.get_or_insert(frame.step);
-            if (frame.step - since) as f64 * dt >= QUIET {
+            if (frame.step - since) as f64 * dt >= MIN_QUIET_S {
                 self.now.felt[1] = false;
                 self.add(since, Kind::Note, "the base feels nothing again");
             }

@@ -1,30 +1,30 @@
-//! [`Fork`]: what tells two courses of one scenario apart.
+//! [`Fork`]: the difference between two runs of one scenario.
 
 use super::document::Left;
 use super::edit::TimedEdit;
 use super::events::{first_gesture, last_gesture};
 use crate::query::{Quick, Same, Sequence};
 
-/// What tells a branch from the run on display.
+/// Difference between a branch and the run on display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fork {
-    /// What is done in it first that is not done in the other; if nothing is, what was done last.
+    /// First gesture of the branch that is not in the other run; if there is none, the last gesture, or `as planned`.
     pub title: String,
-    /// Where the two part, s.
+    /// Time at which the two runs diverge, s.
     pub from: f64,
-    /// Where it ends, s.
+    /// Time at which the branch ends, s.
     pub to: f64,
 }
 
 impl Left {
-    /// What tells it from a run with other edits, which ends after so many steps.
+    /// Returns the difference between the branch and a run with other edits that ends at step `end`.
     pub(super) fn beside(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
         Fork::of((&self.script.in_order(), self.end, self.script.is_led()), (edits, end), self.step)
     }
 }
 
-/// What tells branches from a run, given its edits and how many steps it has done; the oldest first. No two have the
-/// same title.
+/// Query for the differences between branches and a run, the oldest branch first, each with a title of its own. The
+/// input is the branches, the edits of the run and the number of its steps.
 #[derive(Debug)]
 pub(super) struct Forks;
 
@@ -47,8 +47,9 @@ impl Quick for Forks {
 }
 
 impl Fork {
-    /// Of edits with the step at which they end, beside others; steps last so long, s. `led`: by then somebody has led
-    /// the machine off its planned motion.
+    /// Compares the edits of a branch, which ends at step `end`, with those of another run, which ends at step
+    /// `other_end`. `led`: the user has dragged the machine of the branch off its planned motion. `step` is the step
+    /// size, s.
     pub fn of(
         (edits, end, led): (&[&TimedEdit], u64, bool),
         (others, other_end): (&Sequence<TimedEdit>, u64),

@@ -1,4 +1,4 @@
-//! A [`Session`]: a scenario, what was done to it, and every frame so far.
+//! A [`Session`]: a scenario, its edits, and every frame so far.
 //!
 //! The window owns one and only sends it [`Edit`](super::Edit)s and transport commands (play, pause, seek);
 //! [`replay`](super::replay()) carries out the same edits without a window. Because a run is a function of scenario and
@@ -25,12 +25,12 @@ use crate::query::{Grown, Queries, Sequence};
 use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use crate::simulation::frame::Frame;
 
-/// A run that a person edits while it goes on. A copy shares frames and history, so that it costs the same however long
-/// the session is; what takes long can be done to it beside the window.
+/// A run that the user edits while it goes on. Copies share frames and history, so the cost of a copy does not grow
+/// with the session. Slow operations can run on a copy in the background.
 #[derive(Clone, Debug)]
 pub struct Session {
     document: Document,
-    /// The script of the document, one after the other.
+    /// Edits of the document's script, in order.
     edits: Sequence<TimedEdit>,
     run: Run,
     frames: Sequence<Frame>,
@@ -39,59 +39,59 @@ pub struct Session {
     playing: bool,
     undo: Vec<Arc<Change>>,
     redo: Vec<Arc<Change>>,
-    /// Edits of one kind join into one undo while a gesture lasts.
+    /// Whether a gesture lasts; edits of one kind then join into one undo entry.
     gesture: bool,
-    /// Whether the gesture's parameter edits apply at the present step; the first one decides.
+    /// Whether settings changed in the gesture apply at the present step; its first edit decides.
     gesture_now: Option<bool>,
-    /// The run as it was before the last edit of the script, until the next step: where the gesture's next edit in
-    /// the same step starts from.
+    /// Run before the last edit of the script, kept until the next step. The next edit of the gesture in the same step
+    /// starts from it.
     unedited: Option<Run>,
-    /// How many branches were left, and the title of the one that the last has displaced.
+    /// Number of branches made so far, and the title of the branch that the last of them has displaced.
     partings: (u64, Option<String>),
 }
 
 impl Session {
-    /// The instant on display.
+    /// Returns the frame on display.
     pub fn frame(&self) -> &Frame {
         &self.frames[self.cursor]
     }
 
-    /// Every frame so far, one a step.
+    /// Returns every frame so far, one for each step.
     pub fn frames(&self) -> &Sequence<Frame> {
         &self.frames
     }
 
-    /// Which machine it had when.
+    /// Returns the machine at each step.
     pub fn machines(&self) -> &Machines {
         &self.machines
     }
 
-    /// The scenario with everything that edits have set.
+    /// Returns the scenario with all settings of its edits.
     pub fn scenario(&self) -> &Scenario {
         self.run.scenario()
     }
 
-    /// The run at its newest step.
+    /// Returns the run at its newest step.
     pub fn run(&self) -> &Run {
         &self.run
     }
 
-    /// Edits so far.
+    /// Returns the edits so far.
     pub fn script(&self) -> &Sequence<TimedEdit> {
         &self.edits
     }
 
-    /// What hands have done, told by a store of answers.
+    /// Returns the gestures of the user, from the cache of queries.
     pub fn gestures(&self, queries: &Queries) -> Grown<Gestures> {
         queries.grow(&self.scenario().step, &self.edits, usize::MAX)
     }
 
-    /// What has happened apart from that, told by a store of answers that reads so many new frames at most.
+    /// Returns all other events, from the cache of queries, which reads no more than `at_most` new frames.
     pub fn events(&self, queries: &Queries, at_most: usize) -> Grown<Watched> {
         queries.grow(&(self.scenario().step, self.machines.clone()), &self.frames, at_most)
     }
 
-    /// Whether time is to pass.
+    /// Whether the session is playing, not paused.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
@@ -107,7 +107,7 @@ impl Session {
         goes_on && !self.is_full() && self.run.waiting().is_none()
     }
 
-    /// Whether it holds as many frames as it can: time stands still until it starts over.
+    /// Whether it holds the maximum number of frames, or has reached the maximum time; it then has to start over.
     pub fn is_full(&self) -> bool {
         self.frames.len() >= MAX_FRAMES || self.run.simulation().time() >= MAX_TIME
     }
@@ -121,13 +121,15 @@ impl Session {
         self.run.simulation().is_settled()
     }
 
-    /// Length of the time line, s: the planned motion, or as far as the run has got.
+    /// Returns the length of the time line, s: of the planned motion or of the run so far, whichever is longer. For a
+    /// dragged machine it is that of the run.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
         if self.is_led() { done } else { done.max(self.run.planned_time()) }
     }
 
-    /// The pose constant that the machine is sent to, rad; on display, if it was scrubbed back, what it was then.
+    /// Returns the b to which a dragged machine moves, if the newest frame is on display, otherwise the reference b of
+    /// the frame on display, rad.
     pub fn b_aim(&self) -> f64 {
         match self.run.simulation().guide() {
             crate::simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
@@ -135,22 +137,23 @@ impl Session {
         }
     }
 
-    /// The b nearest to one, rad, at which the points of the task stay where they are; `None` if no b serves them all.
+    /// Returns the pose constant nearest to `b`, rad, at which the points of the task stay where they are. Returns
+    /// `None` if no b reaches all of them.
     pub fn serving(&self, b: f64) -> Option<f64> {
         let task = &self.scenario().task;
         if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {
             // Samples of the drives have a b of their own.
             return Some(task.b);
         }
-        // Where a point is reached at one b alone, points turn with it.
+        // If each point is reached at a single b, points turn with b.
         let several = self.run.pose_space().is_ok_and(|space| space.reaches_area());
         let common = if several { self.run.bands()? } else { return None };
         let nearest = common.nearest(b)?;
         Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
     }
 
-    /// The b nearest to one within a range, rad, at which the points of the task stay where they are: unlike
-    /// [`serving`](Self::serving) it never goes round the circle of b.
+    /// Returns the pose constant nearest to `b` within a range, rad, at which the points of the task stay where they
+    /// are. Unlike [`serving`](Self::serving) it does not wrap around the period of b.
     pub fn serving_within(&self, b: f64, [low, high]: [f64; 2]) -> Option<f64> {
         if self.serving(b)? == b {
             return Some(b);
@@ -164,18 +167,18 @@ impl Session {
         Some(common.inwards(nearest, 1e-6))
     }
 
-    /// Whether somebody has led the machine off its planned motion.
+    /// Whether the user has dragged the machine off its planned motion.
     pub fn is_led(&self) -> bool {
         self.document.script.is_led()
     }
 
-    /// Whether a hand can lead the machine: it has a b to hold, and the run does not wait.
+    /// Whether the user can drag the machine: it has a b to hold, and the run does not wait.
     pub fn follows_hands(&self) -> bool {
         self.run.waiting().is_none() && self.run.pose_space().is_ok()
     }
 
-    /// The session as a scenario: replayed or opened again, it gives equal frames. One that has not begun covers its
-    /// motion.
+    /// Returns the session as a scenario, which gives equal frames when it is replayed or opened again. At step 0 the
+    /// duration stays that of the scenario.
     pub fn to_scenario(&self) -> Scenario {
         let mut scenario = Scenario::clone(&self.document.scenario);
         scenario.edits = self.edits.to_vec();

@@ -1,15 +1,15 @@
-//! [`Machines`]: which machine a run had from which step on, as edits may change it in motion.
+//! [`Machines`]: the machine of a run at each step, as edits may change it in motion.
 
 use std::sync::Arc;
 
 use crate::mechanics::machine::Machine;
 
-/// The machines of a run, each from its first step on.
+/// The machines of a run, each with its first step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Machines(Arc<Vec<(u64, Machine)>>);
 
 impl Machines {
-    /// From a step on it is this one, whatever was said of that step and later ones.
+    /// Sets the machine from a step on, in place of all earlier entries for that step and later ones.
     pub fn hold(&mut self, step: u64, machine: &Machine) {
         let earlier = self.0.partition_point(|(from, _)| *from < step);
         let is_same = earlier.checked_sub(1).is_some_and(|i| self.0[i].1 == *machine);
@@ -21,13 +21,13 @@ impl Machines {
         all.extend((!is_same).then(|| (step, machine.clone())));
     }
 
-    /// That of a step; none before the first.
+    /// Returns the machine at a step, or `None` before the first one.
     pub fn at(&self, step: u64) -> Option<&Machine> {
         let until = self.0.partition_point(|(from, _)| *from <= step);
         Some(&self.0.get(until.checked_sub(1)?)?.1)
     }
 
-    /// The first step at which it may be another one than elsewhere.
+    /// Returns the first step at which the machine may differ from that of `other`.
     pub fn differ_from(&self, other: &Self) -> u64 {
         if Arc::ptr_eq(&self.0, &other.0) {
             return u64::MAX;

@@ -1,4 +1,4 @@
-//! What a person did: a scenario, edits and what became of them, step by step; undo, replay, the verdict.
+//! Sessions: a scenario, the user's edits and the run that results from them; undo, replay, the verdict on a run.
 
 mod ahead;
 mod around;

@@ -25,20 +25,20 @@ pub enum Refusal {
     /// The machine has no b at all.
     #[error(transparent)]
     NoPoseConstant(#[from] NoPoseSpace),
-    /// A or B cannot be reached there.
+    /// A point cannot be reached at its b, or at any b.
     #[error("{point} {unreachable}")]
     Unreachable {
         /// `A`, `1`, `2` … `B`.
         point: String,
-        /// Why, and what would do.
+        /// Reason, and which b would reach the point.
         unreachable: Unreachable,
     },
-    /// No plane serves all points.
+    /// No b reaches all points.
     #[error("{said}")]
     NoCommonPlane {
-        /// In words, points by their names.
+        /// Message with the names of the points.
         said: String,
-        /// Why, and what would mend it.
+        /// Reason, and the change that would help.
         why: NoCommon,
     },
     /// The path cannot be made.
@@ -50,28 +50,28 @@ pub enum Refusal {
     /// The curve cannot be followed on the plane.
     #[error(transparent)]
     Blocked(#[from] Box<Blocked>),
-    /// The task asks for something that does not fit together.
+    /// Settings of the task contradict each other or do not fit the machine.
     #[error("{0}")]
     Task(String),
-    /// What is asked for fits together, but there is no such motion.
+    /// The settings are consistent, but there is no such motion.
     #[error("{0}")]
     NoWay(String),
-    /// b has no price here.
+    /// The reaction of a change of b is not defined.
     #[error(transparent)]
     Price(#[from] PriceError),
-    /// The redundancy cannot be resolved so.
+    /// The redundancy cannot be resolved with the least reaction.
     #[error(transparent)]
     LeastReaction(#[from] LeastReactionError),
     /// The end effector's curve cannot be followed at zero momentum.
     #[error(transparent)]
     Drift(#[from] DriftError),
-    /// The fastest law.
+    /// The fastest motion cannot be found.
     #[error(transparent)]
     Time(#[from] TimeError),
     /// The machine would not be valid.
     #[error(transparent)]
     Machine(#[from] MachineError),
-    /// The numbers have blown up.
+    /// The simulation diverges.
     #[error(
         "the simulation diverges at {time:.3} s: want smaller gains, a smaller step, a lighter payload, or softer springs, dampers and \
              friction"
@@ -83,7 +83,7 @@ pub enum Refusal {
     /// An audit of the run has failed.
     #[error("audit failed: {why}; want a smaller step")]
     Untrusted {
-        /// Which, and by how much.
+        /// Which audit, and by how much it failed.
         why: String,
     },
     /// The motion in progress does not fit into new limits.
@@ -91,7 +91,7 @@ pub enum Refusal {
     LeavesLimits {
         /// Key of the limit.
         key: String,
-        /// What was given.
+        /// The value that was given.
         value: String,
     },
     /// A number out of range.
@@ -99,18 +99,18 @@ pub enum Refusal {
     OutOfRange {
         /// Key of the number.
         what: String,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What would be right.
+        /// Allowed values.
         want: Want,
     },
-    /// The motion takes longer than any may.
+    /// The motion takes longer than the maximum.
     #[error("the motion would take {}: want at most {MAX_TIME} s, with higher limits or a shorter way", seconds(*time))]
     TooLong {
         /// s.
         time: f64,
     },
-    /// The run has more steps than any may.
+    /// The run has more steps than the maximum.
     #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", Short(*time), Short(*step))]
     TooManySteps {
         /// s.
@@ -120,7 +120,7 @@ pub enum Refusal {
         /// Steps of the run.
         steps: u64,
     },
-    /// A session keeps no more frames.
+    /// The session holds the maximum number of frames.
     #[error(
         "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
          instant, or the start, to go on from; `simulate` and `headless` run longer"
@@ -129,7 +129,7 @@ pub enum Refusal {
         /// s.
         time: f64,
     },
-    /// What a run would write.
+    /// The output would be too large.
     #[error(
         "{rows} rows of {columns} numbers are up to {:.1} GB: want at most {:.0} GB, with fewer rows or a shorter duration",
         bytes / 1e9, most / 1e9
@@ -137,39 +137,39 @@ pub enum Refusal {
     TooLarge {
         /// Rows that would be written.
         rows: u64,
-        /// Numbers in each.
+        /// Numbers in each row.
         columns: usize,
-        /// Bytes that these take at most.
+        /// Upper bound of the size, bytes.
         bytes: f64,
-        /// How many there may be.
+        /// Maximum size, bytes.
         most: f64,
     },
-    /// Whoever asked for it wants it no more.
+    /// The caller has cancelled the work.
     #[error("stopped before its end: nothing has changed")]
     Stopped,
-    /// One of the edits of a scenario.
+    /// An edit of a scenario cannot apply.
     #[error("the {} [[edit]], {title} at step {step}: {refusal}", ordinal(*entry))]
     Edit {
-        /// Which, counted from 1 in the order of the file.
+        /// Number of the edit, counted from 1 in the order of the file.
         entry: usize,
         /// The step at which it applies.
         step: u64,
-        /// What it would do.
+        /// Description of the edit.
         title: String,
-        /// Why it cannot.
+        /// Why it cannot apply.
         refusal: Box<Refusal>,
     },
 }
 
-/// A time for a message.
+/// Formats a time, s, for a message.
 fn seconds(time: f64) -> String {
     if time < 1e9 { format!("{time:.0} s") } else { "more than 1e9 s".into() }
 }
 
-/// A time that a motion finds itself obeys the same bound as one that it is given.
+/// Checks a duration, s, that the planner has found against the upper bound of given durations.
 ///
 /// # Errors
-/// If it is longer than any motion may take, or no number.
+/// If it is longer than [`MAX_TIME`], or not a number.
 pub(super) fn allowed(time: f64) -> Result<(), Refusal> {
     if time <= MAX_TIME { Ok(()) } else { Err(Refusal::TooLong { time }) }
 }
@@ -181,7 +181,7 @@ impl From<Check> for Refusal {
 }
 
 impl Refusal {
-    /// The pose constant nearest to the present one that would do, rad, if another b is all it takes.
+    /// Returns the feasible pose constant nearest to the present one, rad, if a change of b alone would help.
     pub fn mending_b(&self) -> Option<f64> {
         match self {
             Self::Edit { refusal, .. } => refusal.mending_b(),
@@ -191,7 +191,7 @@ impl Refusal {
         }
     }
 
-    /// The same as it is shown: rounded to where it still does.
+    /// Returns the same b as it is shown: rounded so that it is still feasible.
     pub fn shown_b(&self) -> Option<Decimal> {
         match self {
             Self::Edit { refusal, .. } => refusal.shown_b(),

@@ -1,4 +1,4 @@
-//! Runs from their start to their end, with everything that was done to them.
+//! Replays scenarios with their edits from the first to the last step.
 
 use crate::query::Queries;
 use crate::session::changes::{Failed, folded, in_order};
@@ -7,11 +7,10 @@ use crate::session::{Refusal, Run, TimedEdit};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::Frame;
 
-/// A scenario with the edits before its first step made part of it, and the others left out, and how many those others
-/// are.
+/// Applies the edits at step 0 before the first drag. Returns the scenario without the other edits, and their number.
 ///
 /// # Errors
-/// If an edit cannot be made.
+/// If an edit cannot apply.
 pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     let script = in_order(&scenario.edits);
     let (start, count) =
@@ -19,7 +18,8 @@ pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     Ok((start, script.len() - count))
 }
 
-/// Frames of a scenario with its edits, from the first to the last step, one at a time.
+/// Runs a scenario with its edits and calls `see` with every frame, from the first to the last step. Returns the run at
+/// its last step.
 ///
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
@@ -27,10 +27,10 @@ pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run,
     replay_if(scenario, |_| Ok(()), see)
 }
 
-/// The same; `check` is given the number of the last step before the run begins, and may refuse it.
+/// Does the same as [`replay`]. Before the run begins, `allow` gets the number of the last step, and may refuse it.
 ///
 /// # Errors
-/// As [`replay`], and if it is refused.
+/// As [`replay`], and the refusal of `allow`.
 pub fn replay_if(
     scenario: &Scenario,
     allow: impl FnOnce(u64) -> Result<(), Refusal>,
@@ -43,7 +43,7 @@ pub fn replay_if(
     })
 }
 
-/// The same as [`replay`]; `see` says of each frame whether the rest is still wanted.
+/// Does the same as [`replay`]; `see` returns whether the run is to go on.
 ///
 /// # Errors
 /// As [`replay`], and [`Refusal::Stopped`] if it is not.
@@ -64,8 +64,8 @@ fn whole(
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
-/// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m; and
-/// the first audit that the run has failed.
+/// Returns the dynamic f_Bx and f_By, N, and the moment that the base feels, N m, at every step of a scenario. Also
+/// returns the first audit that the run has failed.
 ///
 /// # Errors
 /// As [`replay`].
@@ -79,9 +79,9 @@ pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>),
     Ok((course, run.frame().fault()))
 }
 
-/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame to
-/// `see`, which says whether the rest is still wanted. A task that does not fit its machine is refused, or, with
-/// patience, waits at its first step.
+/// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame,
+/// which returns whether the run is to go on. A task that does not fit its machine is refused or, if `patient`, waits
+/// at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],

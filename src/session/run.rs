@@ -1,4 +1,4 @@
-//! A [`Run`]: a scenario in motion. The window and the commands advance the same one, so they cannot differ.
+//! A [`Run`]: a scenario in motion. Window and commands both use it, so their results cannot differ.
 
 use std::sync::Arc;
 
@@ -25,10 +25,10 @@ use crate::simulation::{Guide, Simulation};
 /// Why a run waits: its task does not fit its machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Waiting {
-    /// What is in the way.
+    /// Why the task cannot be planned.
     pub why: Refusal,
-    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad, as
-    /// printed.
+    /// Index of each point that the b of the task does not reach, counted from A, and the nearest b that reaches it,
+    /// rad, as printed.
     pub points: Vec<(usize, Option<Decimal>)>,
 }
 
@@ -37,11 +37,11 @@ impl Waiting {
         let task = &scenario.task;
         let Some(space) = space else { return Self { why, points: Vec::new() } };
         let unserved = |(i, p): (usize, Vector)| {
-            let would_do = || {
+            let nearest_b = || {
                 let set = space.reach(p).ok()?;
                 set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
             };
-            (!space.reaches(p, task.b)).then(|| (i, would_do()))
+            (!space.reaches(p, task.b)).then(|| (i, nearest_b()))
         };
         Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
     }
@@ -51,18 +51,18 @@ impl Waiting {
 #[derive(Clone, Debug)]
 pub struct Run {
     scenario: Arc<Scenario>,
-    /// The coordinates in which a hand can lead the machine while b is held, or why it has none.
+    /// The pose space, in which the user can drag the machine while b is held, or why there is none.
     space: Result<Arc<PoseSpace>, NoPoseSpace>,
     plan: Arc<Plan>,
-    /// Set where the task cannot be planned; the plan is then to rest.
+    /// Set if the task cannot be planned; the plan is then to rest.
     waiting: Option<Waiting>,
     simulation: Simulation,
-    /// What is derived of it; copies share it.
+    /// Cache of queries about the run, which copies share.
     queries: Queries,
 }
 
 impl Run {
-    /// At rest at the start of the scenario's task; its edits are left to the caller.
+    /// Returns a run at rest at the start of the scenario's task. Edits are left to the caller.
     ///
     /// # Errors
     /// If the task cannot be planned.
@@ -70,8 +70,9 @@ impl Run {
         Self::planned(scenario, &Queries::default())
     }
 
-    /// At the start of the task as edits before the first step leave it, up to the first that leads the machine; how
-    /// many those are. Planned once, when all have been made: what stands between two of them need not be possible.
+    /// Applies the edits at step 0 before the first drag. Returns a run at rest at the start of the task, and the
+    /// number of these edits. The task is planned once after all of them, so states between them need not be feasible.
+    /// Queries of a `known` run are reused.
     ///
     /// # Errors
     /// If an edit is out of range, or the task cannot be planned.
@@ -93,7 +94,7 @@ impl Run {
         }
     }
 
-    /// At rest at the start of the task; where that cannot be planned, waiting.
+    /// Returns a run at rest at the start of the task. If the task cannot be planned, the run waits.
     fn patient(scenario: &Scenario, queries: &Queries) -> Result<Self, Refusal> {
         let space = space_of(scenario, queries);
         let known = space.as_deref();
@@ -107,76 +108,76 @@ impl Run {
         Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
     }
 
-    /// Why it waits, if its task does not fit its machine.
+    /// Returns why the run waits, if its task does not fit its machine.
     pub fn waiting(&self) -> Option<&Waiting> {
         self.waiting.as_ref()
     }
 
-    /// The scenario with everything that edits have set.
+    /// Returns the scenario with all settings of its edits.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// The same, to be kept.
+    /// Returns the scenario as a shared value.
     pub fn shared_scenario(&self) -> Shared<Scenario> {
         Shared(self.scenario.clone())
     }
 
-    /// What is derived of it, and of its copies.
+    /// Returns the cache of queries about the run and its copies.
     pub fn queries(&self) -> &Queries {
         &self.queries
     }
 
-    /// The machine's reactionless planes, if it has some.
+    /// Returns the reactionless planes of the machine, if it has some.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
         self.space.as_ref().ok()?.planes().ok()
     }
 
-    /// The coordinates in which a hand can lead the machine while b is held.
+    /// Returns the pose space, in which the user can drag the machine while b is held.
     ///
     /// # Errors
-    /// Why it has none.
+    /// Why there is none.
     pub fn pose_space(&self) -> Result<&Arc<PoseSpace>, &NoPoseSpace> {
         self.space.as_ref()
     }
 
-    /// The b that serve all points of the task, if any do.
+    /// Returns the set of b that reach all points of the task, if there are any.
     pub fn bands(&self) -> Option<BSet> {
         let space = Same(self.space.clone().ok()?);
         self.queries.ask::<Whole<BOfPoints>>(&(space, self.scenario.task.points())).all.clone()
     }
 
-    /// The simulation.
+    /// Returns the simulation.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The plan of the task.
+    /// Returns the plan of the task.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// How long the planned motion takes, s.
+    /// Returns the duration of the planned motion, s.
     pub fn planned_time(&self) -> f64 {
         self.plan.motion.duration()
     }
 
-    /// The steps that this takes, a whole number.
+    /// Returns the number of steps of the planned motion, rounded up.
     pub fn planned_steps(&self) -> f64 {
         (self.planned_time() / self.scenario.step).ceil()
     }
 
-    /// Where a pose has the end effector, m.
+    /// Returns the place of the end effector in a pose, m.
     pub fn place(&self, q: &DriveAngles) -> Vector {
         crate::mechanics::kinematics::end_effector(self.scenario.machine.end_effector(), &q.units())
     }
 
-    /// Where the end effector is after a share of the planned time, m.
+    /// Returns the place of the end effector after a fraction of the planned time, m.
     pub fn on_path(&self, share: f64) -> Vector {
         self.place(&self.plan.motion.at(share * self.planned_time()).q)
     }
 
-    /// The planned motion, while it leads.
+    /// Returns the planned motion, while the machine follows it.
     pub fn motion(&self) -> Option<&Motion> {
         match self.simulation.guide() {
             Guide::Motion { motion, .. } => Some(&**motion),
@@ -184,7 +185,7 @@ impl Run {
         }
     }
 
-    /// The planned motion while it leads, to be kept.
+    /// Returns the planned motion, while the machine follows it, as a shared value.
     pub fn shared_motion(&self) -> Option<Same<Motion>> {
         match self.simulation.guide() {
             Guide::Motion { motion, .. } => Some(Same(motion.clone())),
@@ -192,7 +193,7 @@ impl Run {
         }
     }
 
-    /// Everything that is true now.
+    /// Returns the frame of the present step.
     pub fn frame(&self) -> Frame {
         self.simulation.frame()
     }
@@ -235,7 +236,7 @@ impl Run {
                 let chain = self.point_of(link, *along)?;
                 let mut follower = self.follower()?;
                 if !follower.map().leaves_freedoms() {
-                    return Err(Refusal::Task(NOTHING_LEFT.into()));
+                    return Err(Refusal::Task(NO_FREEDOMS.into()));
                 }
                 follower.set_pull(Pull { chain, at: Vector::new(*x, *y) });
                 self.simulation.lead(Guide::Follow(follower));
@@ -259,18 +260,18 @@ impl Run {
         Ok(())
     }
 
-    /// Takes what a scenario has of the keys that no frame depends on.
+    /// Takes over those settings of a scenario on which no frame depends.
     pub(super) fn set_asides(&mut self, scenario: &Scenario) -> Result<(), Refusal> {
         self.scenario = Arc::new(self.scenario.with_asides_of(scenario)?);
         Ok(())
     }
 
-    /// Whether the planned motion still lies ahead as a whole.
+    /// Whether the planned motion has not begun.
     fn is_untouched(&self) -> bool {
         self.simulation.step_count() == 0 && matches!(self.simulation.guide(), Guide::Motion { .. })
     }
 
-    /// Parameters in motion: it keeps its path.
+    /// Changes settings during a motion, which keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
         if edit.is_of_the_start() {
             return Err(Refusal::Task(Edit::AT_START.into()));
@@ -290,7 +291,7 @@ impl Run {
                 let lambda = *map.lambda();
                 let mut follower = Follower::new(map, bounds, scenario.step, self.simulation.reference());
                 follower.set_target(old.target().at);
-                // Another λ makes b another quantity.
+                // With another λ, b is another quantity.
                 if lambda == *old.map().lambda() {
                     follower.set_b(old.b_aim());
                 }
@@ -303,7 +304,7 @@ impl Run {
         Ok(())
     }
 
-    /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
+    /// Whether the rest of the planned motion would leave new joint limits where it keeps the present ones.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
         let done = motion.profile.at(self.simulation.time() - start).s;
@@ -319,7 +320,7 @@ impl Run {
         })
     }
 
-    /// A point of a link, m from its root.
+    /// Returns the chain from the base to a point of a link, `along` m from its root.
     fn point_of(&self, link: &str, along: f64) -> Result<Chain, Refusal> {
         let machine = &self.scenario.machine;
         let found = machine.links().iter().position(|own| own.name == link);
@@ -328,7 +329,7 @@ impl Run {
         Ok(machine.resolved_links()[found].point(along))
     }
 
-    /// The follower that leads, or one that takes over from the motion.
+    /// Returns the present follower, or a new one that takes over from the planned motion.
     fn follower(&self) -> Result<Follower, Refusal> {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
@@ -342,7 +343,8 @@ impl Run {
 }
 
 impl Run {
-    /// What takes an edit back if applied after it; `None` if only what was before can.
+    /// Returns the edit that undoes an edit if applied after it, or `None` if there is no such edit. Call it before the
+    /// edit.
     pub fn inverse_of(&self, edit: &Edit) -> Option<Edit> {
         let scenario = &self.scenario;
         let frame = self.frame();
@@ -373,53 +375,57 @@ impl Run {
     }
 }
 
-/// Why relative angles of other machines are not dragged.
+/// Refusal to drag relative angles of machines that do not have three drives.
 const ANGLES_OF_THREE: &str =
     "two relative angles are set for machines of three drives: want the target dragged instead";
 
-/// Why a link of other machines is not pulled while the tip stays.
-const NOTHING_LEFT: &str =
+/// Refusal to pull a link of machines without freedoms while the end effector and b are held.
+const NO_FREEDOMS: &str =
     "with the end effector and b held, fewer than four drives cannot move: want the target dragged instead";
 
-/// Bounds of the follower: no torque limit of any drive is passed in any direction of ä, also while b is slid.
+/// Returns bounds of the follower on |ä| and |b̈|. They exceed no torque limit, in any direction of ä and also while b
+/// changes.
 fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
-    const UNLIMITED: f64 = 30.0;
-    // The most of a limit that sliding b takes from the arm's own motion.
-    const SHARE: f64 = 0.5;
+    // Upper bound of |ä|, also without torque limits.
+    const MAX_ACCELERATION_RAD_S2: f64 = 30.0;
+    // Maximum fraction of a torque limit that a change of b may use.
+    const MAX_SLIDE_FRACTION: f64 = 0.5;
     let machine = &scenario.machine;
     let inertia = Inertia::of(machine);
-    // What each motor turns, also through gears, by rates of the relative angles and of b; couplings that a machine
-    // with a pose constant has are rounding, of either sign.
-    let asked = |of: &PerDrive, bdd: f64| {
+    // Torque of each motor, also through gears, for accelerations of the relative angles and of b. Couplings are left
+    // out: on a machine with a pose constant they are rounding errors of either sign.
+    let torques_of = |of: &PerDrive, bdd: f64| {
         let (n, u) = (machine.drives(), map.lift_rates(of, bdd));
         let h = PerDrive::from_fn(n, |k| (0..n).map(|l| inertia.constant(k, l) * u[l]).sum());
         inertia.motors().torques(&h)
     };
     let one = |of: usize| PerDrive::from_fn(map.joints().len(), |i| f64::from(u8::from(i == of)));
-    let all: Vec<PerDrive> = (0..map.joints().len()).map(|of| asked(&one(of), 0.0)).collect();
-    let sliding = asked(&PerDrive::zeros(map.joints().len()), 1.0);
+    let all: Vec<PerDrive> = (0..map.joints().len()).map(|of| torques_of(&one(of), 0.0)).collect();
+    let sliding = torques_of(&PerDrive::zeros(map.joints().len()), 1.0);
     let limits = || machine.spec().drives.iter().enumerate().filter_map(|(k, drive)| Some((k, drive.torque_limit?)));
-    let pose = limits().map(|(k, limit)| SHARE * limit / sliding[k].abs()).fold(scenario.pose_acceleration, f64::min);
-    let most = |k: usize| all.iter().fold(0.0, |sum: f64, torque| sum.hypot(torque[k]));
-    let left = |(k, limit): (usize, f64)| (limit - pose * sliding[k].abs()) / most(k).max(1e-9);
-    Bounds { joint: limits().map(left).fold(UNLIMITED, f64::min), pose }
+    let pose = limits()
+        .map(|(k, limit)| MAX_SLIDE_FRACTION * limit / sliding[k].abs())
+        .fold(scenario.pose_acceleration, f64::min);
+    let largest = |k: usize| all.iter().fold(0.0, |sum: f64, torque| sum.hypot(torque[k]));
+    let joint = |(k, limit): (usize, f64)| (limit - pose * sliding[k].abs()) / largest(k).max(1e-9);
+    Bounds { joint: limits().map(joint).fold(MAX_ACCELERATION_RAD_S2, f64::min), pose }
 }
 
 impl Run {
-    /// The step at which the scenario's duration is over, or else its planned motion.
+    /// Returns the step at the end of the scenario's duration or, without one, of the planned motion.
     pub fn last_step(&self) -> u64 {
         let step = self.scenario.step;
         match self.scenario.duration {
             Some(duration) => (duration / step).round() as u64,
-            // A motion that ends between two steps is seen to its end.
+            // Rounded up, so that a motion that ends between two steps is complete.
             None => (self.planned_time() / step - 1e-6).ceil() as u64,
         }
     }
 
-    /// The same, if a run may have so many and no edit comes after it.
+    /// Returns the last step, if it is not too late and no edit comes after it.
     ///
     /// # Errors
-    /// If it may not, or one does.
+    /// If it is later than [`MAX_STEPS`], or an edit comes after it.
     pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, Failed> {
         let (last, step) = (self.last_step(), self.scenario.step);
         if last > MAX_STEPS {
@@ -436,7 +442,8 @@ impl Run {
     }
 }
 
-/// The pose space of a scenario's machine, led by its posture, with its word on change points.
+/// Returns the pose space of a scenario's machine, to be dragged by the posture of the task and its rule on change
+/// points.
 fn space_of(scenario: &Scenario, queries: &Queries) -> Result<Arc<PoseSpace>, NoPoseSpace> {
     let task = &scenario.task;
     let space = Result::clone(&queries.ask::<Whole<SpaceOf>>(&scenario.machine))?;

@@ -1,5 +1,5 @@
-//! [`Script`]: the edits of a document, in the order of steps. Versions share what they have in common, so that to
-//! remember one more of them costs no more than the edit that it adds.
+//! [`Script`]: the edits of a document, in the order of steps. Versions share their common beginning, so one more
+//! version costs only the edits that it adds.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub(super) struct Script {
 #[derive(Debug)]
 struct Entry {
     timed: TimedEdit,
-    /// Whether somebody has led the machine off its planned motion by then.
+    /// Whether the user has dragged the machine off its planned motion, in this edit or before.
     led: bool,
     before: Option<Arc<Self>>,
 }
@@ -39,7 +39,7 @@ impl Script {
         self.count += 1;
     }
 
-    /// Takes the last one away.
+    /// Removes the last edit.
     pub fn pop(&mut self) {
         if let Some(entry) = self.last.take() {
             self.last.clone_from(&entry.before);
@@ -47,7 +47,7 @@ impl Script {
         }
     }
 
-    /// The last one.
+    /// Returns the last edit.
     pub fn last(&self) -> Option<&TimedEdit> {
         self.last.as_ref().map(|entry| &entry.timed)
     }
@@ -55,41 +55,41 @@ impl Script {
     /// Whether it holds the same edits as another.
     pub fn is(&self, other: &Self) -> bool {
         let mut pairs = self.entries().zip(other.entries());
-        // What is shared is the same as a whole.
+        // Before a shared entry all entries are shared.
         let same = pairs.find(|(own, other)| Arc::ptr_eq(own, other) || own.timed != other.timed);
         self.count == other.count && same.is_none_or(|(own, other)| Arc::ptr_eq(own, other))
     }
 
-    /// How many there are.
+    /// Returns the number of edits.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether somebody leads the machine off its planned motion.
+    /// Whether the user drags the machine off its planned motion.
     pub fn is_led(&self) -> bool {
         self.last.as_ref().is_some_and(|entry| entry.led)
     }
 
-    /// Leaves out what comes after a step.
+    /// Removes the edits after a step.
     pub fn cut(&mut self, end: u64) {
         while self.last().is_some_and(|timed| timed.step > end) {
             self.pop();
         }
     }
 
-    /// All of them, one after the other.
+    /// Returns copies of all edits, in order.
     pub fn to_vec(&self) -> Vec<TimedEdit> {
         self.in_order().into_iter().cloned().collect()
     }
 
-    /// The same where they stand.
+    /// Returns references to all edits, in order.
     pub fn in_order(&self) -> Vec<&TimedEdit> {
         let mut all: Vec<&TimedEdit> = self.entries().map(|entry| &entry.timed).collect();
         all.reverse();
         all
     }
 
-    /// These in place of its own; what both begin with is shared.
+    /// Returns a script of other edits, which shares the common beginning with this one.
     pub fn replaced(&self, edits: Vec<TimedEdit>) -> Self {
         let mut own: Vec<&Arc<Entry>> = self.entries().collect();
         own.reverse();
@@ -100,7 +100,7 @@ impl Script {
         script
     }
 
-    /// From the last to the first.
+    /// Yields the entries from the last to the first.
     fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
         std::iter::successors(self.last.as_ref(), |entry| entry.before.as_ref())
     }

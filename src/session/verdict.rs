@@ -1,10 +1,10 @@
-//! [`Verdict`]: what a run comes to, in a word, with what a person should know beside it. Command line, window and
-//! recording show this one.
+//! [`Verdict`]: the assessment of a run in one word, with remarks. Command line, window and recording show the same
+//! one.
 //!
-//! | quantity | is |
+//! | quantity | meaning |
 //! |---|---|
-//! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
-//! | moment past the wheel | what a reaction wheel leaves of n_B for the base: by this the base feels nothing |
+//! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether it is called reactionless |
+//! | moment past the wheel | n_B less the moment that a reaction wheel takes up: with f_B it decides whether the base feels nothing |
 
 mod statements;
 
@@ -18,22 +18,23 @@ use crate::settings::number::{Short, fixed, significant};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
 
-/// Farther than this from its target an end effector misses it, m.
+/// An end effector misses its target if it ends farther from it than this, m.
 pub const MISS: f64 = 1e-4;
 
-/// By more than this a joint passes its limit, rad.
+/// A joint is past its limit if it exceeds the limit by more than this, rad.
 pub const PAST: f64 = 1e-6;
 
-/// By more than this factor a drive passes its limit: less is what control adds to a motion that just keeps it.
-const OVER: f64 = 1.0 + 1e-3;
+/// A drive is past its limit above this ratio of peak to limit. Control adds less to a motion that just keeps the
+/// limit.
+const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
 
-/// A smaller tilting moment is none, N m.
-const TILT: f64 = 1e-9;
+/// Smaller tilting moments are treated as zero, N m.
+const MIN_TILT_N_M: f64 = 1e-9;
 
-/// Slower than this the arm does not move, rad/s.
-const STILL: f64 = 1e-9;
+/// The arm has moved if the peak rate of a drive is greater than this, rad/s.
+const MIN_RATE_RAD_S: f64 = 1e-9;
 
-/// What a run comes to.
+/// Assessment of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// Whether the arm transmits nothing, neither n_B nor dynamic f_B, and no audit has failed.
@@ -50,33 +51,33 @@ pub struct Verdict {
     pub force: f64,
     /// Largest moment that tilts the base, from heights along the axis, N m: outside of the verdict.
     pub tilt: f64,
-    /// How far the end effector is from its target, m; from where the samples end, if these say where the drives go.
+    /// Distance of the end effector from its target, m; for samples of drive angles the target is where they end.
     pub miss: f64,
-    /// Whether it has a target: samples of drive angles say of no point that the end effector is to be there.
+    /// Whether the run has a target: samples of drive angles prescribe no point of the end effector.
     pub has_target: bool,
-    /// A relative joint angle that passed its limit, and by how much at most, rad.
+    /// Relative joint angle that exceeded its limit by most, and the largest excess, rad.
     pub past_limit: Option<(String, f64)>,
-    /// The limit of a drive on torque or speed that was passed by most, and by what factor.
+    /// Torque or speed limit of a drive that was exceeded by the largest factor, and that factor.
     pub over: Option<(DriveLimit, f64)>,
-    /// The first audit that failed: then nothing of this can be trusted.
+    /// First audit that failed; the other figures cannot be trusted then.
     pub fault: Option<AuditFigure>,
-    /// The end of the run and when the payload would be picked up, s, where that is not before.
+    /// End of the run and the later time at which the payload would be picked up, s; `None` if it is picked up.
     never_held: Option<[f64; 2]>,
-    /// Whether the guide has come to its end, where it can.
+    /// Whether the motion has come to rest and the target is not out of reach.
     ended: bool,
 }
 
-/// The limit on torque or speed that peaks pass by most.
+/// Returns the torque or speed limit that the peaks exceed by the largest factor, and that factor.
 fn over(limits: &Limits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     let of = |quantity, peaks: PerDrive| {
         let factors = PerDrive::from_fn(peaks.len(), |k| peaks[k] / limits.on(quantity)[k]);
         (0..peaks.len()).map(move |drive| (DriveLimit { quantity, drive }, factors[drive]))
     };
     let all = of(LimitedQuantity::Torque, peaks.torque).chain(of(LimitedQuantity::Speed, peaks.rate));
-    all.filter(|(_, factor)| *factor > OVER).max_by(|a, b| a.1.total_cmp(&b.1))
+    all.filter(|(_, factor)| *factor > MAX_LIMIT_RATIO).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether samples of drive angles lead, not a hand: then the target is only where they end.
+/// Whether samples of drive angles guide the machine and the user does not drag it; the target is then only their end.
 fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     let task = &scenario.task;
     let columns = task.samples.as_ref().map(Samples::columns);
@@ -85,17 +86,17 @@ fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     of_drives && (frame.target.at - Vector::new(x, y)).norm() <= MISS
 }
 
-/// Something to know beside a verdict: in two or three words, and in a sentence.
+/// A remark on a verdict, in two or three words and in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// For a cell of a table.
+    /// Two or three words, for a cell of a table.
     pub short: String,
-    /// For a line.
+    /// A sentence, for a line of text.
     pub long: String,
 }
 
 impl Verdict {
-    /// Of a run up to a frame.
+    /// Assesses a run up to a frame.
     pub fn of(scenario: &Scenario, frame: &Frame) -> Self {
         let peaks = &frame.peaks;
         let (by, angle) = peaks.past_limit;
@@ -103,7 +104,7 @@ impl Verdict {
         Self {
             reactionless: peaks.is_reactionless() && frame.fault().is_none(),
             base_feels_nothing: peaks.base_feels_nothing(),
-            moved: peaks.rate.iter().any(|rate| *rate > STILL),
+            moved: peaks.rate.iter().any(|rate| *rate > MIN_RATE_RAD_S),
             over: over(&Limits::of(&scenario.machine), peaks),
             arm_moment: peaks.arm_moment,
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
@@ -116,12 +117,12 @@ impl Verdict {
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
                 scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
             }),
-            // For a target that cannot be reached, the window says so at the target.
+            // The window marks a target out of reach at the target itself.
             ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }
     }
 
-    /// Whether the base was left alone, by the arm or by a wheel.
+    /// Whether the arm transmits nothing, or a wheel keeps all of it from the base, and no audit has failed.
     pub fn is_good(&self) -> bool {
         self.fault.is_none() && (self.reactionless || self.base_feels_nothing)
     }
@@ -149,23 +150,23 @@ impl Verdict {
             .join(", ")
     }
 
-    /// What should be known of a run that is over.
+    /// Returns the remarks on a finished run.
     pub fn remarks(&self) -> Vec<Remark> {
-        self.known(true)
+        self.remarks_if(true)
     }
 
-    /// What should be known of a run that may still go on: what only its end can tell is left out until then.
+    /// Returns the remarks on a run that may still go on, without those that depend on its end.
     pub fn so_far(&self) -> Vec<Remark> {
-        self.known(self.ended)
+        self.remarks_if(self.ended)
     }
 
-    fn known(&self, over: bool) -> Vec<Remark> {
+    fn remarks_if(&self, finished: bool) -> Vec<Remark> {
         let mut all = Vec::new();
         let mut add = |short: &str, long: String| all.push(Remark { short: short.into(), long });
-        if over && !self.moved {
+        if finished && !self.moved {
             add("never moved", "the arm never moved, so this says nothing of how it moves".into());
         }
-        if let Some([end, from]) = self.never_held.filter(|_| over) {
+        if let Some([end, from]) = self.never_held.filter(|_| finished) {
             let long = format!(
                 "plant.payload.from is {} s, and the run ends at {} s: nothing is picked up",
                 Short(from),
@@ -173,15 +174,15 @@ impl Verdict {
             );
             add("payload never held", long);
         }
-        if let Some(left) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
+        if let Some(past_wheel) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
                 "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",
-                significant(left)
+                significant(past_wheel)
             );
             add("the wheel takes it up", long);
         }
-        if self.tilt > TILT {
+        if self.tilt > MIN_TILT_N_M {
             let long = format!(
                 "links at different heights tilt the base by up to {} N m, which this verdict leaves out",
                 significant(self.tilt)
@@ -198,7 +199,7 @@ impl Verdict {
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
-        if over && self.has_target && (self.miss > MISS || self.miss.is_nan()) {
+        if finished && self.has_target && (self.miss > MISS || self.miss.is_nan()) {
             add("off its target", format!("ends {} m from its target", significant(self.miss)));
         }
         all
@@ -207,8 +208,8 @@ impl Verdict {
     /// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its target`.
     pub fn sentence(&self) -> String {
         let mut text = format!("{}: peak |n_B| {} N m", self.word(), significant(self.arm_moment));
-        if let Some(left) = self.past_wheel {
-            text += &format!(", past the wheel {} N m", significant(left));
+        if let Some(past_wheel) = self.past_wheel {
+            text += &format!(", past the wheel {} N m", significant(past_wheel));
         }
         text += &format!(", peak |f_B| {} N", significant(self.force));
         if let Some(figure) = &self.fault {

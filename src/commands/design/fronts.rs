@@ -1,4 +1,4 @@
-//! `stillbase design A B --counterweights --front N`: the fronts of several machines.
+//! `stillbase design A B --counterweights --front N`: the Pareto fronts of several machines.
 
 use std::fmt::Write as _;
 
@@ -17,12 +17,12 @@ struct Answer {
 }
 
 impl Design {
-    /// Prints the front of each machine, or why it has none.
+    /// Prints the Pareto front of each machine, or why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
         let machines = self.machine.load_with(&self.beside)?;
         let task = self.task(&machines.iter().map(|(_, machine)| machine).collect::<Vec<_>>())?;
         let of = |(name, machine)| {
-            // A front is of mass and inertia, whatever is least in a motion.
+            // The Pareto front is of mass and inertia, so no motion is given.
             let asked = self.weighing.asked(&machine, None).map_err(|why| why.of(&name))?;
             tell_taken_off(&machine, &format!("{name}: "));
             Ok(FrontOf { name, machine, asked })
@@ -43,14 +43,15 @@ impl Design {
     }
 }
 
-/// The machines of the fronts downwards, each front from light to quick; below them those that have none.
+/// Formats the machines of the fronts, each from the least mass to the least inertia, and below them machines without a
+/// front.
 fn text(answer: &Answer) -> String {
     let mut table = Table::new(["machine"].into_iter().chain(FRONT));
     let mut refused = String::new();
     for MachineFront { name, outcome } in &answer.fronts {
         match outcome {
-            Ok(told) => {
-                told.points.iter().for_each(|point| table.row([name.clone()].into_iter().chain(front_cells(point))));
+            Ok(front) => {
+                front.points.iter().for_each(|point| table.row([name.clone()].into_iter().chain(front_cells(point))));
             }
             Err(why) => {
                 let _ = writeln!(refused, "{name}: {why}");

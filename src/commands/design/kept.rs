@@ -33,7 +33,7 @@ pub struct KeepArguments {
 }
 
 impl KeepArguments {
-    /// The machine with the least change, and what has changed.
+    /// Returns the machine with the least change, and the report on it.
     pub fn run(
         &self,
         machine: &Machine,
@@ -42,19 +42,19 @@ impl KeepArguments {
     ) -> Result<(Machine, KeptReport), Failure> {
         let mut asked = Keep::coms(machine, penalty);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        kept(machine, &asked, motion).map_err(unkept)
+        kept(machine, &asked, motion).map_err(as_failure)
     }
 }
 
-/// What is asked for is wrong, or has no answer.
-fn unkept(why: NotKept) -> Failure {
+/// Converts a refusal into a failure: wrong input, or no answer.
+fn as_failure(why: NotKept) -> Failure {
     match why {
         NotKept::OutOfRange { .. } | NotKept::NoParameter(_) | NotKept::Twice(_) => Failure::wrong_input(why),
         why => Failure::no_answer(why),
     }
 }
 
-/// As a person reads it.
+/// Formats the report as text.
 pub fn text(report: &KeptReport, machine: &Machine, by: &str) -> String {
     let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
     for KeptChange { key, from, to, penalty, unit } in &report.changes {

@@ -1,9 +1,9 @@
-//! What a design has cost and brought, in words.
+//! Measures of a design, as text.
 
 use stillbase::settings::number::fixed;
 use stillbase::study::measures::Measures;
 
-/// A line for each.
+/// Formats the measures, one in each line.
 pub fn text(measures: &Measures) -> String {
     let mut text = format!(
         "added mass       {} kg\nadded inertia    {} kg m², Σ D_k\n",

@@ -85,14 +85,14 @@ pub struct Design {
     format: Format,
 }
 
-/// Penalties further apart than these would drown in rounding.
+/// Parses a penalty; a larger ratio of penalties would be lost in rounding.
 fn penalty(text: &str) -> Result<f64, String> {
     let within = text.trim().parse().ok().filter(|p| (1e-6..=1e6).contains(p));
     within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
 }
 
 impl Design {
-    /// Prints the new centres of mass and what they achieve, and writes the machine.
+    /// Prints the new centres of mass and the balance that they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         if !self.beside.is_empty() {
             return self.fronts();
@@ -136,7 +136,8 @@ impl Design {
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
-    /// The task whose motion counts, if one of the machines has as many drives as it moves.
+    /// Returns a run of the task whose motion is used, if there is one. Fails unless one of the machines has as many
+    /// drives.
     fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
         let Some(name) = &self.task else { return Ok(None) };
         let run = Run::new(&settled(&scenario(name, &Settings::default())?)?.0)?;
@@ -153,7 +154,7 @@ impl Design {
         }
     }
 
-    /// Prints counterweights and what they come to, and writes the machine that carries them.
+    /// Prints counterweights and their measures, and writes the machine that carries them.
     fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
@@ -175,7 +176,7 @@ impl Design {
     }
 }
 
-/// Writes a machine under the name of its file: it is not the one that it was made from.
+/// Writes a machine under the name of its file, because it differs from the machine that it was made from.
 fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<(), Failure> {
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();

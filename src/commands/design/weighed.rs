@@ -95,7 +95,7 @@ pub struct WeighArguments {
 }
 
 impl WeighArguments {
-    /// What is asked for.
+    /// Returns the problem that the arguments define.
     pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<Weighing, Failure> {
         let mut sites = sites(machine, &self.range)?;
         for word in &self.max_mass {
@@ -134,7 +134,7 @@ impl WeighArguments {
         })
     }
 
-    /// In how many machines a front is asked for; two where none is.
+    /// Returns the number of machines of a Pareto front; two if none is asked for.
     pub fn front_count(&self) -> usize {
         self.front.map_or(2, usize::from)
     }
@@ -152,7 +152,8 @@ impl WeighArguments {
         inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
     }
 
-    /// Why there are none; a mass that would do as a radius where radii are bounded.
+    /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are
+    /// also given as radii.
     fn refusal(&self, why: NoWeights, disc: &Disc) -> Failure {
         let (NoWeights::Conflict { would, .. } | NoWeights::Reaches { would, .. }, Some(_)) = (&why, self.max_radius)
         else {
@@ -168,7 +169,7 @@ impl WeighArguments {
         Failure::no_answer(said)
     }
 
-    /// Lengths that are sought.
+    /// Returns the search for lengths, if any are sought.
     fn lengths(&self, weighing: &Weighing) -> Option<LengthSearch> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
         (!self.length.is_empty()).then(|| LengthSearch {
@@ -182,7 +183,7 @@ impl WeighArguments {
         })
     }
 
-    /// Finds them, and what they come to.
+    /// Finds the counterweights. Returns the machine that carries them, and the report on it.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
         let weighing = self.asked(machine, motion)?;
         tell_taken_off(machine, "");
@@ -198,7 +199,7 @@ impl WeighArguments {
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balanced(machine, &asked, motion, &mut go_on).map_err(|why| match why {
-            NoCounterweights::Lengths(why) => unsought(why),
+            NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => unweighed(why),
             NoCounterweights::Machine(why) => why.into(),
@@ -206,7 +207,7 @@ impl WeighArguments {
     }
 }
 
-/// Says which counterweights of a machine are taken off, after words that say of which.
+/// Prints which counterweights of a machine are taken off, after the name of the machine in `of`.
 pub fn tell_taken_off(machine: &Machine, of: &str) {
     let taken_off = taken_off(machine);
     if taken_off.is_empty() {
@@ -221,8 +222,8 @@ pub fn tell_taken_off(machine: &Machine, of: &str) {
     ));
 }
 
-/// What is asked for is wrong, or has no answer.
-fn unsought(why: NoLengths) -> Failure {
+/// Converts the reason why there are no lengths into a failure: wrong input, or no answer.
+fn lengths_failure(why: NoLengths) -> Failure {
     match why {
         NoLengths::None { .. } => Failure::no_answer(why),
         NoLengths::Weights(why) => unweighed(why),
@@ -230,7 +231,7 @@ fn unsought(why: NoLengths) -> Failure {
     }
 }
 
-/// What is asked for is wrong, or has no answer.
+/// Converts the reason why there are no counterweights into a failure: wrong input, or no answer.
 pub fn unweighed(why: NoWeights) -> Failure {
     match why {
         NoWeights::OutOfRange { .. } | NoWeights::Twice(_) | NoWeights::RotorTwice(_) | NoWeights::NoRotor(_) => {
@@ -240,19 +241,19 @@ pub fn unweighed(why: NoWeights) -> Failure {
     }
 }
 
-/// Of a material by name, or as it is given, kg/m³.
+/// Parses a density, kg/m³, or the name of a material.
 fn density(text: &str) -> Result<f64, String> {
     let known = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
     let want = || format!("want a density in kg/m³, or {}", MATERIALS.map(|(name, _)| name).join(", "));
     known.map_or_else(|| text.trim().parse().map_err(|_| want()), |(_, density)| Ok(*density))
 }
 
-/// One number; whether it may be so is said where it is used.
+/// Parses a number; its range is checked where it is used.
 fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "want a number, as 0.05".to_owned())
 }
 
-/// LO,HI, kg.
+/// Parses LO,HI, kg.
 fn payload(text: &str) -> Result<[f64; 2], String> {
     ends(text).ok_or_else(|| "want two numbers, as 0.1,0.5".to_owned())
 }
@@ -277,17 +278,17 @@ fn objective(text: &str) -> Result<Objective, String> {
     }
 }
 
-/// What is told of each machine of a front.
+/// Columns of the table of a Pareto front.
 pub const FRONT: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"];
 
-/// The same of one of them.
+/// Returns the cells of one machine of a Pareto front.
 pub fn front_cells(point: &FrontPoint) -> [String; 5] {
     let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
     let FrontPoint { added_mass, inertia, torque, workspace, off_by } = *point;
     [fixed(added_mass, 6), fixed(inertia, 6), or_none(torque), or_none(workspace), fixed(off_by, 6)]
 }
 
-/// As a person reads it.
+/// Formats the report as text.
 pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
     for w in &report.weights {

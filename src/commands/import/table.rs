@@ -5,7 +5,7 @@ use stillbase::study::import::{Imported, Line};
 
 use crate::commands::output::{Table, yes};
 
-/// Given and proposed side by side.
+/// Formats the given and the proposed motion side by side.
 pub fn table(answer: &Imported) -> String {
     let usual = if answer.content == "tip" { "minimum norm" } else { "as given" };
     let mut table = Table::new(["", usual, "proposed", ""]).with_words(3);

@@ -94,8 +94,8 @@ pub struct Tolerance {
     format: Format,
 }
 
-/// Machines of which all results are kept at once.
-const MOST_AT_ONCE: u64 = 20_000_000;
+/// Maximum number of machines of one run, because all of their results are held in memory.
+const MAX_MACHINES: u64 = 20_000_000;
 
 fn samples(text: &str) -> Result<u64, String> {
     let count = text.trim().parse().ok().filter(|n| (1..=MAX_SAMPLES).contains(n));
@@ -130,7 +130,7 @@ impl From<ShardError> for Failure {
 }
 
 impl Tolerance {
-    /// Draws and judges the machines, or merges parts.
+    /// Draws and evaluates the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
         match self.merge.is_empty() {
             true => self.study(),
@@ -156,7 +156,7 @@ impl Tolerance {
         self.format.print(&answer, Merged::text)
     }
 
-    /// What the scenario says, with what the command line says over it.
+    /// Returns the tolerances of the scenario; those of the command line replace its own.
     fn section(&self, scenario: &Scenario) -> Section {
         let mut section = scenario.tolerance.clone();
         section.spreads.extend(self.spreads.iter().cloned());
@@ -193,8 +193,8 @@ impl Tolerance {
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
         let range = stillbase::study::tolerance::shard(samples, (i, n));
-        if range.end - range.start > MOST_AT_ONCE {
-            let why = format!("{} machines at once: want at most {MOST_AT_ONCE}, in shards", range.end - range.start);
+        if range.end - range.start > MAX_MACHINES {
+            let why = format!("{} machines at once: want at most {MAX_MACHINES}, in shards", range.end - range.start);
             return Err(Failure::wrong_input(why));
         }
         if range.is_empty() {
@@ -229,8 +229,8 @@ impl Tolerance {
         self.format.print(&answer, |answer| report::text(&answer.report))
     }
 
-    /// Evaluates the machines of a range and writes them if asked; outcomes, and those of perfect tracking where the
-    /// former were simulated.
+    /// Evaluates the machines of a range and writes them if asked. Returns their outcomes and, if these are simulated,
+    /// those of perfect tracking.
     fn evaluate(
         &self,
         ensemble: &Ensemble,

@@ -1,4 +1,4 @@
-//! Machines on all cores, their results in order.
+//! Evaluates machines on all cores, with results in order.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -7,13 +7,13 @@ use std::thread;
 use stillbase::session::Refusal;
 use stillbase::study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 
-/// Chunks of a wave, for each thread: enough that no thread waits long for the slowest.
-const CHUNKS: usize = 32;
+/// Number of chunks of a wave for each thread, enough that no thread waits long for the slowest.
+const CHUNKS_PER_THREAD: usize = 32;
 
-/// Shows every sample of a range in order.
+/// Evaluates every sample of a range, and calls `see` with the batches in order.
 ///
 /// # Errors
-/// If a simulation fails, or what `see` says.
+/// If a simulation fails, or the error of `see`.
 pub fn evaluate<E: From<Refusal>>(
     ensemble: &Ensemble,
     mode: Mode,
@@ -25,7 +25,7 @@ pub fn evaluate<E: From<Refusal>>(
     let chunks = range.start / CHUNK as u64..range.end.div_ceil(CHUNK as u64);
     let mut samplers: Vec<Sampler> = (0..threads).map(|_| ensemble.sampler()).collect();
     let wave = match mode {
-        Mode::Tracking => threads * CHUNKS,
+        Mode::Tracking => threads * CHUNKS_PER_THREAD,
         Mode::Simulated(_) => threads,
     };
     let mut first = chunks.start;

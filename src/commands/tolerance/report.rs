@@ -1,4 +1,4 @@
-//! What a study comes to, as JSON and as text.
+//! Results of a study, as JSON and as text.
 
 use serde::Serialize;
 use stillbase::settings::number::{counted, fixed, shown};
@@ -6,7 +6,7 @@ use stillbase::study::tolerance::{Distribution, Distributions, Kept, Outcome, Pa
 
 use crate::commands::output::Table;
 
-/// The four numbers of every machine, a row each.
+/// Formats the distributions of the four results of a machine, one in each row.
 fn distributions_table(all: &Distributions, nominal: Option<&Outcome>) -> Table {
     let head = ["", "nominal", "mean", "deviation", "least", "5 %", "50 %", "95 %", "99 %", "greatest"];
     let mut table = Table::new(head);
@@ -26,7 +26,7 @@ fn distributions_table(all: &Distributions, nominal: Option<&Outcome>) -> Table 
     table
 }
 
-/// How many keep within limits; none if there are no limits.
+/// Formats how many machines keep within limits; `None` if there are no limits.
 fn yields_table(yields: &Yields) -> Option<Table> {
     let mut table = Table::new(["yield", "limit", "machines", "share %", "95 % between %"]);
     let rows = [("|n_B| N m", &yields.moment), ("|f_B| N", &yields.force), ("both", &yields.both)];
@@ -42,25 +42,25 @@ fn yields_table(yields: &Yields) -> Option<Table> {
     any.then_some(table)
 }
 
-/// What merged parts come to.
+/// Results of merged parts.
 #[derive(Serialize)]
 pub struct Merged {
     /// The file that was written.
     pub file: String,
-    /// Machines.
+    /// Number of machines.
     pub samples: u64,
-    /// Which random machines.
+    /// Seed of the random machines.
     pub seed: u64,
-    /// Peaks and root mean squares.
+    /// Distributions of peaks and root mean squares.
     #[serde(flatten)]
     pub distributions: Distributions,
-    /// How many keep within limits.
+    /// Numbers of machines within limits.
     #[serde(rename = "yield")]
     pub yields: Yields,
 }
 
 impl Merged {
-    /// As text.
+    /// Formats the results as text.
     pub fn text(&self) -> String {
         let head = format!("{} · {}, seed {}", self.file, counted(self.samples, "machine"), self.seed);
         let yields = yields_table(&self.yields).map(|t| format!("\n{t}")).unwrap_or_default();
@@ -68,10 +68,10 @@ impl Merged {
     }
 }
 
-/// What a study comes to.
+/// Results of a study.
 #[derive(Serialize)]
 pub struct Answer {
-    /// Of its machines.
+    /// Report on its machines.
     #[serde(flatten)]
     pub report: PartReport,
     /// The file that was written.
@@ -79,13 +79,13 @@ pub struct Answer {
     pub file: Option<String>,
 }
 
-/// Fewer machines than this say nothing about means and deviations.
-const FEW: u64 = 100;
+/// Minimum number of machines for a statement on means and deviations.
+const MIN_SAMPLES: u64 = 100;
 
-/// Rows of the table of shares; the rest is one row.
-const SHOWN: usize = 12;
+/// Maximum number of rows of the table of shares; the other parameters share one more row.
+const MAX_SHARE_ROWS: usize = 12;
 
-/// As text.
+/// Formats the report as text.
 pub fn text(report: &PartReport) -> String {
     let [from, to] = report.shard;
     let mode = if report.simulated { "each simulated" } else { "perfect tracking" };
@@ -122,7 +122,7 @@ pub fn text(report: &PartReport) -> String {
     text
 }
 
-/// The parameters that bring in the most variance, by the larger of their two shares.
+/// Returns the table of the parameters that cause the most variance, by the larger of their two shares.
 fn shares_table(report: &PartReport) -> Table {
     let mut shares: Vec<_> = report.shares.parameters.iter().collect();
     let rank = |s: &Share| s.moment_share.max(s.force_share);
@@ -130,7 +130,7 @@ fn shares_table(report: &PartReport) -> Table {
     let mut table =
         Table::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"]).with_words(2);
     let percent = |x: f64| fixed(100.0 * x, 2);
-    for s in shares.iter().take(SHOWN) {
+    for s in shares.iter().take(MAX_SHARE_ROWS) {
         table.row([
             s.key.clone(),
             shown(s.deviation, 6),
@@ -141,7 +141,7 @@ fn shares_table(report: &PartReport) -> Table {
             percent(s.force_share),
         ]);
     }
-    if let Some(rest) = shares.get(SHOWN..).filter(|rest| !rest.is_empty()) {
+    if let Some(rest) = shares.get(MAX_SHARE_ROWS..).filter(|rest| !rest.is_empty()) {
         let sum = |f: fn(&Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
         let [moment, force] = [sum(|s| s.moment_share), sum(|s| s.force_share)];
         let empty = String::new;
@@ -150,7 +150,7 @@ fn shares_table(report: &PartReport) -> Table {
     table
 }
 
-/// Where first order holds, and where it does not.
+/// Formats where first order agrees with all samples, and where it does not.
 fn orders(report: &PartReport) -> String {
     let a = &report.agreement;
     let mut table =
@@ -164,7 +164,7 @@ fn orders(report: &PartReport) -> String {
     ];
     for (name, gap, tolerance) in rows {
         let verdict = match gap.worst <= tolerance {
-            _ if name.ends_with("sampled") && report.bands.samples < FEW => "too few samples".into(),
+            _ if name.ends_with("sampled") && report.bands.samples < MIN_SAMPLES => "too few samples".into(),
             true => "agree".to_owned(),
             false => format!("part, by more than {} σ", fixed(tolerance, 2)),
         };
@@ -179,7 +179,7 @@ fn orders(report: &PartReport) -> String {
         explained(report.shares.force_first_order),
     );
     let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.worst > a.sampled_tolerance);
-    if parts && report.bands.samples >= FEW {
+    if parts && report.bands.samples >= MIN_SAMPLES {
         text += "|f_B| is a norm: near a balanced machine its mean and deviation are not of first order, so read its \
                      percentiles and RMS.\n";
     }

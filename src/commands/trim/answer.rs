@@ -1,4 +1,4 @@
-//! The answer of `stillbase trim`, as a person reads it.
+//! The answer of `stillbase trim` as text.
 
 use stillbase::mechanics::machine::Machine;
 use stillbase::settings::number::{counted, fixed, shown};
@@ -6,10 +6,10 @@ use stillbase::study::trim::{Change, Suggestion, Tried, TrimReport};
 
 use super::super::output::{Table, yes};
 
-/// As many motions are listed.
-const LISTED: usize = 8;
+/// Maximum number of motions in the list.
+const MAX_LISTED_MOTIONS: usize = 8;
 
-/// As a person reads it.
+/// Formats the report as text.
 pub fn text(report: &TrimReport, machine: &Machine) -> String {
     let how = match report.window {
         None => "measured accelerations".into(),
@@ -78,7 +78,7 @@ fn suggestion_text(next: &Suggestion) -> String {
         format!("{} ±", next.worst),
         "all narrower by".into(),
     ]);
-    for Tried { motion, candidate } in next.candidates.iter().take(LISTED) {
+    for Tried { motion, candidate } in next.candidates.iter().take(MAX_LISTED_MOTIONS) {
         let list = |all: &[f64]| all.iter().map(|x| fixed(*x, 2)).collect::<Vec<_>>().join(" ");
         let alike = candidate.frequency.windows(2).all(|w| w[0] == w[1]);
         let frequencies = if alike { &candidate.frequency[..1] } else { &candidate.frequency };

@@ -86,7 +86,7 @@ pub struct Trim {
 }
 
 impl Trim {
-    /// Reads what was measured, prints what it says, and writes the machine.
+    /// Reads the measurements, prints what was identified, and writes the machines.
     pub fn run(&self) -> Result<(), Failure> {
         for file in self.output.iter().chain(&self.identified) {
             check_output(file, self.force, &["toml"])?;
@@ -131,7 +131,7 @@ impl Trim {
             ));
         }
         found.doubt.iter().for_each(|doubt| say(format!("note: {doubt}")));
-        let Found { report, taken, mended } = found.outcome.map_err(unread)?;
+        let Found { report, taken, mended } = found.outcome.map_err(as_failure)?;
         self.format.print(&report, |report| answer::text(report, &machine))?;
         let mended = mended.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
@@ -160,7 +160,8 @@ impl Trim {
         Ok(())
     }
 
-    /// What may change: the counterweights that there are, else new ones, or the links where these are named.
+    /// Returns what may change: the present counterweights, new ones if there are none, or numbers of links that are
+    /// named.
     fn way(&self, machine: &Machine) -> Result<Way, Failure> {
         let weights = machine.spec().counterweights.len();
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
@@ -173,7 +174,7 @@ impl Trim {
                 "--range is for new counterweights on a machine that has none: want --fix, --free or --bound alone";
             return Err(Failure::wrong_input(why));
         }
-        // What is named alone may change; where only what stays is named, the other centres of mass may.
+        // Only named numbers may change. If only numbers that stay are named, all other centres of mass may change.
         let mut asked = match weights {
             0 if self.free.is_empty() && self.bound.is_empty() => {
                 Keep::coms(machine, &vec![1.0; machine.links().len()])
@@ -186,8 +187,8 @@ impl Trim {
     }
 }
 
-/// Why a measurement says nothing.
-fn unread(why: NoTrim) -> Failure {
+/// Converts the reason why measurements cannot be used into a failure.
+fn as_failure(why: NoTrim) -> Failure {
     match why {
         NoTrim::Unusable(why) => Failure::wrong_input(why),
         NoTrim::Doubted(doubt) => {
@@ -198,7 +199,7 @@ fn unread(why: NoTrim) -> Failure {
     }
 }
 
-/// A machine under the name of its file, as TOML.
+/// Returns a machine as TOML, under the name of its file.
 fn named(machine: &Machine, file: &Path, summary: String) -> Result<String, Failure> {
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

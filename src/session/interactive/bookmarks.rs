@@ -1,4 +1,4 @@
-//! Bookmarks of a session: set, renamed and taken away, each of it a change that can be undone.
+//! Sets, renames and removes bookmarks of a session; each of these changes can be undone.
 
 use std::sync::Arc;
 
@@ -10,34 +10,34 @@ use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
 use crate::settings::range::shortened;
 
 impl Session {
-    /// Instants to find again, by time.
+    /// Returns the bookmarks in the order of time.
     pub fn bookmarks(&self) -> &[Bookmark] {
         &self.document.bookmarks
     }
 
-    /// The same, to be kept.
+    /// Returns the bookmarks as a shared value.
     pub fn shared_bookmarks(&self) -> Shared<Vec<Bookmark>> {
         Shared(self.document.bookmarks.clone())
     }
 
-    /// The bookmark at an instant, s.
+    /// Returns the bookmark at an instant, s, to within half a step.
     pub fn bookmark_at(&self, time: f64) -> Option<&Bookmark> {
         let near = 0.5 * self.scenario().step;
         self.bookmarks().iter().find(|mark| (mark.time - time).abs() < near)
     }
 
-    /// A name that no bookmark has: `bookmark 1`.
+    /// Returns a name that no bookmark has, such as `bookmark 1`.
     pub fn free_name(&self) -> String {
         let name = |n: usize| format!("bookmark {n}");
         let free = |n: &usize| self.bookmarks().iter().all(|mark| mark.name != name(*n));
         name((1..).find(free).unwrap_or_default())
     }
 
-    /// Puts a bookmark at an instant, s, or gives the one there another name; without a name it is taken away. What
-    /// became of it, if anything did.
+    /// Sets a bookmark at an instant, s, or renames the one there; an empty name removes it. Returns a description of
+    /// the change, if there is one.
     ///
     /// # Errors
-    /// If there are as many as there may be; then nothing has changed.
+    /// If there are [`MAX_BOOKMARKS`] already; then nothing has changed.
     pub fn bookmark(&mut self, time: f64, name: &str) -> Result<Option<String>, String> {
         let known = self.bookmark_at(time).cloned();
         let name = shortened(name.trim(), MAX_NAME - 1);
@@ -62,7 +62,7 @@ impl Session {
         Ok(Some(title))
     }
 
-    /// Changes what is kept beside the run; the run stays as it is.
+    /// Changes bookmarks or branches; the run stays as it is.
     pub(super) fn change_beside(&mut self, title: String, kept: Kept, change: impl FnOnce(&mut super::Document)) {
         self.end_gesture();
         let before = self.document.clone();

@@ -1,5 +1,5 @@
-//! Branches of a session: how it went on before somebody went back and did something else. Each is a script over the
-//! same scenario, made again when it is asked for.
+//! Branches of a session: courses of the run that were replaced when the user went back in time and edited. Each is a
+//! script for the same scenario, and is run again when it is shown.
 
 use std::sync::Arc;
 
@@ -13,20 +13,20 @@ use crate::session::fork::{Fork, Forks};
 use crate::session::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
 
 impl Session {
-    /// How many branches are kept.
+    /// Returns the number of branches that are kept.
     pub fn branch_count(&self) -> usize {
         self.document.branches.len()
     }
 
-    /// How many were left so far, and the title of the one that went because the last was one too many.
+    /// Returns the number of branches made so far, and the title of the branch that the last of them has displaced.
     pub fn partings(&self) -> (u64, Option<&str>) {
         (self.partings.0, self.partings.1.as_deref())
     }
 
-    /// What tells each of them from the run on display, the oldest first; no two have the same title.
+    /// Returns the difference of each branch from the run on display, the oldest first; no two have the same title.
     pub fn forks(&self) -> Arc<Vec<Fork>> {
         let branches = &self.document.branches;
-        // How far the run goes beyond all of them tells nothing.
+        // Differences do not depend on how far the run goes beyond the longest branch.
         let end = self.document.end.min(branches.iter().map(|left| left.end).max().unwrap_or(0));
         self.run.queries().ask::<Whole<Forks>>(&(Same(branches.clone()), self.edits.clone(), end))
     }
@@ -35,7 +35,7 @@ impl Session {
         left.beside(&self.edits, self.document.end)
     }
 
-    /// The run on display, to be found again.
+    /// Returns the run on display as a branch.
     fn as_left(&self) -> Left {
         let last = (self.length() / self.scenario().step).round() as u64;
         let end = if self.frames.last().is_some_and(|frame| frame.is_finite()) { last } else { 0 };
@@ -43,7 +43,7 @@ impl Session {
         Left { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
     }
 
-    /// The branches with the run as it goes on after the instant on display, and the partings then.
+    /// Returns the branches with the present run added, and the new value of `partings`.
     pub(super) fn with_left(&self) -> (Arc<Vec<Left>>, (u64, Option<String>)) {
         let left = self.as_left();
         let mut all = self.document.branches.to_vec();
@@ -61,10 +61,10 @@ impl Session {
         (Arc::new(all), partings)
     }
 
-    /// Shows a branch; the run on display becomes one in its place.
+    /// Shows a branch; the run on display takes its place among the branches.
     ///
     /// # Errors
-    /// If it cannot be made again, or is not wanted any more; then nothing has changed.
+    /// If the branch cannot be run again, or `watch` cancels it; then nothing has changed.
     pub fn switch_branch_while(&mut self, branch: usize, watch: Watch<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(next) = self.document.branches.get(branch) else { return Ok(()) };
@@ -80,7 +80,7 @@ impl Session {
         Ok(())
     }
 
-    /// Lets go of a branch; what became of it.
+    /// Removes a branch. Returns a description of the change, if there is such a branch.
     pub fn drop_branch(&mut self, branch: usize) -> Option<String> {
         let title = format!("remove branch: {}", self.fork(self.document.branches.get(branch)?).title);
         self.change_beside(title.clone(), Kept::Branches, |document| {
@@ -89,7 +89,7 @@ impl Session {
         Some(title)
     }
 
-    /// A branch as a scenario of its own.
+    /// Returns a branch as a scenario of its own.
     pub fn branch(&self, branch: usize) -> Option<Scenario> {
         let left = self.document.branches.get(branch)?;
         let mut scenario = Scenario::clone(&self.document.scenario);
@@ -98,13 +98,13 @@ impl Session {
         Some(scenario)
     }
 
-    /// As they are saved.
+    /// Returns the branches as they are saved.
     pub(super) fn kept_branches(&self) -> Vec<Branch> {
         let saved = |left: &Left| Branch { duration: left.end as f64 * left.step, edits: left.script.to_vec() };
         self.document.branches.iter().map(saved).collect()
     }
 
-    /// Takes over what was saved beside a run.
+    /// Takes saved bookmarks and branches over.
     pub(super) fn keep_beside(&mut self, mut bookmarks: Vec<Bookmark>, branches: &[Branch]) {
         bookmarks.sort_by(|a, b| a.time.total_cmp(&b.time));
         let left = |branch: &Branch| {

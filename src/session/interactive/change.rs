@@ -1,31 +1,31 @@
-//! [`Change`]: one step of history.
+//! [`Change`]: an undo entry.
 
 use crate::session::document::{Document, Kept};
 use crate::session::edit::{Edit, TimedEdit};
 
-/// One step of history.
+/// Undo entry.
 #[derive(Clone, Debug)]
 pub(super) struct Change {
-    /// What it was made to.
+    /// Document before the change; for an entry of redo, after it.
     pub before: Document,
-    /// What was done; none where another scenario was opened.
+    /// The edit, if the change is one.
     pub edit: Option<TimedEdit>,
-    /// What takes it back while the machine moves.
+    /// Edit that undoes the change while the machine moves.
     pub inverse: Option<Edit>,
-    /// In words.
+    /// Description.
     pub title: String,
-    /// Only this of what is kept beside the run has changed.
+    /// Set if only bookmarks or only branches have changed.
     pub beside: Option<Kept>,
 }
 
 impl Change {
-    /// Whether it changes the task or the base: the motion is then planned anew, so it can stand only before the first
+    /// Whether it changes path or base: the motion is then planned anew, so the edit is allowed only before the first
     /// step.
     pub fn plans(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| e.edit.sets_path() || e.edit.sets(&["base"]))
     }
 
-    /// Whether no frame depends on what it has changed.
+    /// Whether no frame depends on the change.
     pub fn is_aside(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| e.edit.is_aside())
     }

@@ -1,4 +1,4 @@
-//! What an edit does to a session: at the present step, or to the run as a whole.
+//! Applies edits to a session: at the present step, or to the run as a whole.
 
 use super::Session;
 use crate::query::Watch;
@@ -8,8 +8,8 @@ use crate::session::edit::{Edit, TimedEdit};
 use crate::session::refusal::Refusal;
 
 impl Session {
-    /// Applies an edit: to the machine in motion at the present step; at rest, parameters and poses change the start,
-    /// and the run so far is made again.
+    /// Applies an edit. Drags and pushes apply at the present step, and so do other edits while the machine moves. At
+    /// rest, settings and poses change the start, and the run so far is computed again.
     ///
     /// # Errors
     /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
@@ -18,10 +18,10 @@ impl Session {
         self.apply_while(edit, &mut |_| true)
     }
 
-    /// The same, while it is wanted.
+    /// Does the same as [`apply`](Self::apply), unless `watch` cancels it.
     ///
     /// # Errors
-    /// As [`apply`](Self::apply), and if it is not wanted any more.
+    /// As [`apply`](Self::apply), and if `watch` cancels it.
     pub fn apply_while(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         let mut now = self.concerns_now(&edit);
         if let (true, Some(waiting)) = (now, self.run.waiting()) {
@@ -33,7 +33,7 @@ impl Session {
         };
         match done {
             Err(why) if now && edit.sets_limits() && why != Refusal::Stopped => {
-                // The motion in progress does not keep them: they hold from its start.
+                // The motion in progress does not keep the new limits, so they are applied from its start.
                 now = false;
                 self.amend(edit, watch)?;
             }
@@ -49,11 +49,11 @@ impl Session {
             edit if edit.leads() => true,
             Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_led(),
-            // A machine that is led by hand has the new limits from the present step on.
+            // A dragged machine has the new limits from the present step on.
             edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
             // A motion in progress cannot change its time or its base.
             edit if edit.is_of_the_whole() => false,
-            // A slider that set the machine in motion goes on as it began.
+            // Edits of a gesture apply as its first edit did, even if that set the machine in motion.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
     }
@@ -63,7 +63,7 @@ impl Session {
         self.is_moving() && self.is_at_end()
     }
 
-    /// At the present step; later frames, if the display was scrubbed back, are replaced.
+    /// Applies an edit at the present step. If an earlier frame is on display, the later frames are replaced.
     fn apply_now(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
             return Err(Refusal::Full { time: self.run.simulation().time() });
@@ -81,7 +81,7 @@ impl Session {
         let joins = self.gesture
             && remade.is_none()
             && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
-        // An edit that replaces the one before starts from the run before that one, so that it leaves no trace.
+        // An edit that replaces the one before starts from the run before both, as if the first had not been made.
         let unedited = match (&remade, &self.unedited) {
             (Some(remade), _) => remade.run.clone(),
             (None, Some(run)) if joins => {
@@ -109,13 +109,13 @@ impl Session {
         Ok(())
     }
 
-    /// Before the first step, whatever has happened since: for a parameter, during the whole run.
+    /// Applies an edit before the first step, so that a setting holds during the whole run.
     fn amend(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);
         let mut partings = self.partings.clone();
-        // What was led by hand would be gone.
+        // The dragged motion would be lost, so it becomes a branch.
         if self.is_led() && !document.script.is_led() {
             (document.branches, partings) = self.with_left();
         }
@@ -136,14 +136,14 @@ impl Session {
         Ok(())
     }
 
-    /// The newest frame once more, after an edit.
+    /// Replaces the newest frame after an edit.
     fn show_present(&mut self) {
         let frame = self.run.frame();
         self.machines.hold(frame.step, &self.scenario().machine.clone());
         self.frames.replace_last(frame);
     }
 
-    /// Applies while time passes, without touching history.
+    /// Applies an edit while time passes, without an undo entry.
     pub(super) fn append(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
             return self.restore(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
@@ -156,8 +156,9 @@ impl Session {
         Ok(())
     }
 
-    /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
-    /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
+    /// Runs a document and shows the same instant as before, if there is a frame. If `patient`, a task that does not
+    /// fit its machine waits. The document stays complete, so that the run goes on where it was once the task fits
+    /// again.
     pub(super) fn restore(&mut self, document: Document, patient: bool, watch: Watch<'_>) -> Result<(), Refusal> {
         let Performed { run, frames, machines } =
             document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;

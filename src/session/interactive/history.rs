@@ -1,4 +1,4 @@
-//! What can be taken back in a session, and brought back.
+//! Undo and redo of a session.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::session::refusal::Refusal;
 use crate::session::scenario::Scenario;
 
 impl Session {
-    /// Takes an edit into history; those of one gesture are one change.
+    /// Adds an undo entry for an edit; edits of one gesture share one entry.
     pub(super) fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
         self.redo.clear();
         let joins = self.gesture
@@ -30,50 +30,51 @@ impl Session {
         self.gesture = true;
     }
 
-    /// Ends a drag: the next edit is an undo of its own.
+    /// Ends a gesture: the next edit has an undo entry of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = false;
         self.gesture_now = None;
         self.unedited = None;
     }
 
-    /// Whether the last change is of a drag that goes on.
+    /// Whether the last change belongs to a gesture that goes on.
     pub fn is_in_gesture(&self) -> bool {
         self.gesture
     }
 
-    /// How many changes can be undone.
+    /// Returns the number of changes that can be undone.
     pub fn undo_count(&self) -> usize {
         self.undo.len()
     }
 
-    /// What undo would take back.
+    /// Returns the title of the change that undo would take back.
     pub fn undo_title(&self) -> Option<&str> {
         self.undo.last().map(|c| c.title.as_str())
     }
 
-    /// What redo would bring back.
+    /// Returns the title of the change that redo would bring back.
     pub fn redo_title(&self) -> Option<&str> {
         self.redo.last().map(|c| c.title.as_str())
     }
 
-    /// Titles of all changes: those that can be undone from the first on, then those that can be brought back.
+    /// Returns the titles of all changes: those that can be undone, the oldest first, then those that can be redone.
     pub fn history(&self) -> impl Iterator<Item = &str> {
         self.undo.iter().chain(self.redo.iter().rev()).map(|change| change.title.as_str())
     }
 
-    /// Takes the last edit back: in motion by its inverse at the present step, paused or at rest by restoring what was.
+    /// Takes the last change back: in motion by the inverse edit at the present step, paused or at rest by restoring
+    /// the document before it.
     ///
     /// # Errors
-    /// If what was cannot be restored; then nothing has changed.
+    /// If that document cannot be restored; then nothing has changed.
     pub fn undo(&mut self) -> Result<(), Refusal> {
         self.undo_while(&mut |_| true)
     }
 
-    /// The same, while it is wanted.
+    /// Does the same as [`undo`](Self::undo), unless `watch` cancels it.
     ///
     /// # Errors
-    /// As [`undo`](Self::undo), and if it is not wanted any more.
+    /// As [`undo`](Self::undo), and if `watch` cancels it.
     pub fn undo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
@@ -84,7 +85,8 @@ impl Session {
         Ok(())
     }
 
-    /// What was before a change or after it: in motion by an edit at the present step, paused or at rest by restoring it.
+    /// Goes to the document of an undo or redo entry: in motion by `edit` at the present step, paused or at rest by
+    /// restoring the document.
     fn go_to(&mut self, change: &Change, edit: Option<&Edit>, watch: Watch<'_>) -> Result<(), Refusal> {
         match (edit, change.beside) {
             (_, Some(kept)) => {
@@ -93,13 +95,13 @@ impl Session {
             }
             (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
             (Some(edit), None) if self.is_running() && !change.plans() => {
-                self.append(edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
+                self.append(edit.clone(), watch).or_else(|why| self.restore_unless_stopped(why, &change.before, watch))
             }
             _ => self.return_to(&change.before, watch),
         }
     }
 
-    /// Brings back what undo took.
+    /// Brings back the change that undo took back.
     ///
     /// # Errors
     /// If it cannot apply; then nothing has changed.
@@ -107,10 +109,10 @@ impl Session {
         self.redo_while(&mut |_| true)
     }
 
-    /// The same, while it is wanted.
+    /// Does the same as [`redo`](Self::redo), unless `watch` cancels it.
     ///
     /// # Errors
-    /// As [`redo`](Self::redo), and if it is not wanted any more.
+    /// As [`redo`](Self::redo), and if `watch` cancels it.
     pub fn redo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
@@ -121,14 +123,15 @@ impl Session {
         Ok(())
     }
 
-    /// What was, with the frames that are there, if it differs in nothing on which they depend; the scenario of its run.
+    /// Returns a document of history with the present end, and the scenario of its run, if the present frames fit it
+    /// too.
     fn aside(&self, before: &Document) -> Option<(Document, Scenario)> {
         let document = Document { end: self.document.end, ..before.clone() };
         let scenario = document.aside_of(&self.document)?;
         Some((document, scenario))
     }
 
-    /// Returns to that; whether it could.
+    /// Goes to that document without running it again. Returns whether this was possible.
     fn go_aside(&mut self, before: &Document) -> bool {
         let Some((document, scenario)) = self.aside(before) else { return false };
         if self.run.set_asides(&scenario).is_err() {
@@ -140,12 +143,13 @@ impl Session {
         true
     }
 
-    /// What was, where the inverse cannot apply; not if the inverse is not wanted any more.
-    fn instead(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+    /// Restores a document after an edit that could not apply for the reason `why`, unless `watch` has cancelled the
+    /// edit.
+    fn restore_unless_stopped(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
         if why == Refusal::Stopped { Err(why) } else { self.return_to(document, watch) }
     }
 
-    /// What was, with time standing still.
+    /// Restores a document and pauses.
     fn return_to(&mut self, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
         self.restore(document.clone(), true, watch)?;
         self.playing = false;

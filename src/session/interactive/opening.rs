@@ -1,4 +1,4 @@
-//! How a session is opened.
+//! Opens sessions.
 
 use super::Session;
 use crate::query::Watch;
@@ -19,17 +19,18 @@ impl Session {
         Self::open_while(scenario, &mut |_| true)
     }
 
-    /// The same, while it is wanted.
+    /// Does the same as [`open`](Self::open), unless `watch` cancels it.
     ///
     /// # Errors
-    /// As [`open`](Self::open), and if it is not wanted any more.
+    /// As [`open`](Self::open), and if `watch` cancels it.
     pub fn open_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
-        // A saved session may have waited; a task that has just been written has not.
+        // Only a scenario with edits can be a session that was saved while it waited.
         let patient = !scenario.edits.is_empty();
         Self::opened(scenario, patient, watch)
     }
 
-    /// The same; a task that does not fit its machine waits, and [`Run::waiting`] says why.
+    /// Does the same as [`open`](Self::open), but a task that does not fit its machine waits, and [`Run::waiting`] says
+    /// why.
     ///
     /// # Errors
     /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.

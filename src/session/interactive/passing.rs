@@ -1,11 +1,11 @@
-//! How time passes in a session, and what of it is on display.
+//! Playback of a session: how time passes, and which frame is on display.
 
 use super::Session;
 use crate::query::Watch;
 use crate::session::document::WORD;
 
 impl Session {
-    /// Lets time pass. At the end of a finished motion it starts over.
+    /// Starts playback. At the end of a finished motion it starts over.
     pub fn play(&mut self) {
         if self.run.waiting().is_some() {
             return;
@@ -16,17 +16,17 @@ impl Session {
         self.playing = true;
     }
 
-    /// Stops time.
+    /// Stops playback.
     pub fn pause(&mut self) {
         self.playing = false;
     }
 
-    /// Shows an instant, s, as far as the run has got or the planned motion goes.
+    /// Shows an instant, s, at most the end of the run so far or of the planned motion.
     pub fn seek(&mut self, time: f64) {
         self.seek_while(time, &mut |_| true);
     }
 
-    /// The same, as far as it is wanted.
+    /// Does the same as [`seek`](Self::seek), until `watch` cancels it.
     pub fn seek_while(&mut self, time: f64, watch: Watch<'_>) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         let ahead = self.steps_to(time);
@@ -39,7 +39,7 @@ impl Session {
         self.cursor = step.min(self.frames.len() - 1);
     }
 
-    /// How many steps the run has still to do before it is at a time, s, of its planned motion.
+    /// Returns the number of steps that the run still needs to reach a time, s, of its planned motion.
     fn steps_to(&self, time: f64) -> usize {
         if self.is_led() {
             return 0;
@@ -50,7 +50,7 @@ impl Session {
         (to.min(planned) + 1).saturating_sub(self.frames.len())
     }
 
-    /// Moves the display by steps, either way; past the newest frame the run goes on.
+    /// Moves the display by a number of steps, either way; past the newest frame the run goes on.
     pub fn step_by(&mut self, steps: i64) {
         self.playing = false;
         let to = (self.cursor as i64).saturating_add(steps).max(0) as usize;
@@ -60,7 +60,7 @@ impl Session {
         self.cursor = to.min(self.frames.len() - 1);
     }
 
-    /// Lets `steps` steps pass, if time passes. Nothing happens once everything is at rest.
+    /// Advances playback by a number of steps. Does nothing if paused, or once everything is at rest.
     pub fn tick(&mut self, steps: u64) {
         for _ in 0..steps {
             if !self.is_moving() {
@@ -86,7 +86,7 @@ impl Session {
         self.run.advance();
         let frame = self.run.frame();
         self.frames.push(frame);
-        // A session can be opened again only as far as its run has numbers.
+        // A session can be opened again only up to its last finite frame.
         if frame.is_finite() {
             self.document.end = frame.step;
         }

@@ -1,4 +1,4 @@
-//! Along curves and joint lines: what a path is made of, and when it is where.
+//! Motions along curves and joint lines: the parts of a path, and their timing.
 
 use super::plan::{Pace, Plan, dynamics_of, keeps_rules};
 use crate::mechanics::dynamics::Surroundings;
@@ -15,7 +15,7 @@ use crate::session::scenario::{Corners, Scenario, Shape, Task};
 /// Paths from rest to rest, each with its length.
 pub(super) type Parts = Vec<(Path, f64)>;
 
-/// A path through the points of a task, by what finds its parts, and its timing.
+/// Plans a motion through the points of a task; `parts` finds the parts of its path.
 pub(super) fn along_parts(
     scenario: &Scenario,
     parts: &dyn Fn(&Scenario) -> Result<Parts, Refusal>,
@@ -29,7 +29,7 @@ pub(super) fn along_parts(
     let (own, pace) = motion(scenario)?;
     let has_corners = !task.via.is_empty() || task.closed;
     if task.law.is_fastest() && task.corners == Corners::Blend && has_corners {
-        // A corner rounded off very tightly may be no faster than a rest at it.
+        // A tightly blended corner may take longer than a stop at it.
         let resting = Scenario { task: Task { corners: Corners::Stop, ..task.clone() }, ..scenario.clone() };
         if let Ok((rests, pace)) = motion(&resting)
             && rests.duration() < own.duration()
@@ -41,7 +41,8 @@ pub(super) fn along_parts(
     Ok(Plan { pace, ..Plan::of(scenario, own) })
 }
 
-/// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
+/// Times the parts of a path, each from rest to rest. A time law gives each part a share of the time of the task in
+/// proportion to its length. The fastest laws find the least time of each part.
 pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();
@@ -54,7 +55,7 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
             let profile = fastest.profile;
             let time = profile.duration();
-            // Parts that do not move have no limit.
+            // A part without motion has no gap: its least time is 0.
             let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
             let pace = pace.get_or_insert(Pace { unlimited: Some(0.0), ..Pace::default() });
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
@@ -80,7 +81,7 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
     Ok((motion, pace))
 }
 
-/// A motion as slow as the limits of the drives want it, whatever the timing of its path.
+/// Stretches a motion in time until it keeps the limits of the drives. Fails if no speed does.
 pub(super) fn slowed(
     motion: Motion,
     model: &Inertia,
@@ -95,10 +96,10 @@ pub(super) fn slowed(
     })
 }
 
-/// The end effector's curves through the points; at their ends the motion rests.
+/// Returns the curves of the end effector through the points; the motion rests at the ends of each curve.
 ///
 /// # Errors
-/// If the points give none.
+/// If the points give no curve.
 pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
     let blend = if task.corners == Corners::Blend { task.blend } else { 0.0 };
     Ok(match task.shape() {
@@ -117,7 +118,7 @@ pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
     })
 }
 
-/// Least rates along curves from a start, with b held on a space of poses, if there is one.
+/// Follows curves from a start pose with least joint rates. `held` is the pose space on which b is held, if it is.
 pub(super) fn by_least_rates(
     scenario: &Scenario,
     start: DriveAngles,
@@ -138,8 +139,8 @@ pub(super) fn by_least_rates(
     Ok(parts)
 }
 
-/// A closed path as often as asked, an open one once; `round` gives what it is made of, from a pose in a cycle, and where
-/// it ends.
+/// Plans all cycles of a closed path, or an open path once. `round` returns the parts and the end pose of one cycle,
+/// from its start pose and its number, counted from 1.
 pub(super) fn in_rounds(
     scenario: &Scenario,
     start: DriveAngles,

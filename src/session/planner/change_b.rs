@@ -1,4 +1,4 @@
-//! From A at one b to B at another, along a straight joint line.
+//! Motions from A at one b to B at another, along a straight line in joint space or with a bang-bang b̈.
 
 use super::along::{slowed, timed};
 use super::plan::{Plan, Space, dynamics_of, keeps_rules};
@@ -15,7 +15,7 @@ use crate::planning::{Forecast, Motion};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
 
-/// From A at the b of the task to B at another; a limit on |n_B| sets the time.
+/// Plans a motion from A at the b of the task to B at another b; a limit on |n_B| bounds the time from below.
 pub(super) fn change_b(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     goes_straight(&scenario.task)?;
     let space = match space {
@@ -29,7 +29,7 @@ pub(super) fn change_b(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Re
     changed(scenario, space, &ends(&scenario.task, space)?)
 }
 
-/// Refuses points between A and B.
+/// Refuses points between A and B, and closed paths.
 fn goes_straight(task: &Task) -> Result<(), Refusal> {
     if task.via.is_empty() && !task.closed {
         return Ok(());
@@ -37,12 +37,12 @@ fn goes_straight(task: &Task) -> Result<(), Refusal> {
     Err(Refusal::Task("change-b goes straight from A to B: want no points between and an open path".into()))
 }
 
-/// Along the line between two poses, or where a limit on |n_B| is to be met as fast as can be, with a b that is bang-bang.
+/// Moves along the joint line between two poses. The fastest law with a limit on |n_B| uses a bang-bang b̈ instead.
 fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[Posed; 2]) -> Result<Plan, Refusal> {
     let (task, line) = (&scenario.task, joint_line(ends));
     let (model, around) = dynamics_of(scenario);
     let price = Price::of(&model, ends[1].b - ends[0].b)?;
-    // T² times the peak of n_B over |s̈|'s, for a b that moves.
+    // Only if b changes: at T² = `square` · (peak |s̈| for T = 1 s) the peak of |n_B| equals its limit.
     let moves = price.delta_b().abs() > 1e-9;
     let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
     let limits = Limits::of(&scenario.machine);
@@ -51,47 +51,48 @@ fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[Posed; 2]) -> Result<
             let table = bang_bang_in_b(space, ends);
             let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
             let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
-            // A short change of b leaves the joints little time.
+            // The time that a small change of b takes may be too short for the joints.
             slowed(motion, &model, &around, &limits)?
         }
         (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (law.peak() * square).sqrt().max(task.time)),
         (_, square) => {
             let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
-            let fast = square.map_or(0.0, |square| {
+            let stretch = square.map_or(0.0, |square| {
                 let peak = Forecast::of(&motion, &model, &around, &limits).moment;
                 let sampled = peak * square / (price.inertia() * price.delta_b().abs());
                 // Along a straight line b̈ = Δb s̈, whose greatest value is known.
                 sampled.max(motion.profile.peak_acceleration() * square).sqrt()
             });
-            Motion { profile: if fast > 1.0 { motion.profile.stretched(fast) } else { motion.profile }, ..motion }
+            Motion { profile: if stretch > 1.0 { motion.profile.stretched(stretch) } else { motion.profile }, ..motion }
         }
     };
     keeps_rules(scenario, &motion)?;
     Ok(Plan { price: Some(price), ..Plan::of(scenario, motion) })
 }
 
-/// Poses of A and B, each at its b.
+/// Returns poses of A and B, each at its b.
 fn ends(task: &Task, space: &PoseSpace) -> Result<[Posed; 2], Refusal> {
     let points = task.points();
     let last = points.len() - 1;
     let (a, b) = (points[0], points[last]);
     let nearest = |b_of: [f64; 2]| nearest_poses(space, [a, b], b_of);
-    let beside = |i: usize, b: f64| refusal(task, i, why_not(space, &points[i..=i], 0, b));
+    let unreached = |i: usize, b: f64| refusal(task, i, why_not(space, &points[i..=i], 0, b));
     if let Some(b_to) = task.b_to {
         serve(task, space, &points[..1])?;
-        return nearest([task.b, b_to]).ok_or_else(|| beside(last, b_to));
+        return nearest([task.b, b_to]).ok_or_else(|| unreached(last, b_to));
     }
-    let set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
-    let own = set(0, a)?;
-    let on = space.reaches(a, task.b);
-    // Where a point has one b alone it says which, if the task leaves it out, which stands as 0.
-    if !on && (space.reaches_area() || task.b != 0.0) {
-        return Err(beside(0, task.b));
+    let b_set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
+    let own = b_set(0, a)?;
+    let a_reached = space.reaches(a, task.b);
+    // If each point has a single b and the task leaves b out, stored as 0, the b of A is used.
+    if !a_reached && (space.reaches_area() || task.b != 0.0) {
+        return Err(unreached(0, task.b));
     }
-    let other = set(last, b)?;
-    // B's own b nearest to that of A, if A is at its own; else the pair with the least change.
-    let pair = if on { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
-    let inwards = |[from, to]: [f64; 2], share: f64| match on {
+    let other = b_set(last, b)?;
+    // If A is reached at the b of the task, the nearest b of B; otherwise the pair with the least change of b.
+    let pair =
+        if a_reached { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
+    let inwards = |[from, to]: [f64; 2], share: f64| match a_reached {
         true => [from, other.inwards(to, share)],
         false => [own.inwards(from, share), other.inwards(to, share)],
     };

@@ -1,4 +1,4 @@
-//! The plan of a task, by its kind.
+//! Chooses the planner of a task by its kind.
 
 use super::along::along_parts;
 use super::change_b::change_b;
@@ -18,20 +18,20 @@ use crate::session::scenario::{Scenario, Task, TaskKind};
 /// Plans the task of a scenario.
 ///
 /// # Errors
-/// Which point, part of the path or setting is in the way, and what would do.
+/// Which point, part of the path or setting is infeasible, and what would be feasible.
 pub fn plan(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
     let plan = directly(scenario, space).map_err(|refusal| match space {
-        // On planes it is known at once what another b would do.
+        // With planes, other values of b can be tried quickly.
         Ok(space) if leaves_plane && space.planes().is_ok() => elsewhere(scenario, space, refusal),
         _ => refusal,
     })?;
-    let found = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
+    let finds_time = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
     let time = plan.motion.duration();
-    // A path that goes nowhere takes no time.
-    if found && time != 0.0 && time < scenario.step {
+    // A path without motion takes no time.
+    if finds_time && time != 0.0 && time < scenario.step {
         return Err(Refusal::Task(format!(
             "the limits let the motion take {time:.1e} s: want at least one step, {} s, with lower limits or a smaller \
              step",
@@ -41,7 +41,7 @@ pub fn plan(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     allowed(time).map(|()| plan)
 }
 
-/// The same, where a refusal proposes nothing that has to be planned first.
+/// Plans the task of a scenario, without the proposals of [`elsewhere`].
 fn directly(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     match scenario.task.kind {
         _ if scenario.task.samples.is_some() => given(scenario, space),
@@ -55,10 +55,10 @@ fn directly(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     }
 }
 
-/// A refusal for a b that does not reach A, of a task that leaves its plane: the b nearest to it with which it can be
-/// planned.
+/// Completes the refusal of a task that leaves its plane, if its b does not reach A. Proposes the nearest b at which
+/// the task can be planned.
 fn elsewhere(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
-    // Where a path goes does not depend on the time law.
+    // The path does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
     tried(space, refusal, |b, _| directly(&at(b), Ok(space)).map(|_| ()))

@@ -1,4 +1,5 @@
-//! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
+//! Motions given by samples: drive angles are taken as they are; for samples of the end effector the redundancy is
+//! resolved.
 
 use super::held::along_curves;
 use super::plan::{Effort, Plan, Space, dynamics_of, keeps_rules};
@@ -13,14 +14,17 @@ use crate::planning::timing::{Limits, Profile};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
 
-/// Instants at which a motion is looked at for each of its samples, at least, and at most in all.
-const A_SAMPLE: usize = 8;
-const INSTANTS: (usize, usize) = (2000, 100_000);
+/// Number of instants of the forecast for each sample.
+const INSTANTS_PER_SAMPLE: usize = 8;
+/// Minimum number of instants of the forecast.
+const MIN_INSTANTS: usize = 2000;
+/// Maximum number of instants of the forecast.
+const MAX_INSTANTS: usize = 100_000;
 
-/// The samples of the task, stretched to its time.
+/// Plans the motion given by the samples of the task, stretched to its time.
 ///
 /// # Errors
-/// If there are none, they do not fit the machine or the kind of the task, or cannot be followed.
+/// If there are no samples, or they do not fit the machine or the kind of the task, or cannot be followed.
 pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let (task, drives) = (&scenario.task, scenario.machine.drives());
     let refuse = |why: String| Err(Refusal::Task(why));
@@ -65,15 +69,15 @@ pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refus
     let motion = Motion { path: Path::Table(table), profile: Profile::running(task.time) };
     keeps_rules(scenario, &motion)?;
     let (model, around) = dynamics_of(scenario);
-    let instants = (A_SAMPLE * samples.count()).clamp(INSTANTS.0, INSTANTS.1);
+    let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
     let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
     Ok(Plan::foreseen(motion, forecast))
 }
 
-/// The motion of the end effector by samples, with b held, or by least rates where no b matters.
+/// Follows a sampled curve of the end effector with b held, or with least rates if no drive turns the base.
 ///
 /// # Errors
-/// If it cannot be followed.
+/// If the curve cannot be followed.
 fn sampled(scenario: &Scenario, space: Space<'_>, curve: &Curve) -> Result<PathTable, Refusal> {
     let points = scenario.task.points();
     let space = match space {

@@ -1,4 +1,4 @@
-//! Paths that hold the b of their task, so that nothing reaches the base.
+//! Paths with the b of their task held, so that nothing reaches the base.
 
 use super::along::{Parts, along_parts, by_least_rates, curves};
 use super::plan::{Effort, Plan, Space};
@@ -15,23 +15,23 @@ use crate::planning::timing::TimeLaw;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task};
 
-/// With b held; a refusal proposes only what has been tried.
+/// Plans a motion with b held. A refusal proposes only what has been tried.
 pub(super) fn held(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     along_parts(scenario, &|scenario| reactionless(scenario, space, Effort::Whole)).map_err(|refusal| {
         let Ok(known) = space else { return refusal };
-        // Where a path goes does not depend on the time law.
+        // The path does not depend on the time law.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
-        let goes = |task: &Task, effort| match known.planes() {
-            // What is followed on a plane keeps the limits.
+        let try_path = |task: &Task, effort| match known.planes() {
+            // A path that is followed on a plane keeps the limits.
             Ok(_) => reactionless(&own(task), space, effort).map(|_| ()),
             Err(_) => along_parts(&own(task), &|scenario| reactionless(scenario, space, effort)).map(|_| ()),
         };
-        proved(task, known, &goes, refusal)
+        proved(task, known, &try_path, refusal)
     })
 }
 
-/// A path that holds b.
+/// Finds the parts of a path with b held.
 pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort) -> Result<Parts, Refusal> {
     let (task, points) = (&scenario.task, scenario.task.points());
     let space = match space {
@@ -59,7 +59,7 @@ pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort
     }
 }
 
-/// The end effector's curves with b held, of a machine without planes; `law` as in
+/// Follows curves of the end effector with b held, for a machine without planes; `law` as in
 /// [`Asked`](crate::planning::posture::Asked).
 pub(super) fn along_curves(
     scenario: &Scenario,
@@ -73,12 +73,12 @@ pub(super) fn along_curves(
         let tables = posture::tables(scenario, space, curves, law, effort)?;
         return Ok(tables.into_iter().map(Path::Table).zip(lengths).collect());
     }
-    // There is one motion of each b.
+    // Without freedoms there is one motion for each b.
     let start = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
     by_least_rates(scenario, start, curves, Some(space))
 }
 
-/// Of a machine that no motion turns: as the points ask, at whatever b.
+/// Finds the path of a machine that turns its base in no motion; b is not held.
 fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Parts, Refusal> {
     let task = &scenario.task;
     if task.shape() != Shape::JointLine {
@@ -90,7 +90,7 @@ fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Par
     joint_lines(scenario, space, points.iter().enumerate().map(pose).collect::<Result<_, Refusal>>()?)
 }
 
-/// Refuses corners to be rounded off where they cannot be.
+/// Refuses blended corners of joint lines on machines without planes.
 fn cornered(task: &Task, space: &PoseSpace, points: usize) -> Result<(), Refusal> {
     let Err(lacking) = space.planes() else { return Ok(()) };
     if task.corners != Corners::Blend || (points <= 2 && !task.closed) {
@@ -102,21 +102,22 @@ fn cornered(task: &Task, space: &PoseSpace, points: usize) -> Result<(), Refusal
     }))
 }
 
-/// A pose of each point near the one before, the last link as the task has it.
+/// Returns a pose of each point, near that of the point before, with the orientation of the last link that the task
+/// sets.
 fn one_by_one(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
     let machine = &scenario.machine;
-    let hand = machine.resolved_links()[machine.end_link()].drive;
+    let end_drive = machine.resolved_links()[machine.end_link()].drive;
     let mut near = space.middle();
     let mut poses: Vec<Posed> = Vec::with_capacity(points.len() + 1);
     for i in 0..points.len() {
-        let kept = poses.first().map(|pose| pose.q[hand]);
+        let kept = poses.first().map(|pose| pose.q[end_drive]);
         poses.push(Posed::of(space, faced(scenario, space, (points, i), (&near, kept))?));
         near = poses[i].a;
     }
     Ok(poses)
 }
 
-/// Straight lines of joint space from pose to pose; their corners a stop or a blend.
+/// Joins poses by straight lines in joint space, with stops or blends at the corners.
 fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) -> Result<Parts, Refusal> {
     let task = &scenario.task;
     if let Ok(planes) = space.planes() {
@@ -125,7 +126,7 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) ->
         }
         if task.corners == Corners::Blend && (poses.len() > 2 || task.closed) {
             let corners: Vec<Vector> = poses.iter().map(|pose| Vector::new(pose.a[0], pose.a[1])).collect();
-            // The curve closes itself, so that an error names points that were given.
+            // `Curve::polyline` closes the path, so that an error names only points of the task.
             let curves = Curve::polyline(&corners, task.closed, task.blend)?;
             let path = |curve: Curve| {
                 let length = curve.length();
@@ -137,7 +138,7 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) ->
     poses.extend(task.closed.then(|| poses[0]));
     let way = |i: usize| poses[i].way(space, &poses[i + 1]);
     let line = |i: usize| (Path::JointLine { from: poses[i].q, to: poses[i + 1].q }, way(i).max(1e-12));
-    // The same point twice in a row makes no path.
+    // A point that repeats the one before gives no path.
     let moving = (0..poses.len() - 1).filter(|i| poses.len() == 2 || way(*i) > 1e-12);
     Ok(moving.map(line).collect())
 }
@@ -165,11 +166,11 @@ fn same_side(task: &Task, poses: &[Posed]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The end effector's curves followed on the plane of the task.
+/// Follows the curves of the end effector on the plane of the task.
 fn on_plane(task: &Task, (space, planes): (&PoseSpace, &Planes), points: &[Vector]) -> Result<Parts, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
-    // Where single points cannot be reached, they are the clearer reason.
+    // Points are checked first, because an unreachable point is the clearer reason.
     let prefer = match task.shape() {
         Shape::Freehand => None,
         _ => serve(task, space, points)?.first().map(|pose| [pose.a[0], pose.a[1]]),

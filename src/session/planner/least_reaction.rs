@@ -1,4 +1,4 @@
-//! Along the end effector's curves with the least reaction that they allow.
+//! Motions along curves of the end effector with the least reaction on the base.
 
 use super::along::{along_parts, curves, timed};
 use super::held::reactionless;
@@ -20,7 +20,8 @@ use crate::session::scenario::{Least, Scenario, Task, TaskKind};
 use crate::settings::number::nine_digits;
 use crate::settings::word::Choice;
 
-/// On planes b changes as little as its corridor allows; elsewhere it is held, where it can be.
+/// Plans the motion with the least reaction. On planes, b changes as little as its feasible corridor allows; on other
+/// machines b is held, if that is feasible.
 pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     if !scenario.machine.is_redundant() {
         let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
@@ -35,7 +36,7 @@ pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Pl
     }
 }
 
-/// The law of a motion whose moment is to be least.
+/// Returns the time law of the task. Fails unless it is smooth and takes a given time.
 fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
     let serves = |law: &TimeLaw| !law.is_fastest() && law.is_smooth();
     if serves(&task.law) {
@@ -46,7 +47,8 @@ fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
     Err(Refusal::Task(format!("least-reaction wants a {kind}: {}", serving.join(" or "))))
 }
 
-/// All curves one after another over u = t/T, each by the law in its share of the time.
+/// Joins all curves to one function of u = t/T, with derivatives by u. The law times each curve, in a share of T in
+/// proportion to its length.
 fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
     let total: f64 = curves.iter().map(Curve::length).sum();
     let profile =
@@ -65,7 +67,7 @@ fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
     }
 }
 
-/// The end effector's curves with b changing as little as its corridor allows.
+/// Plans the motion along the curves of the end effector; b changes as little as its feasible corridor allows.
 fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law: TimeLaw) -> Result<Plan, Refusal> {
     let (task, map) = (&scenario.task, planes.map());
     let curves = curves(task, &task.points())?;
@@ -96,7 +98,8 @@ fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law:
     }
 }
 
-/// With b held, where it can be: then nothing reaches the base. Between which b a path could choose is known on planes only.
+/// Plans the motion with b held, if that is feasible; nothing reaches the base then. The corridor of b is known on
+/// planes only.
 fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     if let Some(b_to) = task.b_to.filter(|b_to| *b_to != task.b) {
@@ -110,7 +113,7 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
         along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario, Ok(space), effort))
     };
     let why = match holding(task.b, Effort::Whole) {
-        Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario, space)?), ..plan }),
+        Ok(plan) => return Ok(Plan { verdicts: Some(verdicts_of_held_b(scenario, space)?), ..plan }),
         Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
         Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
             return Err(Refusal::Unreachable { point, unreachable });
@@ -119,10 +122,10 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
     };
     let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
     let common = BSet::overlap(&sets.unwrap_or_default());
-    let tries =
+    let candidates =
         common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
-    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), Effort::Trial).is_ok());
-    let would_do = match does {
+    let feasible = candidates.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), Effort::Trial).is_ok());
+    let proposal = match feasible {
         Some(b) => format!("at b = {b} rad it can: want that"),
         None => "want minimum-norm, or change-b from point to point".into(),
     };
@@ -132,14 +135,14 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
     };
     let why = why.to_string();
     Err(Refusal::NoWay(format!(
-        "b = {} rad cannot be held along this path ({}), and {only}; {would_do}",
+        "b = {} rad cannot be held along this path ({}), and {only}; {proposal}",
         nine_digits(task.b),
         why.split(": want").next().unwrap_or(&why)
     )))
 }
 
-/// The verdicts on a motion that holds b.
-fn nothing(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts, Refusal> {
+/// Returns the comparison for a motion with b held: no reaction, against that of the minimum-norm motion.
+fn verdicts_of_held_b(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts, Refusal> {
     let usual = minimum_norm(scenario, Ok(space)).and_then(|parts| Ok(timed(scenario, parts)?.0));
     let minimum_norm = match usual {
         Ok(motion) => {

@@ -1,5 +1,5 @@
-//! From a task to a motion: poses for its points, a path through them, and when to be where. One way for any number of
-//! drives: what a machine cannot do its pose space says.
+//! Plans the motion of a task: poses of its points, a path through them, and the timing. The same code plans for any
+//! number of drives; the pose space says what a machine cannot do.
 
 mod along;
 mod change_b;

@@ -1,4 +1,5 @@
-//! Motions at zero momentum: two drives along the one curve that they have, more along any.
+//! Motions at zero angular momentum. Two drives have one such curve through each pose; three drives and more follow any
+//! curve of the end effector.
 
 use std::f64::consts::TAU;
 
@@ -15,12 +16,13 @@ use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Shape, Task};
 use crate::settings::number::fixed;
 
-/// How near points have to be to the curve of two drives, a share of the reach: what nine printed digits leave.
-const ON_CURVE: f64 = 1e-6;
-/// Looks along that curve for the place that is nearest to a point.
-const LOOKS: usize = 720;
+/// A point lies on the curve of two drives if its distance is at most this fraction of the reach. Nine printed digits
+/// of a point are enough for that.
+const CURVE_TOLERANCE: f64 = 1e-6;
+/// Number of intervals of that curve in the search for its point nearest to a given one.
+const CURVE_INTERVALS: usize = 720;
 
-/// At zero momentum: two drives along the one curve that they have, more along any.
+/// Plans a motion at zero angular momentum.
 pub(super) fn zero_momentum(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let (model, _) = dynamics_of(scenario);
@@ -34,20 +36,20 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: Space<'_>) -> Result<Pla
                     "at zero momentum the end effector of two drives has its own way: want the shape joint-line".into(),
                 ));
             }
-            let keeps = BIntegral::of(&model).ok_or_else(|| {
+            let integral = BIntegral::of(&model).ok_or_else(|| {
                 Refusal::NoWay(
                     "turned as a whole, this machine has no momentum in some poses: want rotors that turn the other way \
                      less fast or lighter"
                         .into(),
                 )
             })?;
-            along_curve(scenario, &keeps)
+            along_curve(scenario, &integral)
         }
         MomentumFreedom::AnyCurve => followed(scenario, start(scenario, space, &task.points()[..1])?),
     }
 }
 
-/// The end effector's curves at zero momentum from a pose of A.
+/// Follows the curves of the end effector at zero angular momentum from a pose of A.
 fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let (model, _) = dynamics_of(scenario);
@@ -63,26 +65,27 @@ fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     })
 }
 
-/// Two drives, from point to point of a curve q₁ + ∫ D₂/(D₁ + D₂) dδ = const.
-fn along_curve(scenario: &Scenario, keeps: &BIntegral) -> Result<Plan, Refusal> {
+/// Moves two drives from point to point along a curve q₁ + ∫ D₂/(D₁ + D₂) dδ = const, δ = q₂ − q₁.
+fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let space = PoseSpace::nominal(&scenario.machine)?;
     let mut points = task.points();
     points.extend(task.closed.then(|| points[0]));
     let starts = elbows(task, &space, 0, points[0])?;
-    // The elbow of A from which the whole way goes, or the reason of the one that goes farthest.
+    // The first pose of A from which all points are reached; if there is none, the refusal of the pose that gets
+    // farthest.
     let mut refused: Option<(usize, Refusal)> = None;
     for start in &starts {
-        match way(task, &space, keeps, *start, &points) {
+        match deltas_along(task, &space, integral, *start, &points) {
             Ok(turns) => {
                 return in_rounds(scenario, *start, &|mut q, _| {
                     let mut parts = Vec::new();
                     for to in &turns {
                         let far = (to - (q[1] - q[0])).abs();
-                        let table = keeps.motion(&q, *to);
+                        let table = integral.motion(&q, *to);
                         let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
                         q = table.nodes().last().map_or(q, |last| last.q);
-                        // The same point twice in a row makes no path.
+                        // A point that repeats the one before gives no path.
                         if far > 1e-12 || turns.len() == 1 {
                             parts.push((Path::Table(table), far.max(1e-12)));
                         }
@@ -97,30 +100,32 @@ fn along_curve(scenario: &Scenario, keeps: &BIntegral) -> Result<Plan, Refusal> 
     Err(refused.map_or_else(|| Refusal::NoWay("A has no pose".into()), |(_, why)| why))
 }
 
-/// Every pose of a point that differs by more than whole turns of all drives.
+/// Returns every pose of a point; poses that differ by whole turns of all drives count once.
 fn elbows(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<Vec<DriveAngles>, Refusal> {
     let set = space.reach(p).map_err(|reason| off(task, i, p, reason))?.near(task.b);
     let poses: Vec<DriveAngles> = set.intervals.iter().flat_map(|[b, _]| space.poses(p, *b, &space.middle())).collect();
     if poses.is_empty() { reached(task, space, i, p).map(|q| vec![q]) } else { Ok(poses) }
 }
 
-/// δ of each point after A along the curve through a pose of A, or which one is beside it.
-fn way(
+/// Returns δ, rad, of each point after A on the curve through a pose of A. Fails with the index of the first point that
+/// is not on the curve.
+fn deltas_along(
     task: &Task,
     space: &PoseSpace,
-    keeps: &BIntegral,
+    integral: &BIntegral,
     start: DriveAngles,
     points: &[Vector],
 ) -> Result<Vec<f64>, (usize, Refusal)> {
-    let b = keeps.b([start[0], start[1]]);
+    let b = integral.b([start[0], start[1]]);
     let mut turns = Vec::new();
     let mut now = start[1] - start[0];
     for (i, p) in points.iter().enumerate().skip(1) {
-        let miss = |delta: f64| (space.place(&keeps.pose(b, delta)) - p).norm();
+        let miss = |delta: f64| (space.place(&integral.pose(b, delta)) - p).norm();
         let poses = elbows(task, space, i, *p).map_err(|why| (i, why))?;
-        let deltas = poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= ON_CURVE * space.farthest());
+        let deltas =
+            poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= CURVE_TOLERANCE * space.farthest());
         let Some(delta) = deltas.min_by(|x, y| (x - now).abs().total_cmp(&(y - now).abs())) else {
-            return Err((i, beside(task, space, keeps, (b, now), i, *p)));
+            return Err((i, off_curve(task, space, integral, (b, now), i, *p)));
         };
         turns.push(delta);
         now = delta;
@@ -128,11 +133,18 @@ fn way(
     Ok(turns)
 }
 
-/// How far a point lies beside the curve, and where that comes nearest to it.
-fn beside(task: &Task, space: &PoseSpace, keeps: &BIntegral, (b, now): (f64, f64), i: usize, p: Vector) -> Refusal {
+/// Refuses a point off the curve, with its distance from the curve and the nearest point of the curve, m.
+fn off_curve(
+    task: &Task,
+    space: &PoseSpace,
+    integral: &BIntegral,
+    (b, now): (f64, f64),
+    i: usize,
+    p: Vector,
+) -> Refusal {
     let joint = space.joints()[0];
     let [low, high] = joint.bounds();
-    let place = |delta: f64| space.place(&keeps.pose(b, delta));
+    let place = |delta: f64| space.place(&integral.pose(b, delta));
     let allowed = |delta: &f64| {
         let a = joint.of(&[0.0, *delta]);
         a >= low - 1e-9 && a <= high + 1e-9
@@ -145,9 +157,9 @@ fn beside(task: &Task, space: &PoseSpace, keeps: &BIntegral, (b, now): (f64, f64
         }
         false => (now - 0.5 * TAU, now + 0.5 * TAU),
     };
-    let looks = (0..=LOOKS).map(|k| from + (to - from) * k as f64 / LOOKS as f64).filter(allowed);
+    let samples = (0..=CURVE_INTERVALS).map(|k| from + (to - from) * k as f64 / CURVE_INTERVALS as f64).filter(allowed);
     let far = |delta: &f64| (place(*delta) - p).norm();
-    let nearest = looks.min_by(|x, y| far(x).total_cmp(&far(y))).unwrap_or(now);
+    let nearest = samples.min_by(|x, y| far(x).total_cmp(&far(y))).unwrap_or(now);
     let at = place(nearest);
     Refusal::NoWay(format!(
         "at zero momentum two drives move their end effector along one curve, and {} lies {} m beside it: want it at \
@@ -159,7 +171,7 @@ fn beside(task: &Task, space: &PoseSpace, keeps: &BIntegral, (b, now): (f64, f64
     ))
 }
 
-/// With as many figures as the curve wants.
+/// Prints a coordinate, m, with enough digits to lie on the curve.
 fn exactly(x: f64) -> String {
     fixed(x, 9)
 }

@@ -1,4 +1,4 @@
-//! [`Plan`]: a planned task, and what it will cost.
+//! [`Plan`]: a planned task, and the forecast of its motion.
 
 use std::sync::Arc;
 
@@ -18,66 +18,65 @@ use crate::session::scenario::Scenario;
 /// The pose space of a machine, or why its b cannot be held.
 pub(super) type Space<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
 
-/// How much is done to find a path and to say what would do.
+/// Effort spent on the search for a path and for proposals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Effort {
-    /// A quick search, and no proposals: the task itself is only tried as a proposal.
+    /// Quick search without proposals, for a task that is itself a proposal on trial.
     Trial,
-    /// Everything.
+    /// Full search, with proposals if it fails.
     Whole,
 }
 
 /// A planned task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// What the machine is to do.
+    /// Motion that the machine is to follow.
     pub motion: Arc<Motion>,
-    /// What it will cost.
+    /// Forecast torques, speeds and reactions of the motion.
     pub forecast: Forecast,
-    /// For the fastest motion: what holds it back.
+    /// For the fastest laws: duration, its lower bound, and the limit that holds the motion back.
     pub pace: Option<Pace>,
-    /// For a change of b: its price.
+    /// For a change of b: the reaction that it costs.
     pub price: Option<Price>,
-    /// For the least reaction: what other ways would cost.
+    /// For the least reaction: comparison with a fixed b and with the minimum norm.
     pub verdicts: Option<Verdicts>,
-    /// For motions of zero momentum: the drives at the start and after each cycle, rad. For closed paths of four drives
-    /// and more whose drives end elsewhere than they began: both.
+    /// For motions of zero momentum: drive angles at the start and after each cycle, rad. For closed paths of four
+    /// drives and more that do not close in joint space: drive angles at the start and at the end.
     pub cycles: Vec<DriveAngles>,
-    /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion
-    /// rests.
+    /// Duration with blended corners, s, if stops at the corners are faster; the motion then stops.
     pub blended: Option<f64>,
 }
 
-/// Drives that end as near to their start as this, rad, end there.
-const CLOSES: f64 = 1e-6;
+/// A closed path closes in joint space if no drive ends farther from its start than this, rad.
+const CLOSURE_TOLERANCE_RAD: f64 = 1e-6;
 
-/// What holds the fastest motion back.
+/// Duration of the fastest motion, and what holds it back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pace {
-    /// T, s.
+    /// Duration T, s.
     pub taken: f64,
-    /// The least time without limits on jerk, s, where there are any.
+    /// Least time T* without limits on jerk, s, if the law has such limits and T* is known.
     pub unlimited: Option<f64>,
-    /// The limit that leads for the greatest share of the first part.
+    /// Limit that is active for the greatest share of the first part.
     pub leading: Option<DriveLimit>,
 }
 
 impl Pace {
-    /// T/T* − 1, T* the least time without limits on jerk; for a law with such limits, where something besides them
-    /// limits.
+    /// Returns T/T* − 1, with T* the least time without limits on jerk. Returns `None` without such limits, and if they
+    /// alone limit the motion.
     pub fn gap(&self) -> Option<f64> {
         self.unlimited.filter(|least| *least > 0.0).map(|least| (self.taken / least - 1.0).max(0.0))
     }
 }
 
 impl Plan {
-    /// The largest |Δq_k| between the start and the end of each cycle, rad.
+    /// Returns for each cycle the largest |Δq_k| between the start of the motion and the end of the cycle, rad.
     pub fn drift(&self) -> impl Iterator<Item = f64> {
         let first = self.cycles.first();
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
-    /// Rest where the end effector is as near to A as the b of the task lets it be: for a run that waits.
+    /// Returns a plan at rest for a run that waits, with the end effector as near to A as the b of the task allows.
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];
@@ -96,13 +95,13 @@ impl Plan {
         let ends = [0.0, motion.duration()].map(|t| motion.at(t).q);
         let mut plan = Self::foreseen(motion, forecast);
         let is_closed = scenario.task.closed && scenario.idle("task.posture").is_none();
-        if is_closed && ends[1].0.minus(&ends[0].0).max_abs() > CLOSES {
+        if is_closed && ends[1].0.minus(&ends[0].0).max_abs() > CLOSURE_TOLERANCE_RAD {
             plan.cycles = ends.to_vec();
         }
         plan
     }
 
-    /// A motion and what was found of it, with nothing else to say.
+    /// Returns a plan of a motion with its forecast and no other results.
     pub(super) fn foreseen(motion: Motion, forecast: Forecast) -> Self {
         Self {
             motion: Arc::new(motion),
@@ -116,13 +115,14 @@ impl Plan {
     }
 }
 
-/// Refuses a motion that passes a joint limit, or a change point to keep off, which rates alone do not know of.
+/// Refuses a motion that passes a joint limit, or a change point if the task forbids these. Planning by rates does not
+/// check either.
 pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
-    const LOOKS: usize = 1000;
-    let looks = (100 * motion.path.parts()).clamp(LOOKS, 100_000);
+    const MIN_SAMPLES: usize = 1000;
+    let samples = (100 * motion.path.parts()).clamp(MIN_SAMPLES, 100_000);
     let mut last: Option<DriveAngles> = None;
-    for i in 0..=looks {
-        let s = i as f64 / looks as f64;
+    for i in 0..=samples {
+        let s = i as f64 / samples as f64;
         let q = motion.path.at(s).q;
         let before = last.replace(q).filter(|_| scenario.task.keep_off_change_points);
         for (k, l) in Inertia::pairs(q.len()) {
@@ -154,7 +154,7 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
     Ok(())
 }
 
-/// What control believes in.
+/// Returns the inertia and the surroundings of the machine that control assumes, without a force at the end effector.
 pub(super) fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
     let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
     (Inertia::of(&scenario.machine), around)

@@ -13,13 +13,14 @@ use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
 use crate::settings::number::{Short, fixed, nine_digits};
 
-/// Poses of points at the b of the task.
+/// Returns a pose of each point at the b of the task.
 pub(super) fn serve(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
     posed::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
-/// A pose of the first of some points: at the b of the task where that leaves a choice, on one sheet with the others where
-/// there are sheets and they can be.
+/// Returns a pose of the first point. If points are reached by ranges of b, the pose is at the b of the task; with
+/// planes it is on one sheet with the other points, if possible. Otherwise it is at the nearest b that reaches the
+/// point.
 pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
     match space {
@@ -35,7 +36,7 @@ pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) ->
     }
 }
 
-/// Why a point is not served, by its name.
+/// Returns the refusal of a point that the b of the task does not reach, with the name of the point.
 pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
     match unreachable {
         Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
@@ -43,7 +44,7 @@ pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusa
     }
 }
 
-/// A pose of one of some points that share the b of the task, as near as can be to given relative angles.
+/// Returns the pose of `points[i]` at the b of the task that is nearest to the relative angles `near`, rad.
 pub(super) fn posed(
     task: &Task,
     space: &PoseSpace,
@@ -54,8 +55,8 @@ pub(super) fn posed(
     space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
 
-/// The same with the last link as the task has it, if it says so; `kept` is the drive's angle at the first of several
-/// points, which it then keeps.
+/// Does the same as [`posed()`], with the orientation of the last link, if the task sets one. `kept` is the angle of
+/// its drive at the first point, rad, which the drive has to keep.
 pub(super) fn faced(
     scenario: &Scenario,
     space: &PoseSpace,
@@ -68,17 +69,17 @@ pub(super) fn faced(
     };
     let (drive, turned) = hand_of(scenario);
     let poses = |angle: f64| space.facing(p, task.b, (drive, angle - turned), near);
-    let goes = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
-    if let Some(q) = poses(angle).into_iter().find(goes) {
+    let keeps_angle = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
+    if let Some(q) = poses(angle).into_iter().find(keeps_angle) {
         return Ok(q);
     }
     // The point itself may be out of reach.
     posed(task, space, (points, i), near)?;
     let steps = 180;
-    let does: Vec<bool> =
+    let feasible: Vec<bool> =
         (0..steps).map(|k| !poses(angle + TAU * f64::from(k) / f64::from(steps)).is_empty()).collect();
-    let at = |k: i32| does[k.rem_euclid(steps) as usize];
-    let would_do = match (0..=steps / 2).flat_map(|k| [k, -k]).find(|k| at(*k)) {
+    let at = |k: i32| feasible[k.rem_euclid(steps) as usize];
+    let proposal = match (0..=steps / 2).flat_map(|k| [k, -k]).find(|k| at(*k)) {
         None => "another b, or no orientation".into(),
         Some(k) => {
             let low = (0..steps).map(|j| k - j).find(|k| !at(*k)).map_or(k, |k| k + 1);
@@ -88,26 +89,27 @@ pub(super) fn faced(
         }
     };
     Err(Refusal::NoWay(format!(
-        "at {} no pose of b = {} rad has the last link point to {} rad: want {would_do}",
+        "at {} no pose of b = {} rad has the last link point to {} rad: want {proposal}",
         task.name_of(i),
         nine_digits(task.b),
         Short(angle)
     )))
 }
 
-/// The drive of the last link, and by how much the link is turned from it, rad.
+/// Returns the drive of the last link, and the angle of the link relative to the drive angle, 0 or π rad.
 pub(super) fn hand_of(scenario: &Scenario) -> (usize, f64) {
     let machine = &scenario.machine;
     let link = &machine.resolved_links()[machine.end_link()];
     (link.drive, if link.sign < 0.0 { PI } else { 0.0 })
 }
 
-/// A point that no b reaches.
+/// Returns the refusal of a point that no b reaches.
 pub(super) fn off(task: &Task, i: usize, p: Vector, reason: NoReach) -> Refusal {
     Refusal::Unreachable { point: task.name_of(i), unreachable: Unreachable::Anywhere { x: p.re, y: p.im, reason } }
 }
 
-/// A pose of a point at the b nearest to that of the task: of machines on which b says nothing, or leaves no choice.
+/// Returns a pose of a point at the b nearest to that of the task. Used for machines without a b to hold, or with a
+/// single b for each point.
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
     space.reach(p).map_err(|reason| off(task, i, p, reason))?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));

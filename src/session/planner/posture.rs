@@ -1,4 +1,4 @@
-//! Paths of four drives and more that hold b, with their freedoms used as the task wants.
+//! Paths of four drives and more with b held; the posture of the task resolves the remaining freedoms.
 
 use super::plan::Effort;
 use super::poses::{faced, hand_of, posed};
@@ -14,17 +14,17 @@ use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
 use crate::settings::number::nine_digits;
 
-/// Places along each curve that a b has to reach to be proposed.
-const ASKED: usize = 16;
-/// An angle passes its limit by no more than this, rad: rounding.
-const AT_LIMIT: f64 = 1e-9;
-/// By how much limits are widened at either end, rad, one after another.
-const WIDER: [f64; 3] = [0.1, 0.4, 1.0];
+/// Number of intervals of each curve. A proposed b has to reach the ends of all of them.
+const INTERVALS_PER_CURVE: usize = 16;
+/// An angle may exceed its limit by this much, rad, because of rounding.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
+/// Amounts by which limits are widened at either end, rad, in the order of the trials.
+const WIDENINGS_RAD: [f64; 3] = [0.1, 0.4, 1.0];
 
-/// A path along each curve; `law` as [`Asked::law`].
+/// Returns a path along each curve; `law` as [`Asked::law`].
 ///
 /// # Errors
-/// How far a way goes, and with all effort what would do.
+/// How far the path can be followed, and with [`Effort::Whole`] a proposal.
 pub(super) fn tables(
     scenario: &Scenario,
     space: &PoseSpace,
@@ -40,7 +40,7 @@ pub(super) fn tables(
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
     let asked = Asked { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
-    // Least rates mostly go on within the limits from the pose nearest to the middle; a search is for where they do not.
+    // Least rates from the pose nearest to the middle mostly keep the limits; the search is needed if they do not.
     let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));
     let is_local = task.posture == Posture::LeastRates && !task.closed;
     if let Some(tables) = is_local.then(local).flatten() {
@@ -58,11 +58,11 @@ pub(super) fn tables(
         return Ok(tables);
     }
     let tried = (effort == Effort::Whole).then(|| proposal(&asked, task)).flatten();
-    let would_do = tried.unwrap_or_else(|| "another path, or wider limits".into());
-    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {would_do}", nine_digits(task.b))))
+    let proposed = tried.unwrap_or_else(|| "another path, or wider limits".into());
+    Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
 
-/// Least rates along each curve, from the pose nearest to the middle of all ranges.
+/// Follows each curve with least rates, from the pose nearest to the middle of all ranges.
 fn locally(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<Vec<PathTable>, Refusal> {
     let mut q = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
     let mut tables = Vec::with_capacity(curves.len());
@@ -79,47 +79,50 @@ fn keep_limits(space: &PoseSpace, tables: &[PathTable]) -> bool {
     let keeps = |node: &PathPoint| {
         space.joints().iter().all(|joint| {
             let ([low, high], a) = (joint.bounds(), joint.of(&node.q));
-            a >= low - AT_LIMIT && a <= high + AT_LIMIT
+            a >= low - LIMIT_TOLERANCE_RAD && a <= high + LIMIT_TOLERANCE_RAD
         })
     };
     tables.iter().flat_map(|table| table.nodes()).all(keeps)
 }
 
-fn goes(asked: &Asked<'_>, posture: Posture) -> bool {
+/// Whether a quick search finds the whole path.
+fn is_feasible(asked: &Asked<'_>, posture: Posture) -> bool {
     asked.quick_path(posture).is_ok()
 }
 
-/// A posture, a b or a limit with which the whole path goes.
+/// Finds a posture, a b or a limit with which the whole path is feasible.
 fn proposal(asked: &Asked<'_>, task: &Task) -> Option<String> {
     if task.posture == Posture::Orientation {
         let free = Asked { hand: (asked.hand.0, None), ..*asked };
-        if asked.hand.1.is_some() && goes(&free, Posture::Orientation) {
+        if asked.hand.1.is_some() && is_feasible(&free, Posture::Orientation) {
             return Some("no orientation, so that it keeps the one that serves".into());
         }
-        if goes(asked, Posture::LeastRates) {
+        if is_feasible(asked, Posture::LeastRates) {
             return Some("posture = least-rates".into());
         }
     }
-    let at = |curve: &Curve| (0..=ASKED).map(|i| curve.at(i as f64 / ASKED as f64).p).collect::<Vec<_>>();
+    let at = |curve: &Curve| {
+        (0..=INTERVALS_PER_CURVE).map(|i| curve.at(i as f64 / INTERVALS_PER_CURVE as f64).p).collect::<Vec<_>>()
+    };
     let points: Vec<Vector> = asked.curves.iter().flat_map(at).collect();
     let another = common(asked.space, &points).and_then(|serving| {
         let near = serving.nearest(asked.b)?;
-        let serves = |b: f64| b != asked.b && goes(&Asked { b, ..*asked }, task.posture);
+        let serves = |b: f64| b != asked.b && is_feasible(&Asked { b, ..*asked }, task.posture);
         inner(&serving, near).find(|b| serves(b.value()))
     });
     another.map(|b| format!("b = {b} rad")).or_else(|| wider(asked, task.posture))
 }
 
-/// The limits of one angle, widened as little as serves at the same b.
+/// Finds the least widening of the limits of one angle with which the path is feasible at the same b.
 fn wider(asked: &Asked<'_>, posture: Posture) -> Option<String> {
-    WIDER.into_iter().find_map(|by| {
+    WIDENINGS_RAD.into_iter().find_map(|by| {
         asked.machine.angles().iter().enumerate().find_map(|(i, angle)| {
             let key = format!("limits.a{}", i + 1);
             let value = format!("{:.2},{:.2}", angle.limits.start() - by, angle.limits.end() + by);
             let machine = asked.machine.set(&key, &value).ok()?;
             let space = PoseSpace::of(&machine).ok()?;
             let wide = Asked { machine: &machine, space: &space, ..*asked };
-            goes(&wide, posture).then(|| format!("{key} = {value} rad at this b"))
+            is_feasible(&wide, posture).then(|| format!("{key} = {value} rad at this b"))
         })
     })
 }

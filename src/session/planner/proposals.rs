@@ -9,15 +9,17 @@ use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Shape, Task};
 
-/// How far inside a set of b, as a share of half its width, values are tried, and their decimals.
-const INWARDS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
+/// Depths inside an interval of b at which values are tried, as fractions of half its width.
+const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
+/// Number of decimals of these values.
 const DECIMALS: usize = 4;
 
-/// A refusal that proposes only what has been tried: points that share a b may still be joined by no path on its plane.
+/// Returns the refusal with only those proposals that `try_path` finds feasible. Points that share a b may still have
+/// no path between them on its plane.
 pub(super) fn proved(
     task: &Task,
     space: &PoseSpace,
-    goes: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
+    try_path: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
     refusal: Refusal,
 ) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
@@ -30,7 +32,7 @@ pub(super) fn proved(
         Refusal::NoCommonPlane { mut why, .. } => {
             if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
                 let moved = task.moved(mend.point, shown.point());
-                let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value()), Effort::Trial));
+                let result = moved.as_ref().map(|moved| try_path(&at(moved, shown.b.value()), Effort::Trial));
                 shown.does = match result {
                     Some(Ok(_)) => true,
                     Some(Err(stopped)) => {
@@ -38,7 +40,7 @@ pub(super) fn proved(
                             let moved = moved.as_ref()?;
                             let serving = common(space, &moved.points())?;
                             inner(&serving, shown.b.value())
-                                .find(|b| goes(&at(moved, b.value()), Effort::Trial).is_ok())
+                                .find(|b| try_path(&at(moved, b.value()), Effort::Trial).is_ok())
                         });
                         shown.b = other.unwrap_or(shown.b);
                         other.is_some()
@@ -50,14 +52,19 @@ pub(super) fn proved(
             Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
         }
         Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
-            tried(space, refusal, |b, effort| goes(&at(task, b), effort))
+            tried(space, refusal, |b, effort| try_path(&at(task, b), effort))
         }
         other => other,
     }
 }
 
-/// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
-pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effort) -> Result<(), Refusal>) -> Refusal {
+/// Completes the refusal of a b that does not reach a point. Proposes the nearest b at which the whole path is
+/// feasible, or states what stops the path.
+pub(super) fn tried(
+    space: &PoseSpace,
+    refusal: Refusal,
+    try_path: impl Fn(f64, Effort) -> Result<(), Refusal>,
+) -> Refusal {
     let Refusal::Unreachable {
         point,
         unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
@@ -69,9 +76,9 @@ pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effo
         let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
-    let stopped = match goes(shown.value(), Effort::Whole) {
+    let stopped = match try_path(shown.value(), Effort::Whole) {
         Ok(()) => {
-            let exact = if goes(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
+            let exact = if try_path(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
             return made(format!("b = {shown} rad"), Some(exact), Some(*shown));
         }
         Err(stopped) => stopped,
@@ -83,15 +90,16 @@ pub(super) fn tried(space: &PoseSpace, refusal: Refusal, goes: impl Fn(f64, Effo
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
     let own = space.reach(Vector::new(*x, *y)).ok();
-    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| goes(b.value(), Effort::Trial).is_ok())) {
+    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| try_path(b.value(), Effort::Trial).is_ok()))
+    {
         return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
     }
-    // What stops a path of four drives and more names its b itself.
+    // The refusal of a path of four drives and more names its b itself.
     let (said, at) = (stopped.to_string(), format!("at b = {shown} rad "));
     made(format!("another path: {at}{}", said.strip_prefix(&at).unwrap_or(&said)), None, None)
 }
 
-/// Values of b farther and farther inside a set, from its end beside a given b, rad, on to the other end.
+/// Yields values of b farther and farther inside a set, rad, from the end nearest to `near` towards the other end.
 pub(super) fn inner(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
-    INWARDS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
+    TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
 }

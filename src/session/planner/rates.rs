@@ -1,4 +1,4 @@
-//! Motions of the end effector that leave b as it comes: by least joint rates, and with drive 1 on a course of its own.
+//! Motions of the end effector that do not hold b: with least joint rates, and with drive 1 on a course of its own.
 
 use super::along::{Parts, by_least_rates, curves};
 use super::plan::Space;
@@ -10,14 +10,15 @@ use crate::planning::posed::Posed;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::Scenario;
 
-/// Least joint rates along the end effector's curves, from a pose of A.
+/// Follows the curves of the end effector with least joint rates, from a pose of A.
 pub(super) fn minimum_norm(scenario: &Scenario, space: Space<'_>) -> Result<Parts, Refusal> {
     let (task, points) = (&scenario.task, scenario.task.points());
     let start = start(scenario, space, &[points[0], points[points.len() - 1]])?;
     by_least_rates(scenario, start, &curves(task, &points)?, None)
 }
 
-/// The end effector as on the joint line from A to B, drive 1 on a course of its own, the others after it.
+/// Moves the end effector as on the joint line from A to B, with drive 1 on a course of its own; the other drives
+/// follow.
 pub(super) fn same_tip(scenario: &Scenario, space: Space<'_>) -> Result<Parts, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
     if !machine.is_redundant() {

@@ -1,23 +1,23 @@
-//! How long a run may take, and in which steps.
+//! Bounds on the duration and the step size of a run.
 
 use crate::settings::range::Range;
 
-/// The longest run, s.
+/// Maximum duration of a run, s.
 pub const MAX_TIME: f64 = 3600.0;
 
-/// The most steps of a run: an hour of 1 ms each, and some to spare.
+/// Maximum number of steps of a run: an hour of 1 ms each, and some to spare.
 pub const MAX_STEPS: u64 = 4_000_000;
 
-/// What a step may be.
+/// Range of the step size.
 pub const STEP: Range = Range::new(1e-5, 0.01, "s");
 
-/// How long a run may be told to take.
+/// Range of the duration of a run.
 pub(super) const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
 
-/// Where a bound on |b̈| may lie.
+/// Range of the bound on |b̈|.
 pub(super) const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");
 
-/// 1st, 2nd, 3rd, 4th …
+/// Returns an ordinal number: 1st, 2nd, 3rd, 4th …
 pub(crate) fn ordinal(n: usize) -> String {
     let ending = match (n % 10, n % 100) {
         (_, 11..=13) => "th",
@@ -29,5 +29,5 @@ pub(crate) fn ordinal(n: usize) -> String {
     format!("{n}{ending}")
 }
 
-/// The most frames a session keeps: three minutes of motion at 1 kHz, some 150 MB.
+/// Maximum number of frames of a session: three minutes of motion at 1 kHz, some 150 MB.
 pub(crate) const MAX_FRAMES: usize = 180_000;

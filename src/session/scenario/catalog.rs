@@ -4,11 +4,11 @@ use std::sync::OnceLock;
 
 use super::definition::Scenario;
 
-/// How many of the scenarios that come along are the paper's cases; they stand first.
-const CASES: usize = 3;
+/// Number of the paper's cases, which are the first scenarios of the list.
+const CASE_COUNT: usize = 3;
 
-/// The scenarios that come along: the paper's three cases, what planning can do besides, plants and bases that are not
-/// ideal, and what each of the other machines shows, under the machine's name.
+/// The built-in scenarios: the paper's three cases, other kinds of tasks, plants and bases that are not ideal. There is
+/// one for each of the other machines, under its name.
 const BUILTIN: [(&str, &str); 20] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
@@ -32,26 +32,26 @@ const BUILTIN: [(&str, &str); 20] = [
     ("nine-link-bare", include_str!("../../../assets/scenarios/nine-link-bare.toml")),
 ];
 
-/// Each is read when it is first asked for.
+/// The parsed scenarios; each is parsed at its first use.
 static READ: [OnceLock<Scenario>; BUILTIN.len()] = [const { OnceLock::new() }; BUILTIN.len()];
 
 impl Scenario {
-    /// The names of the built-in scenarios, the paper's cases first.
+    /// Returns the names of the built-in scenarios, the paper's cases first.
     pub fn builtin_names() -> impl Iterator<Item = &'static str> {
         BUILTIN.iter().map(|(name, _)| *name)
     }
 
-    /// The names of the paper's cases.
+    /// Returns the names of the paper's cases.
     pub fn cases() -> impl Iterator<Item = &'static str> {
-        Self::builtin_names().take(CASES)
+        Self::builtin_names().take(CASE_COUNT)
     }
 
-    /// The built-in scenarios, the paper's cases first.
+    /// Returns the built-in scenarios, the paper's cases first.
     pub fn builtins() -> impl Iterator<Item = &'static Self> {
         (0..BUILTIN.len()).map(read)
     }
 
-    /// A built-in scenario.
+    /// Returns a built-in scenario by its name.
     pub fn builtin(name: &str) -> Option<Self> {
         Self::builtin_names().position(|own| own == name).map(|place| read(place).clone())
     }

@@ -3,26 +3,26 @@
 use crate::settings::word::words;
 
 words! {
-    /// How the redundancy of three drives over two coordinates is resolved.
+    /// Kind of a task: how the redundancy of three drives over two coordinates is resolved.
     pub enum TaskKind {
         Reactionless = "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)";
         /// Along the end effector's path.
         #[serde(alias = "tip-line")]
         MinimumNorm = "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)";
         SameTip = "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)";
-        /// It changes as little as its corridor allows.
+        /// b changes as little as its corridor allows.
         LeastReaction = "least-reaction", "Least reaction", "Any path, b changing as little as it must";
         ChangeB = "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈";
         /// A closed path is run through again and again.
         ZeroMomentum =
             "zero-momentum", "Zero momentum", "Reactionless on any machine; on a closed path the joints may drift";
-        /// Of the drives as they are, of the end effector on the plane b = const.
+        /// Drive angles are followed as they are, the end effector on the plane b = const.
         Given = "given", "As given", "By samples over time, from a file: stillbase import";
     }
 }
 
 words! {
-    /// What joins the points of a task.
+    /// Shape of the path between the points of a task.
     pub enum Shape {
         JointLine = "joint-line", "Joint lines", "Straight in joint space";
         Line = "line", "Straight lines", "The end effector on straight lines";
@@ -33,7 +33,7 @@ words! {
 }
 
 words! {
-    /// What happens where straight lines meet.
+    /// Motion at the corners between straight lines.
     pub enum Corners {
         Stop = "stop", "Stop", "The motion comes to rest";
         Blend = "blend", "Blend", "The corner is rounded off";
@@ -41,7 +41,7 @@ words! {
 }
 
 words! {
-    /// What a redundant motion keeps small.
+    /// Quantity that a redundant motion minimises.
     pub enum Least {
         /// The root of the mean square of n_B.
         MeanSquare = "mean-square", "Least mean square", "∫ n_B² dt as small as can be";

@@ -1,4 +1,4 @@
-//! [`Scenario`]: what a run starts from.
+//! [`Scenario`]: machine, task and all settings from which a run starts.
 
 use super::design::Brief;
 use super::error::ScenarioError;
@@ -12,24 +12,24 @@ use crate::simulation::Setup;
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences};
 
-/// What a run starts from.
+/// Machine, task and all settings from which a run starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Short name: `case-3`.
     pub name: String,
-    /// A line about it.
+    /// Description in one line.
     pub title: String,
-    /// The machine that control believes in.
+    /// Nominal machine, which control assumes.
     pub machine: Machine,
-    /// What differs in the machine that moves.
+    /// Differences of the machine that moves from the nominal one.
     pub plant: PlantDifferences,
-    /// What it stands on.
+    /// Base on which the machine stands.
     pub base: Base,
     /// The task.
     pub task: Task,
-    /// What the motors are told.
+    /// Control of the motors.
     pub control: Control,
-    /// Fixed step, s.
+    /// Fixed step size, s.
     pub step: f64,
     /// Bound on |b̈| while b is slid, rad/s².
     pub pose_acceleration: f64,
@@ -37,23 +37,23 @@ pub struct Scenario {
     pub compare_b: Option<f64>,
     /// Time that a headless run covers, s; by default that of the planned motion.
     pub duration: Option<f64>,
-    /// How machines that are built differ from it.
+    /// Tolerances of machines as built.
     pub tolerance: Tolerance,
-    /// What is asked of the machine while it is designed.
+    /// Requirements on the machine in the design view.
     pub design: Brief,
-    /// What was done, in the order of steps.
+    /// Edits by the user.
     pub edits: Vec<TimedEdit>,
-    /// Instants to find again, by time; no motion depends on them.
+    /// Bookmarks; no motion depends on them.
     pub bookmarks: Vec<Bookmark>,
-    /// How it went on before somebody went back and did something else.
+    /// Courses of the run that other edits have replaced.
     pub branches: Vec<Branch>,
 }
 
 impl Scenario {
-    /// Whether every number is in its range; `file` is what errors call it.
+    /// Checks every number, and the machine that moves. Errors name `file`.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first number that is out of range, or why the machine that moves is not valid.
     pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
         if let Some(Check { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
             return Err(ScenarioError::OutOfRange { file: file.into(), line: None, key: key.into(), value, want });
@@ -62,16 +62,16 @@ impl Scenario {
         named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), line: None, error })
     }
 
-    /// The machine that moves, with what it holds at the start.
+    /// Returns the machine that moves, with the payload that it holds at the start.
     ///
     /// # Errors
-    /// If what differs leaves no valid machine.
+    /// If it is not a valid machine.
     pub fn plant_machine(&self) -> Result<Machine, MachineError> {
         let (machine, load) = (self.plant.machine(&self.machine)?, &self.plant.payload);
         if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
     }
 
-    /// The same before anything was done to it.
+    /// Returns the scenario without edits, bookmarks and branches.
     pub(crate) fn without_edits(&self) -> Self {
         let Self { name, title, machine, plant, base, task, control, step, .. } = self;
         let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
@@ -95,7 +95,7 @@ impl Scenario {
         }
     }
 
-    /// What a simulation of it is made of.
+    /// Returns the input of a simulation.
     pub fn setup(&self) -> Setup<'_> {
         let Self { machine: model, plant, base, control, step, .. } = self;
         Setup { model, plant, base, control, step: *step }

@@ -1,4 +1,5 @@
-//! [`Brief`]: what a designer asks of a machine whose masses and lengths are changed by hand, as `[design]` states it.
+//! [`Brief`]: requirements on a machine whose masses and lengths are changed in the design view, as `[design]` states
+//! them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Deref;
@@ -19,7 +20,7 @@ const SOUGHT: &str = "a length that is sought";
 const COUNTERWEIGHT: &str = "a counterweight of this number";
 
 keyed! {
-    /// The `[design]` of a scenario: no motion depends on it, but what is changed in the design view does.
+    /// The `[design]` of a scenario: requirements on changes in the design view. No motion depends on it.
     ///
     /// ```toml
     /// [design]
@@ -65,13 +66,12 @@ keyed! {
         /// Whether a link stays as it is: neither what keeps the balance nor new counterweights change it.
         fixed: Names = "false", when: LINK;
         tables:
-        /// Single numbers that stay, may change, or may change so far, by key: `link.5.mass`. They come before what is
-        /// said of their links.
+        /// Holds of single numbers by key, such as `link.5.mass`: fixed, free, or within bounds. They override `fixed`.
         hold: Held;
     }
 }
 
-/// The keys of numbers that are held.
+/// Keys of the numbers that can be held.
 pub const HELD: [Key; 5] = [
     held("design.hold.link.*.mass", ranges::LOAD, "How a link's mass is held while the balance is kept.").when(LINK),
     held("design.hold.link.*.com", ranges::PLACE, "How a link's centre of mass along it is held.").when(LINK),
@@ -86,13 +86,13 @@ const fn held(path: &'static str, range: Range, words: &'static str) -> Key {
     Key::new(path, Holds::Bounds(range), Key::NONE, words).instead("it follows if its kind does")
 }
 
-/// A key of a held number without what stands before all of them.
+/// Returns the key of a held number without its prefix `design.hold.`.
 fn bare(key: &Key) -> &'static str {
     key.path.trim_start_matches("design.hold.")
 }
 
 impl Brief {
-    /// What counterweights are made of.
+    /// Returns density and thickness of counterweights.
     pub fn disc(&self) -> Disc {
         Disc { density: self.density, thickness: self.thickness }
     }
@@ -122,7 +122,7 @@ impl Brief {
         }
     }
 
-    /// What no range says: that no least value is above its greatest.
+    /// Checks that no lower bound is above its upper bound.
     pub(super) fn fits(&self) -> Vec<Check> {
         let holds = self.hold.iter().filter_map(|(key, hold)| match hold {
             Hold::Within(ends) => Some((format!("design.hold.{key}"), *ends)),
@@ -137,7 +137,7 @@ impl Brief {
     }
 }
 
-/// The kind and the name of the body that a held number is of; `None` if no such number can be held.
+/// Returns kind and name of the body of a held number, or `None` if no such number can be held.
 fn body_of(key: &str) -> Option<(&str, &str)> {
     let (kind, rest) = key.split_once('.')?;
     let (name, what) = rest.rsplit_once('.')?;
@@ -145,12 +145,12 @@ fn body_of(key: &str) -> Option<(&str, &str)> {
     known.then_some((kind, name))
 }
 
-/// Whether a part is as it is where a file leaves it out.
+/// Whether a part has its default value.
 pub(super) fn is_default<T: Default + PartialEq>(part: &T) -> bool {
     *part == T::default()
 }
 
-/// A set of names, in a file a switch for each.
+/// A set of names; a file has a switch for each.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<String, bool>", into = "BTreeMap<String, bool>")]
 pub struct Names(pub BTreeSet<String>);
@@ -178,7 +178,7 @@ impl From<Names> for BTreeMap<String, bool> {
     }
 }
 
-/// How numbers are held, by key; in a file tables in each other, such as `link.5.mass`.
+/// Holds of numbers by key; nested tables in a file, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Table", into = "Table")]
 pub struct Held(pub BTreeMap<String, Hold>);
@@ -218,7 +218,7 @@ impl TryFrom<Table> for Held {
     }
 }
 
-/// A hold as a file states it.
+/// Returns a hold as a file states it.
 pub fn to_value(hold: Hold) -> Value {
     match hold {
         Hold::Fixed => BOUNDS[0].into(),

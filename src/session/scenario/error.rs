@@ -1,4 +1,4 @@
-//! What can be wrong with a scenario: which file, line and key.
+//! Errors of a scenario, with file, line and key.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ use crate::settings::text::MOST_BYTES;
 /// Why a file is not a scenario.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
-    /// The file itself.
+    /// The file cannot be read.
     #[error("{file}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes")]
     Unreadable {
         /// The file.
@@ -18,7 +18,7 @@ pub enum ScenarioError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// Not TOML, or not of a scenario.
+    /// The text is not TOML, or not a scenario.
     #[error("{file}{}: {message}", at(*line))]
     Syntax {
         /// The file.
@@ -37,9 +37,9 @@ pub enum ScenarioError {
         line: Option<usize>,
         /// The key of the number.
         key: String,
-        /// What stands there.
+        /// The value.
         value: f64,
-        /// What would be right.
+        /// Allowed values.
         want: Want,
     },
     /// Its machine is not valid.
@@ -52,24 +52,24 @@ pub enum ScenarioError {
         /// What is wrong.
         error: MachineError,
     },
-    /// One of its edits.
+    /// An edit is not valid.
     #[error("{file}{}: the {} [[edit]]: {message}", at(*line), ordinal(*entry))]
     Edit {
         /// The file.
         file: String,
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
-        /// Which, counted from 1.
+        /// Number of the edit, counted from 1.
         entry: usize,
         /// What is wrong.
         message: String,
     },
-    /// Its machine's file.
+    /// The file of its machine is wrong.
     #[error(transparent)]
     MachineFile(#[from] FileError),
 }
 
-/// A line behind the name of its file.
+/// Formats a line number, to follow the name of its file.
 fn at(line: Option<usize>) -> String {
     line.map(|line| format!(":{line}")).unwrap_or_default()
 }

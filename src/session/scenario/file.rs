@@ -1,4 +1,4 @@
-//! Scenarios as TOML, in and out.
+//! Reads and writes scenarios as TOML.
 
 use std::path::Path;
 
@@ -46,7 +46,7 @@ struct File {
     tolerance: Tolerance,
     #[serde(default, skip_serializing_if = "is_default")]
     design: Brief,
-    /// As they stand there, so that a wrong one can be named.
+    /// Edits as unparsed tables, so that an error can name the wrong one.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<toml::Table>,
     #[serde(default, rename = "bookmark", skip_serializing_if = "Vec::is_empty")]
@@ -70,22 +70,23 @@ enum MachineRef {
     Inline(Box<MachineSpec>),
 }
 
-/// What names and titles must be.
+/// Requirement on names and titles.
 const PRINTABLE: &str = "want printable characters";
 
-/// The most characters of an error of the TOML reader.
-const MAX_MESSAGE: usize = 300;
+/// Maximum length of an error of the TOML reader, characters.
+const MAX_MESSAGE_CHARS: usize = 300;
 
-/// What a name or a file stands for.
+/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// A machine.
     Machine,
-    /// A scenario, which has one.
+    /// A scenario, with its machine.
     Scenario,
 }
 
-/// What a file is meant to be, by the tables that only one of the two has; `None` if it has neither or both.
+/// Returns whether a file is meant as machine or as scenario, by tables that only one of them has. Returns `None` if it
+/// has tables of neither or of both.
 pub fn content(text: &str) -> Option<Content> {
     let table: toml::Table = text.parse().ok()?;
     let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));
@@ -100,8 +101,7 @@ pub fn content(text: &str) -> Option<Content> {
 pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
 
 impl Scenario {
-    /// Reads a scenario from text; `label` is what errors call it, `find` looks up a machine that
-    /// does not come with the program.
+    /// Reads a scenario from text. Errors name `label`; `find`, if given, looks up the machine by its name.
     ///
     /// # Errors
     /// If it is not a scenario.
@@ -109,11 +109,11 @@ impl Scenario {
         let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
             line: e.span().map(|s| machine::line_of(text, s.start)),
-            message: shortened(e.message(), MAX_MESSAGE),
+            message: shortened(e.message(), MAX_MESSAGE_CHARS),
         })?;
         let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
         let stated: toml::Table = text.parse().unwrap_or_default();
-        // What is filled in by others has to be a number.
+        // Missing keys of the task are derived from given ones, which have to be finite.
         if let Some(key) = change::not_finite(&stated).filter(|key| key.starts_with("task")) {
             let message = format!("{} is not a finite number: want one", clipped(&key));
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
@@ -156,7 +156,7 @@ impl Scenario {
         let wrong_edit = |(i, message): (usize, String)| {
             let place = Place::new(&[&"edit", &i]);
             let (file, line) = (label.into(), machine::line_of_place(text, &place));
-            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MAX_MESSAGE) }
+            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MAX_MESSAGE_CHARS) }
         };
         for (i, entry) in file.edits.into_iter().enumerate() {
             edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
@@ -183,7 +183,7 @@ impl Scenario {
         check_edits(&scenario).map_err(wrong_edit)?;
         let wrong_entry = |of: &str, (i, message): (usize, String)| {
             let line = machine::line_of_place(text, &Place::new(&[&of, &i]));
-            let message = format!("{of} {}: {}", i + 1, shortened(&message, MAX_MESSAGE));
+            let message = format!("{of} {}: {}", i + 1, shortened(&message, MAX_MESSAGE_CHARS));
             ScenarioError::Syntax { file: label.into(), line, message }
         };
         let sound = |edits: &[TimedEdit]| check_edits(&Self { edits: edits.to_vec(), ..scenario.without_edits() });
@@ -193,7 +193,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// An error of [`check`](Self::check) with the line of its key in a text.
+    /// Adds the line of its key in a text to an error of [`check`](Self::check).
     fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
         let line_of = |place: Place| machine::line_of_place(text, &place);
         match error {
@@ -203,7 +203,7 @@ impl Scenario {
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
-                // What differs goes by the names of links and lengths, not by their places in the machine.
+                // Keys of the plant name links and lengths; they do not use their indices in the machine.
                 let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
                     [link, PlaceStep::Named(_, name), rest @ ..] => {
                         let named = [link.clone(), PlaceStep::Key(name.clone())];
@@ -221,8 +221,8 @@ impl Scenario {
         }
     }
 
-    /// The scenario as TOML, so that [`parse`](Self::parse) gives an equal one. A built-in machine is named, any
-    /// other is written out.
+    /// Returns the scenario as TOML, from which [`parse`](Self::parse) gives an equal one. A built-in machine is named,
+    /// any other is written out.
     ///
     /// # Panics
     /// Never: every scenario can be written.

@@ -1,4 +1,4 @@
-//! What is kept beside a run: bookmarks on its time line, and branches that it left.
+//! Bookmarks on the time line of a run, and branches, which are courses of the run that other edits have replaced.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,35 +7,35 @@ use crate::session::TimedEdit;
 use crate::settings::number::Short;
 use crate::settings::text::steering;
 
-/// An instant that somebody wants to find again.
+/// A named instant of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bookmark {
-    /// s.
+    /// Time, s.
     pub time: f64,
-    /// What is to be found there.
+    /// Name.
     pub name: String,
 }
 
-/// How a run went on before somebody went back and did something else.
+/// A course of a run that was replaced when the user went back in time and edited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// How long it takes, s.
+    /// Duration, s.
     pub duration: f64,
-    /// All that was done in it, also before it was left.
+    /// All edits of this course of the run, from the start on.
     pub edits: Vec<TimedEdit>,
 }
 
-/// The most bookmarks of a session.
+/// Maximum number of bookmarks of a session.
 pub const MAX_BOOKMARKS: usize = 100;
 
-/// The most branches that are kept.
+/// Maximum number of branches of a session.
 pub const MAX_BRANCHES: usize = 32;
 
-/// The most characters of a bookmark's name.
+/// Maximum length of the name of a bookmark, characters.
 pub const MAX_NAME: usize = 60;
 
-/// A branch as a file has it.
+/// A branch as a file states it.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StatedBranch {
@@ -67,10 +67,10 @@ impl Bookmark {
     }
 }
 
-/// Whether bookmarks may stand in a file.
+/// Checks the bookmarks of a file.
 ///
 /// # Errors
-/// The first that may not, counted from 0, and why.
+/// The index of the first wrong bookmark, and why it is wrong.
 pub(super) fn check_bookmarks(bookmarks: &[Bookmark]) -> Result<(), (usize, String)> {
     if bookmarks.len() > MAX_BOOKMARKS {
         return Err((MAX_BOOKMARKS, format!("want at most {MAX_BOOKMARKS} bookmarks")));
@@ -79,10 +79,10 @@ pub(super) fn check_bookmarks(bookmarks: &[Bookmark]) -> Result<(), (usize, Stri
     bookmarks.iter().enumerate().find_map(wrong).map_or(Ok(()), Err)
 }
 
-/// Branches from what stands in a file; `check` looks at the edits of one and says which is wrong.
+/// Reads the branches of a file. `check` tests the edits of one branch, and returns the index of a wrong one.
 ///
 /// # Errors
-/// The first that cannot be one, counted from 0, and why.
+/// The index of the first wrong branch, and why it is wrong.
 pub(super) fn branches(
     stated: Vec<StatedBranch>,
     check: impl Fn(&[TimedEdit]) -> Result<(), (usize, String)>,

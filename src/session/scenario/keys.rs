@@ -1,4 +1,4 @@
-//! Every key of a scenario, and what a change of it reaches.
+//! Every key of a scenario, and the effect of a change of it.
 
 use toml::{Table, Value};
 
@@ -12,7 +12,7 @@ use crate::settings::key::{Effect, Key};
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
 
-// What is planned from, and what no frame depends on: all keys of these parts.
+// Parts whose keys all change the plan, and parts on whose keys no frame depends.
 const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS);
 const BASE: [Key; Base::KEYS.len()] = Key::all_reaching(Effect::Plan, Base::KEYS);
 const WHEEL: [Key; Wheel::KEYS.len()] = Key::all_reaching(Effect::Plan, Wheel::KEYS);
@@ -36,18 +36,18 @@ pub const KEYS: [(&str, &[&[Key]]); 9] = [
     ("Design: what is asked of a machine that is changed by hand", &[&DESIGN, &HELD]),
 ];
 
-/// Every key.
+/// Returns every key.
 pub fn keys() -> impl Iterator<Item = &'static Key> {
     KEYS.iter().flat_map(|(_, keys)| keys.iter().copied().flatten())
 }
 
-/// The title of the part that a key is of.
+/// Returns the title of the part to which a key belongs.
 pub fn part_of(key: &Key) -> &'static str {
     let of = KEYS.iter().find(|(_, tables)| tables.iter().any(|keys| keys.contains(key)));
     of.map_or("", |(part, _)| *part)
 }
 
-/// The key of a path, such as `plant.link.5.com`.
+/// Returns the key of a path, such as `plant.link.5.com`.
 pub fn key_of(path: &str) -> Option<&'static Key> {
     keys().find(|key| key.matches(path))
 }
@@ -55,16 +55,16 @@ pub fn key_of(path: &str) -> Option<&'static Key> {
 /// The parts of a scenario that are tables of their own.
 pub(super) const TABLES: [&str; 6] = ["task", "control", "plant", "base", "tolerance", "design"];
 
-/// What a change of settings reaches: the most that one of its keys does.
+/// Returns the effect of a change of settings: the largest effect of its keys.
 pub fn effect_of(change: &Table) -> Effect {
     change.iter().map(|(part, value)| effect_in(part, value)).max().unwrap_or(Effect::Aside)
 }
 
-/// The same of a change of one part.
+/// Returns the effect of a change of one part.
 pub fn effect_in(part: &str, value: &Value) -> Effect {
     let of_part = || keys().filter(|key| key.part() == part).map(|key| key.effect);
     let most = of_part().max().unwrap_or(Effect::Motion);
-    // A part of which all keys reach the same need not be looked at key by key.
+    // If all keys of a part have the same effect, single keys need not be looked up.
     if of_part().all(|effect| effect == most) {
         return most;
     }

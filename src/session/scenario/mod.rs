@@ -1,7 +1,7 @@
-//! Scenarios: a machine, what it is to do, and what is done to it meanwhile; TOML files.
+//! Scenarios: a machine, its task, and the edits made while it runs; as TOML files.
 //!
-//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies, with its bookmarks and
-//! with the branches that it left.
+//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies, with bookmarks and
+//! with branches.
 
 mod bounds;
 mod catalog;

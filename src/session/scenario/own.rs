@@ -1,4 +1,4 @@
-//! [`Own`]: the keys of a scenario that stand alone.
+//! [`Own`]: the keys of a scenario that belong to no part.
 
 use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
 use super::task::POSE_CONSTANT;
@@ -6,7 +6,7 @@ use crate::settings::key::{Effect, Key};
 use crate::settings::keyed::keyed;
 
 keyed! {
-    /// What a scenario has beside its parts.
+    /// Keys of a scenario that belong to no part.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Own {
         /// Fixed step of the simulation.

@@ -1,16 +1,16 @@
-//! The points of a task: A, those between, B; and the changes that move, add, leave out and reorder them.
+//! The points of a task: A, those between, B; and the changes that move, add, remove and reorder them.
 
 use super::task::{Change, Task};
 use crate::mechanics::planar::Vector;
 
 impl Task {
-    /// All points in order, A first and B last, m.
+    /// Returns all points in order, A first and B last, m.
     pub fn points(&self) -> Vec<Vector> {
         let all = std::iter::once(&self.from).chain(&self.via).chain(std::iter::once(&self.to));
         all.map(|p| Vector::new(p[0], p[1])).collect()
     }
 
-    /// What a point is called: A, 1, 2 … B.
+    /// Returns the name of a point: A, 1, 2 … B.
     pub fn name_of(&self, point: usize) -> String {
         match point {
             0 => "A".into(),
@@ -19,7 +19,7 @@ impl Task {
         }
     }
 
-    /// The change that makes these the points; `None` for fewer than two.
+    /// Returns the change that sets these points, m; `None` for fewer than two.
     pub fn visiting(points: &[Vector]) -> Option<Change> {
         let [from, via @ .., to] = points else { return None };
         let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
@@ -29,12 +29,12 @@ impl Task {
         )
     }
 
-    /// The points, unless samples say where to go.
+    /// Returns the points, m, unless the task follows samples.
     fn movable(&self) -> Option<Vec<Vector>> {
         self.samples.is_none().then(|| self.points())
     }
 
-    /// The task with a point elsewhere, m; `None` where samples say where to go, or for no such point.
+    /// Returns the task with a point moved to `to`, m, or `None` if it follows samples or has no such point.
     pub fn moved(&self, point: usize, to: Vector) -> Option<Self> {
         let mut points = self.movable()?;
         *points.get_mut(point)? = to;
@@ -43,14 +43,15 @@ impl Task {
         Some(Self { from, via: places.collect(), to, ..self.clone() })
     }
 
-    /// The change that moves a point, m; as all such changes, none where samples say where to go.
+    /// Returns the change that moves a point to `to`, m. This change and those below are `None` if the task follows
+    /// samples.
     pub fn moving(&self, point: usize, to: Vector) -> Option<Change> {
         let mut points = self.movable()?;
         *points.get_mut(point)? = to;
         Self::visiting(&points)
     }
 
-    /// The change that visits one more point, m, where the least way is added.
+    /// Returns the change that adds a point, m, where it lengthens the polyline through all points least.
     pub fn adding(&self, p: Vector) -> Option<Change> {
         let mut points = self.movable()?;
         let detour = |i: &usize| {
@@ -62,7 +63,7 @@ impl Task {
         Self::visiting(&points)
     }
 
-    /// The change that leaves a point out; `None` if only two are left.
+    /// Returns the change that removes a point; `None` if there are only two.
     pub fn removing(&self, point: usize) -> Option<Change> {
         let mut points = self.movable()?;
         if points.len() <= 2 || point >= points.len() {
@@ -72,7 +73,7 @@ impl Task {
         Self::visiting(&points)
     }
 
-    /// The change that visits a point one place earlier.
+    /// Returns the change that visits a point one place earlier.
     pub fn advancing(&self, point: usize) -> Option<Change> {
         let mut points = self.movable()?;
         if point == 0 || point >= points.len() {
@@ -82,9 +83,9 @@ impl Task {
         Self::visiting(&points)
     }
 
-    /// The change that visits the points of a curve drawn by hand, m.
+    /// Returns the change that sets the points of a curve drawn with the pointer, m.
     pub fn drawing(points: &[Vector]) -> Option<Change> {
-        // Few enough to be kept in a file and to keep the shape of the line that was drawn.
+        // Few enough points for a file, and enough to keep the shape of the drawn curve.
         let every = points.len().div_ceil(400).max(1);
         let mut thin: Vec<Vector> = points.iter().step_by(every).copied().collect();
         thin.extend(points.last().filter(|last| thin.last() != Some(last)));

@@ -1,4 +1,4 @@
-//! The settings of a scenario as one tree: every key of a file but its name, its title and what was done.
+//! The settings of a scenario as one tree: every key of a file except name, title and edits.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -17,18 +17,18 @@ use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Effect, Holds, Key};
 use crate::settings::range::{Check, clipped};
 
-/// Why settings cannot be laid over a scenario.
+/// Why settings cannot be applied to a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingError {
-    /// What is wrong, with its part.
+    /// A part is wrong.
     #[error("{part}: {why}")]
     Part {
         /// Such as `plant`.
         part: String,
-        /// What, and what would be right.
+        /// What is wrong, and what would be right.
         why: String,
     },
-    /// What is wrong, with its key.
+    /// A message that names the key.
     #[error("{0}")]
     Said(String),
     /// A value that a key does not take.
@@ -36,15 +36,15 @@ pub enum SettingError {
     Value {
         /// The key.
         path: String,
-        /// What was given.
+        /// The value that was given.
         value: String,
-        /// What would be right.
+        /// Allowed values.
         want: String,
     },
-    /// What is wrong with the machine.
+    /// The machine would not be valid.
     #[error(transparent)]
     Machine(#[from] machine::MachineError),
-    /// No such part.
+    /// There is no such key.
     #[error("there is no setting {key}: want one of {}, {}", Own::KEYS.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
     Unknown {
         /// The key.
@@ -53,9 +53,9 @@ pub enum SettingError {
 }
 
 impl Scenario {
-    /// The scenario with settings laid over it, as they stand in a file; the word `default` takes a key out, and so does
-    /// `none` where that is the default. Whether
-    /// all of it fits together is for [`check`](Self::check) to say. Edits stay at their times where the step changes.
+    /// Returns the scenario with settings changed, as a file states them. The word `default` removes a key, and so does
+    /// `none` if that is its default. [`check`](Self::check) tests whether all settings fit together. If the step size
+    /// changes, edits keep their times.
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
@@ -107,13 +107,13 @@ impl Scenario {
         Ok(())
     }
 
-    /// What it has beside its parts.
+    /// Returns the keys that belong to no part.
     fn own(&self) -> Own {
         let Self { step, duration, pose_acceleration, compare_b, .. } = *self;
         Own { step, duration, pose_acceleration, compare_b }
     }
 
-    /// One of these numbers, or its default.
+    /// Sets one of these keys to a number, or to its default if none is given.
     fn lay_own(&mut self, part: &str, given: Option<f64>) -> Result<(), String> {
         let mut stated = Table::try_from(self.own()).map_err(|why| why.to_string())?;
         match given {
@@ -128,9 +128,9 @@ impl Scenario {
         Ok(())
     }
 
-    /// Another step, s; edits stay at their times.
+    /// Sets the step size, s; edits keep their times.
     fn step_by(&mut self, step: f64) {
-        // Edits are counted in the steps that the last of them sets.
+        // Edits are counted in steps of the size that the last of them sets.
         let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
         self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
         let ratio = own / step;
@@ -140,8 +140,8 @@ impl Scenario {
         self.step = step;
     }
 
-    /// What the keys of a change hold now, so that [`with`](Self::with) brings it back; `None` if one of them is not
-    /// there.
+    /// Returns the present values of the keys of a change, with which [`with`](Self::with) undoes it. Returns `None` if
+    /// one of the keys does not exist.
     pub fn only(&self, change: &Table) -> Option<Table> {
         let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         let known = |part: &String| TABLES.contains(&part.as_str()) || Own::KEYS.iter().any(|key| key.path == part);
@@ -152,7 +152,7 @@ impl Scenario {
             *tolerance = Tolerance::flat(tolerance);
         }
         let mut stated = self.stated();
-        // Long, so put in only where it is asked for.
+        // Samples may be long, so they are added only if the change is of them.
         if change::leaves(&own).iter().any(|(path, _)| path == "task.samples") {
             stated.insert("task".into(), Table::try_from(&self.task).ok()?.into());
         }
@@ -163,7 +163,7 @@ impl Scenario {
         Some(now)
     }
 
-    /// Its own settings as a file states them, without machine, samples and edits.
+    /// Returns its settings as a file states them, without machine, samples and edits.
     fn stated(&self) -> Table {
         let task = if self.task.samples.is_some() {
             Table::try_from(&Task { samples: None, ..self.task.clone() })
@@ -184,7 +184,8 @@ impl Scenario {
         all
     }
 
-    /// What a setting holds now; the word `default` where nothing stands. `None` if there is no such key.
+    /// Returns the present value of a setting, or the word `default` if it has none. Returns `None` if there is no such
+    /// key.
     pub fn value(&self, path: &str) -> Option<Value> {
         self.value_in(&self.stated(), path)
     }
@@ -195,7 +196,7 @@ impl Scenario {
         }
         let key = key_of(path)?;
         let found = match path.strip_prefix("tolerance.") {
-            // There a key is one word.
+            // A key of this part is one word.
             Some(key) => stated.get("tolerance").and_then(|part| part.get(key)),
             None => {
                 let (first, rest) = path.split_once('.').unwrap_or((path, ""));
@@ -210,7 +211,7 @@ impl Scenario {
         })
     }
 
-    /// Every setting that this scenario has, with its key and what it holds: `*` becomes each name of its machine.
+    /// Returns every setting of this scenario with its key and its value; `*` becomes each name of its machine.
     pub fn settings(&self) -> Vec<(String, &'static Key, Value)> {
         let spec = self.machine.spec();
         let names = |pattern: &str| -> Vec<String> {
@@ -236,7 +237,7 @@ impl Scenario {
         paths.filter_map(|(path, key)| Some((path.clone(), key, self.value_in(&stated, &path)?))).collect()
     }
 
-    /// What a key would want to have an effect, if it has none as things are.
+    /// Returns the condition for a key to have an effect, if it has none now.
     pub fn idle(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
             Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
@@ -262,25 +263,26 @@ impl Scenario {
         self.plant.force != [0.0; 2] || self.edits.iter().any(|timed| timed.edit.pushes())
     }
 
-    /// The keys that are given and have no effect, with what each would want; some always stand there.
+    /// Returns the given keys that have no effect, each with the condition for one. Keys that files always state are
+    /// left out.
     pub fn idle_keys(&self) -> Vec<(String, &'static str)> {
-        const STANDING: [&str; 7] =
+        const ALWAYS_STATED: [&str; 7] =
             ["task.kind", "task.from", "task.to", "task.b", "task.time", "task.law", "control.knows_base"];
         let stated = self.stated();
         let of_machine = self.machine.idle_keys(self.is_pushed()).map(str::to_owned);
         let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
         of_machine
             .chain(given)
-            .filter(|path| !STANDING.contains(&path.as_str()))
+            .filter(|path| !ALWAYS_STATED.contains(&path.as_str()))
             .filter_map(|path| self.idle(&path).map(|want| (path, want)))
             .collect()
     }
 
-    /// Every number with its key, and whether it may stand there.
+    /// Checks every number against its range and the others.
     pub(super) fn checks(&self) -> Vec<Check> {
         let n = self.machine.drives();
         let stated = self.stated();
-        // What a step bounds is bounded more narrowly by it than by any range, if it is one itself.
+        // A valid step size bounds some numbers more narrowly than their ranges do.
         let mut list = vec![STEP.check("step", self.step)];
         if STEP.contains(self.step) {
             list.extend(self.task.fits(self.step));
@@ -292,10 +294,10 @@ impl Scenario {
         list
     }
 
-    /// The same with what another one has of the keys that change no frame.
+    /// Returns the scenario with those settings of another one on which no frame depends.
     ///
     /// # Errors
-    /// If those cannot be laid over it.
+    /// If these settings cannot be applied.
     pub(crate) fn with_asides_of(&self, other: &Self) -> Result<Self, SettingError> {
         let asides = || keys().filter(|key| key.effect == Effect::Aside).map(|key| key.part().to_owned());
         let none: Table = asides().map(|part| (part, DEFAULT.into())).collect();
@@ -305,7 +307,7 @@ impl Scenario {
     }
 }
 
-/// A part with settings laid over it; the word `default` takes all of them out.
+/// Returns a part with settings changed; the word `default` removes all of its keys.
 fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Result<T, String> {
     match value {
         Value::Table(change) => change::with(now, change),
@@ -314,7 +316,7 @@ fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Re
     }
 }
 
-/// A change with the word `default` for `none` where that is the default.
+/// Replaces `none` in a change by `default`, for keys whose default is `none`.
 fn freed(at: &str, change: &Table) -> Table {
     let freed = |(key, value): (&String, &Value)| {
         let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
@@ -329,7 +331,7 @@ fn freed(at: &str, change: &Table) -> Table {
     change.iter().map(freed).collect()
 }
 
-/// The first value under a part that its key does not take.
+/// Returns the error of the first value in a part that its key does not take.
 fn blame(part: &str, value: &Value) -> Option<SettingError> {
     let whole = change::one(part, value.clone());
     change::leaves(&whole).into_iter().find_map(|(path, value)| {
@@ -350,7 +352,7 @@ fn blame(part: &str, value: &Value) -> Option<SettingError> {
     })
 }
 
-/// A number of the scenario's own; none for the word `default`.
+/// Reads a number of a key that belongs to no part; `None` for the word `default`.
 fn number(value: &Value, key: &Key) -> Result<Option<f64>, String> {
     match value {
         Value::String(word) if word == DEFAULT => Ok(None),

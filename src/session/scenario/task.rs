@@ -1,4 +1,4 @@
-//! A [`Task`]: which points to visit, along what, how the redundancy is resolved, and when.
+//! A [`Task`]: points to visit, curves between them, how the redundancy is resolved, and the timing.
 
 use toml::Table;
 
@@ -17,20 +17,20 @@ use crate::settings::number::{Short, counted};
 use crate::settings::range::{Check, Range};
 use crate::settings::word::Choice;
 
-/// Some keys of a task, as they stand in a file.
+/// Some keys of a task, as a file states them.
 pub type Change = Table;
 
-/// What a key of a task holds.
+/// Value of a key of a task.
 pub type Value = toml::Value;
 
-/// The most points a task may visit.
+/// Maximum number of points between A and B.
 pub const MAX_POINTS: usize = 2000;
 
-/// Where a point may lie, either coordinate.
+/// Range of either coordinate of a point.
 pub const PLACE: Range = Range::either_way(1e6, "m");
-/// Where a pose constant may lie: two hundred turns and more keep all its digits.
+/// Range of a pose constant, more than a hundred turns either way.
 pub const POSE_CONSTANT: Range = Range::either_way(1e3, "rad");
-/// How long a motion may take, whether it is told to or finds its time itself.
+/// Range of the duration of a motion, whether it is given or found.
 pub const TIME: Range = Range::new(1e-5, MAX_TIME, "s");
 
 const ANGLE: Range = Range::either_way(1e3, "rad");
@@ -45,7 +45,7 @@ const BLENDED: &str = "corners = blend, and three points or more, or a closed pa
 const TURNED: &str = "four drives or more, the kind reactionless, and the posture orientation or the shape joint-line";
 
 keyed! {
-    /// What the machine is to do. One that is read from a file still wants what the file leaves out.
+    /// What the machine is to do. A task that is read from a file has yet to be completed by what the file leaves out.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Task at "task" {
         /// What becomes of the redundancy of three drives over two coordinates of the end effector.
@@ -53,8 +53,8 @@ keyed! {
         /// What joins the points.
         shape: Option<Shape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
             when: CURVED => Task::is_curved;
-        // All drive angles for `given`; x and y for `given`, `reactionless` and `minimum-norm`. Of two drives `given`
-        // takes their angles. Points, shape and law have no say then.
+        // All drive angles for `given`; x and y for `given`, `reactionless` and `minimum-norm`. With two drives,
+        // `given` takes two values as drive angles. Points, shape and law have no effect then.
         /// The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
         /// By how much samples of drive angles are turned as a whole.
@@ -110,7 +110,7 @@ keyed! {
     }
 }
 
-/// What samples say of the ends of a path.
+/// Ends of a path that samples give.
 #[derive(Clone, Copy)]
 struct Ends {
     /// A and B, m.
@@ -119,8 +119,8 @@ struct Ends {
     b: Option<f64>,
 }
 
-/// The ends of samples of the end effector, or of the drives, turned as a whole, rad; `None` if there are none for this
-/// machine.
+/// Returns the ends of samples of the end effector, or of drive angles turned as a whole by `turn`, rad. Returns `None`
+/// if the samples do not fit the machine.
 fn ends_of((kind, samples): (TaskKind, &Samples), turn: f64, machine: &Machine) -> Option<Ends> {
     let last = samples.count() - 1;
     if samples.columns() == 2 && !(machine.drives() == samples.columns() && kind == TaskKind::Given) {
@@ -138,7 +138,8 @@ fn ends_of((kind, samples): (TaskKind, &Samples), turn: f64, machine: &Machine) 
 }
 
 impl Task {
-    /// A task by samples, on the plane b, rad, where they are of the end effector; those of the drives have their own.
+    /// Returns a task given by samples. Samples of the end effector are followed at `b`, rad; samples of drive angles
+    /// have their own b.
     ///
     /// # Errors
     /// Which key is missing: `b` for samples of the end effector without one.
@@ -148,8 +149,7 @@ impl Task {
         task.completed(stated, machine)
     }
 
-    /// The task as a file means it for a machine: what it leaves out is filled in from its samples. `stated` says whether
-    /// a key stands there.
+    /// Returns the task with missing keys filled in from its samples. `stated` returns whether a key is given.
     ///
     /// # Errors
     /// Which key is missing.
@@ -167,7 +167,7 @@ impl Task {
         let b = match ends.and_then(|ends| ends.b) {
             _ if stated("b") => self.b,
             Some(b) => b,
-            // Without redundancy a point says enough.
+            // Without redundancy a point determines b.
             None if !machine.is_redundant() => 0.0,
             None => return Err("b"),
         };
@@ -175,8 +175,8 @@ impl Task {
         Ok(Self { from, to, b, time, ..self })
     }
 
-    /// Samples turned as a whole to begin on the plane b, rad, if they are of the drives of a machine; what else a task
-    /// with samples has is left to its plan. `None` for a task without samples.
+    /// Returns a task with samples at another b, rad. Samples of drive angles are turned as a whole to begin at b; with
+    /// other samples only b is set. Returns `None` for a task without samples.
     pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
         let samples = self.samples.as_ref()?;
         let mut task = Self { b, ..self.clone() };
@@ -187,7 +187,7 @@ impl Task {
         Some(task)
     }
 
-    /// What no range says: how its numbers fit together, and a step, s.
+    /// Checks the time against the step size, s, and the number of points.
     pub(super) fn fits(&self, step: f64) -> Vec<Check> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
         let want = || format!("one step or more, {} to {} s", Short(step), Short(TIME.high()));
@@ -196,14 +196,14 @@ impl Task {
         std::iter::once(time).chain((!enough).then(many)).collect()
     }
 
-    /// All keys, so that another task can be made this one.
+    /// Returns all keys, as a change that turns any other task into this one.
     pub fn whole(&self) -> Change {
         let absent = Self::KEYS.iter().filter_map(|key| key.path.strip_prefix("task."));
         let absent = absent.map(|key| (key.to_owned(), Value::from(DEFAULT)));
         absent.chain(Change::try_from(self).unwrap_or_default()).collect()
     }
 
-    /// Values in each of its samples.
+    /// Returns the number of values in each of its samples.
     fn columns(&self) -> Option<usize> {
         self.samples.as_ref().map(Samples::columns)
     }
@@ -231,7 +231,7 @@ impl Task {
         self.kind == TaskKind::Reactionless && self.samples.is_none() && is_asked
     }
 
-    /// What joins the points.
+    /// Returns the shape of the path between the points.
     pub fn shape(&self) -> Shape {
         self.shape.unwrap_or(match self.kind {
             TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => Shape::JointLine,
@@ -239,7 +239,7 @@ impl Task {
         })
     }
 
-    /// Kind, shape, law and points in one line, in the words of a file.
+    /// Returns kind, shape, law and number of points in one line, in the words of a file.
     pub fn in_one_line(&self) -> String {
         let (kind, shape, law) = (self.kind.words().file, self.shape().words().file, self.law.words().file);
         if let Some(samples) = &self.samples {
@@ -249,13 +249,13 @@ impl Task {
         format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)
     }
 
-    /// The task with some of its keys changed, as they stand in a file, for a machine; the word `default` takes a key
-    /// out.
+    /// Returns the task with some of its keys changed, as a file states them, for a machine. The word `default` removes
+    /// a key.
     ///
     /// # Errors
-    /// What key or value is wrong, and what would be right.
+    /// Which key or value is wrong, and what would be right.
     pub fn with(&self, change: &Change, machine: &Machine) -> Result<Self, String> {
-        // Samples may be many: they are written out only where the change is of them.
+        // There may be many samples, so they are serialised only if the change is of them.
         let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
         let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
         let stated = change::laid(plain, change)?;
@@ -265,7 +265,7 @@ impl Task {
         completed.map_err(|key| format!("missing field `{key}`"))
     }
 
-    /// What these keys hold now, so that [`with`](Self::with) brings it back.
+    /// Returns the present values of these keys, with which [`with`](Self::with) undoes a change.
     pub fn only(&self, change: &Change) -> Change {
         change::only(self, change)
     }

@@ -1,4 +1,4 @@
-//! What varies about a machine and how much, as a scenario's `[tolerance]` or the command line states it.
+//! Tolerances of a machine, as a scenario's `[tolerance]` or the command line states them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,10 +12,10 @@ use crate::settings::key::{Holds, Key};
 use crate::settings::keyed::ANY;
 use crate::settings::range::{Range, clipped};
 
-/// The most samples of one study.
+/// Maximum number of samples of one study.
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
-/// The `[tolerance]` of a scenario: spreads by key of a setting, and what to do with them.
+/// The `[tolerance]` of a scenario: spreads by key of a setting, and the numbers of a study.
 ///
 /// ```toml
 /// [tolerance]
@@ -30,38 +30,38 @@ pub const MAX_SAMPLES: u64 = 1_000_000_000;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "BTreeMap<String, toml::Value>", into = "BTreeMap<String, toml::Value>")]
 pub struct Tolerance {
-    /// Which random machines.
+    /// Seed of the random machines.
     pub seed: Option<u64>,
-    /// How many machines are drawn.
+    /// Number of machines that are drawn.
     pub samples: Option<u64>,
-    /// The greatest |n_B| that will do, N m.
+    /// Upper limit on |n_B| for the yield, N m.
     pub moment_limit: Option<f64>,
-    /// The greatest dynamic |f_B| that will do, N.
+    /// Upper limit on the dynamic |f_B| for the yield, N.
     pub force_limit: Option<f64>,
     /// Spreads by key; see `Parameter` of the studies.
     pub spreads: BTreeMap<String, Spread>,
 }
 
-/// A key of one number of the study, and where it stands.
+/// Key of a number of the study, and access to its field.
 struct Row {
     key: Key,
     at: At,
 }
 
-/// Where a number stands.
+/// Access to a field: what reads it and what writes it.
 enum At {
     Whole(fn(&Tolerance) -> Option<u64>, fn(&mut Tolerance) -> &mut Option<u64>),
     Number(fn(&Tolerance) -> Option<f64>, fn(&mut Tolerance) -> &mut Option<f64>),
 }
 
-/// What is read and written in one place.
+/// Makes the access to a field.
 macro_rules! at {
     ($kind:ident, $field:ident) => {
         At::$kind(|tolerance| tolerance.$field, |tolerance| &mut tolerance.$field)
     };
 }
 
-/// All such keys.
+/// All keys of numbers of the study.
 const ROWS: [Row; 4] = [
     Row {
         key: Key::new("tolerance.seed", Holds::Whole(SEED), Key::NONE, "Which random machines.").instead("1"),
@@ -84,16 +84,16 @@ const ROWS: [Row; 4] = [
     },
 ];
 
-/// A key of a spread, and what is taken where no spread at all is given.
+/// Key of a spread, and its default if no spread at all is given.
 struct Varies {
     key: Key,
-    /// A spread as it is typed, if it varies then.
+    /// Default spread as it is typed; `None` if the number does not vary by default.
     usual: Option<&'static str>,
-    /// Whether a machine has any of what varies.
+    /// Whether a machine has such a number.
     has: fn(&MachineSpec) -> bool,
 }
 
-/// Path, unit and meaning of a key; the spread that is usual for a machine that has what varies.
+/// Makes a row from path, unit and meaning of a key, with a default spread and whether a machine has such a number.
 macro_rules! varies {
     ($path:literal, $unit:literal, $words:literal) => {
         Varies { key: spread($path, $unit, $words).instead("it does not"), usual: None, has: |_| true }
@@ -136,8 +136,8 @@ const SPREADS: [Varies; 7] = [
     varies!("tolerance.payload.inertia", "kg m²", "How the payload's inertia varies."),
 ];
 
-/// What stands before every key of the table.
-const PART: &str = "tolerance.";
+/// Prefix of every key of the table.
+const PREFIX: &str = "tolerance.";
 
 /// Every key of `[tolerance]`; in a file a key of a spread is one word in quotes, such as `"link.*.com"`.
 pub(super) const KEYS: [Key; ROWS.len() + SPREADS.len()] = {
@@ -160,8 +160,8 @@ const LIMIT_MOMENT: Range = Range::new(1e-12, 1e12, "N m");
 const LIMIT_FORCE: Range = Range::new(1e-12, 1e12, "N");
 
 impl Tolerance {
-    /// A change as `[tolerance]` has it, where the key of a spread is one word: `{ link = { 5 = { mass = … } } }` becomes
-    /// `{ "link.5.mass" = … }`.
+    /// Flattens a change, because the key of a spread is one word in `[tolerance]`: `{ link = { 5 = { mass = … } } }`
+    /// becomes `{ "link.5.mass" = … }`.
     pub(super) fn flat(change: &toml::Table) -> toml::Table {
         let mut flat = toml::Table::new();
         for (key, value) in change {
@@ -175,29 +175,29 @@ impl Tolerance {
         flat
     }
 
-    /// Whether it says nothing.
+    /// Whether nothing is set.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The spreads, or [`default_spreads`] of a machine if none is given.
+    /// Returns the spreads, or [`default_spreads`] of a machine if none is given.
     pub fn spreads_or_default(&self, machine: &Machine) -> BTreeMap<String, Spread> {
         if self.spreads.is_empty() { default_spreads(machine) } else { self.spreads.clone() }
     }
 }
 
-/// What is taken where no spread is given: careful workshop practice. Centres of mass to 0.5 mm in both directions,
-/// masses to 0.5 %, inertias to 2 %, lengths with a name to 0.05 mm; all normal, standard deviations. What a machine
-/// has none of does not vary.
+/// Returns the spreads that apply if none is given, those of careful workshop practice. Centres of mass vary by 0.5 mm
+/// in both directions, masses by 0.5 %, inertias by 2 %, lengths with a name by 0.05 mm. All are normal, with these
+/// standard deviations. Numbers that a machine does not have get no spread.
 pub fn default_spreads(machine: &Machine) -> BTreeMap<String, Spread> {
     let usual = |Varies { key, usual, has }: &Varies| {
         let typed = usual.filter(|_| has(machine.spec()))?;
-        Some((key.path.trim_start_matches(PART).to_owned(), typed.parse().ok()?))
+        Some((key.path.trim_start_matches(PREFIX).to_owned(), typed.parse().ok()?))
     };
     SPREADS.iter().filter_map(usual).collect()
 }
 
-/// How a parameter lies about its nominal value.
+/// Distribution of a parameter about its nominal value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
     /// Normal, with this standard deviation.
@@ -206,7 +206,7 @@ pub enum Spread {
     Uniform(Amount),
 }
 
-/// A spread's size.
+/// Size of a spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
     /// In the parameter's own unit.
@@ -220,7 +220,7 @@ const WANT: &str = "normal:0.0005 (standard deviation) or uniform:1% (half-width
 impl FromStr for Spread {
     type Err = String;
 
-    /// As on the command line: `normal:0.0005`, `uniform:1%`.
+    /// Reads a spread as on the command line: `normal:0.0005`, `uniform:1%`.
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("want {WANT}");
         let (word, amount) = text.trim().split_once(':').ok_or_else(wrong)?;
@@ -244,7 +244,7 @@ impl Spread {
         }
     }
 
-    /// As it stands in a file.
+    /// Returns the spread as a file states it.
     pub fn to_value(&self) -> toml::Value {
         let amount = match self.amount() {
             Amount::Absolute(x) => x.into(),
@@ -253,7 +253,7 @@ impl Spread {
         toml::Value::Table(toml::Table::from_iter([(self.word().to_owned(), amount)]))
     }
 
-    /// The same kind of spread with another amount.
+    /// Returns the same kind of spread with another amount.
     #[must_use]
     pub fn with(&self, amount: Amount) -> Self {
         match self {
@@ -262,7 +262,7 @@ impl Spread {
         }
     }
 
-    /// Standard deviation or half-width.
+    /// Returns the standard deviation or the half-width.
     pub fn amount(&self) -> Amount {
         match self {
             Self::Normal(amount) | Self::Uniform(amount) => *amount,
@@ -299,9 +299,9 @@ impl fmt::Display for Amount {
 
 type Section = BTreeMap<String, toml::Value>;
 
-/// The row of a key as a file has it.
+/// Returns the row of a key of a file.
 fn row(name: &str) -> Option<&'static Row> {
-    ROWS.iter().find(|row| row.key.path.strip_prefix(PART) == Some(name))
+    ROWS.iter().find(|row| row.key.path.strip_prefix(PREFIX) == Some(name))
 }
 
 impl TryFrom<Section> for Tolerance {
@@ -315,7 +315,7 @@ impl TryFrom<Section> for Tolerance {
                 Some(Row { key, at: At::Number(_, of) }) => *of(&mut tolerance) = Some(number(key, &value)?),
                 None => {
                     let spread = in_words(&value).and_then(|text| text.parse().ok()).ok_or_else(|| {
-                        let known = ROWS.map(|row| row.key.path.trim_start_matches(PART)).join(", ");
+                        let known = ROWS.map(|row| row.key.path.trim_start_matches(PREFIX)).join(", ");
                         format!("tolerance.{} is {}: {SECTION} {known}", clipped(&key), clipped(&change::typed(&value)))
                     })?;
                     tolerance.spreads.insert(key, spread);
@@ -329,7 +329,7 @@ impl TryFrom<Section> for Tolerance {
 const SECTION: &str =
     "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; or";
 
-/// A spread of a file, as it is written on the command line: `normal:0.0005`.
+/// Returns a spread of a file as it is written on the command line: `normal:0.0005`.
 fn in_words(value: &toml::Value) -> Option<String> {
     if let toml::Value::String(text) = value {
         return Some(text.clone());
@@ -345,7 +345,7 @@ fn in_words(value: &toml::Value) -> Option<String> {
     Some(format!("{word}:{amount}"))
 }
 
-/// The number that a value is, if it lies in the range of its key.
+/// Reads a whole number in the range of its key.
 fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
     let range = key.range().unwrap_or(ANY);
     let whole = value.as_integer().and_then(|x| u64::try_from(x).ok()).filter(|x| range.contains(*x as f64));
@@ -356,7 +356,7 @@ fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
     whole.ok_or_else(|| format!("{} is {}: want a whole number{}", key.path, clipped(&change::typed(value)), ends()))
 }
 
-/// The same of a number that need not be whole.
+/// Reads a number in the range of its key.
 fn number(key: &Key, value: &toml::Value) -> Result<f64, String> {
     let range = key.range().unwrap_or(ANY);
     change::number(value)
@@ -372,7 +372,7 @@ impl From<Tolerance> for Section {
                 At::Whole(of, _) => i64::try_from(of(&tolerance)?).ok()?.into(),
                 At::Number(of, _) => of(&tolerance)?.into(),
             };
-            Some((key.path.trim_start_matches(PART).to_owned(), value))
+            Some((key.path.trim_start_matches(PREFIX).to_owned(), value))
         };
         let spreads = tolerance.spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value()));
         ROWS.iter().filter_map(stated).chain(spreads).collect()

@@ -1,5 +1,5 @@
-//! [`Statements`]: what can be said of a machine, of its plan and of its run, each for itself. A balanced machine reacts
-//! on its base where its path leaves the plane b = const, and a machine that has not run has shown nothing.
+//! [`Statements`]: assessments of a machine, of its plan and of its run, each on its own. A balanced machine still
+//! reacts on its base if its path leaves the plane b = const, and only a run shows what is transmitted.
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|
@@ -18,23 +18,23 @@ use crate::settings::number::significant;
 use crate::simulation::Guide;
 use crate::simulation::frame::Frame;
 
-/// A b that stays within this range is held, rad.
+/// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;
 
-/// What a statement comes to.
+/// Outcome of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lamp {
-    /// As it should be for a base that feels nothing.
+    /// The condition for a base that feels nothing is met.
     Good,
-    /// Not so.
+    /// The condition is not met.
     Bad,
-    /// There is nothing to be said yet.
+    /// Not decided yet.
     Open,
 }
 
 impl Lamp {
-    /// In a word, beside a colour.
+    /// Returns the outcome as a word, to be shown with a colour.
     pub fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -47,11 +47,11 @@ impl Lamp {
 /// One statement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Statement {
-    /// What it comes to.
+    /// Outcome.
     pub lamp: Lamp,
-    /// In a few words, after the name of what it is about: `holds b`.
+    /// Outcome in a few words that follow the name of the subject: `holds b`.
     pub words: String,
-    /// What is behind it, in a sentence.
+    /// Reason, in a sentence.
     pub why: String,
 }
 
@@ -60,7 +60,7 @@ impl Statement {
         Self { lamp, words: words.into(), why: why.into() }
     }
 
-    /// Whether a machine is balanced, by how much it is not.
+    /// States whether a machine is balanced, or by how much it is not.
     pub fn of_machine(inertia: &Inertia) -> Self {
         let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
         let figures = format!("largest |g_k| {force:.1e} kg m, largest |C_kl| {coupling:.1e} kg m²");
@@ -83,7 +83,7 @@ impl Statement {
         }
     }
 
-    /// Whether what a run is to do holds b.
+    /// States whether the planned or dragged motion of a run holds b.
     fn of_plan(run: &Run, inertia: &Inertia) -> Self {
         if run.waiting().is_some() {
             return Self::new(Lamp::Open, "none, the run waits", "the task does not fit the machine");
@@ -125,7 +125,7 @@ impl Statement {
         }
     }
 
-    /// What a run up to a frame has transmitted.
+    /// States what a run up to a frame has transmitted to its base.
     fn of_run(run: &Run, frame: &Frame, [machine, plan]: [&Self; 2]) -> Self {
         let (verdict, peaks) = (Verdict::of(run.scenario(), frame), &frame.peaks);
         if let Some(figure) = &verdict.fault {
@@ -147,9 +147,9 @@ impl Statement {
         if verdict.reactionless {
             return Self::new(Lamp::Good, "transmitted nothing", figures);
         }
-        if let Some(left) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
+        if let Some(past_wheel) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
-            let why = format!("{figures}; the wheel leaves the base {} N m", significant(left));
+            let why = format!("{figures}; the wheel leaves the base {} N m", significant(past_wheel));
             return Self::new(Lamp::Good, words, why);
         }
         let parts = [
@@ -169,7 +169,7 @@ impl Statement {
     }
 }
 
-/// What can be said of a session.
+/// The statements on a session.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Statements {
     /// Whether the machine is balanced.
@@ -181,7 +181,7 @@ pub struct Statements {
 }
 
 impl Statements {
-    /// Of a run up to a frame.
+    /// Makes the statements on a run up to a frame.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let inertia = Inertia::of(&run.scenario().machine);
         let (machine, plan) = (Statement::of_machine(&inertia), Statement::of_plan(run, &inertia));
@@ -189,7 +189,7 @@ impl Statements {
         Self { machine, plan, run }
     }
 
-    /// Each with the name of what it is about.
+    /// Returns each statement with the name of its subject.
     pub fn named(&self) -> [(&'static str, &Statement); 3] {
         [("machine", &self.machine), ("plan", &self.plan), ("run", &self.run)]
     }
