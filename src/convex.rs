@@ -10,13 +10,13 @@ use thiserror::Error;
 
 /// One row of a constraint: Σ value x_j, and the right side.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct LinearRow {
     /// Pairs of j and value; values at a repeated j add up.
     pub terms: Vec<(usize, f64)>,
     pub right: f64,
 }
 
-impl Row {
+impl LinearRow {
     pub fn new(terms: impl Into<Vec<(usize, f64)>>, right: f64) -> Self {
         Self { terms: terms.into(), right }
     }
@@ -30,16 +30,16 @@ pub(crate) struct Program {
     /// q.
     pub linear: Vec<f64>,
     /// Equalities Σ value x_j = right.
-    pub equal: Vec<Row>,
+    pub equal: Vec<LinearRow>,
     /// Inequalities Σ value x_j ≤ right, where right is finite.
-    pub at_most: Vec<Row>,
+    pub at_most: Vec<LinearRow>,
     /// Second-order cones: rows a, b, c with a ≥ |(b, c)|. The right side of a row is added to its sum.
-    pub cones: Vec<[Row; 3]>,
+    pub cones: Vec<[LinearRow; 3]>,
 }
 
 /// Solution of a program.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Least {
+pub(crate) struct Optimum {
     pub x: Vec<f64>,
     /// Value of the objective at `x`.
     pub value: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Least {
 
 /// Why a program has no solution.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum NoX {
+pub(crate) enum NoOptimum {
     /// The program is infeasible. The multiplier of each inequality in the proof of infeasibility.
     #[error("what is wanted contradicts itself")]
     Contradiction(Vec<f64>),
@@ -74,23 +74,23 @@ impl Program {
     /// Adds the constraint x_u x_w ≥ x_s² with x_u ≥ 0 and x_w ≥ 0.
     pub fn above_quotient(&mut self, u: usize, w: usize, s: usize) {
         self.cones.push([
-            Row::new([(u, 1.0), (w, 1.0)], 0.0),
-            Row::new([(s, 2.0)], 0.0),
-            Row::new([(u, 1.0), (w, -1.0)], 0.0),
+            LinearRow::new([(u, 1.0), (w, 1.0)], 0.0),
+            LinearRow::new([(s, 2.0)], 0.0),
+            LinearRow::new([(u, 1.0), (w, -1.0)], 0.0),
         ]);
     }
 
     /// Adds the constraint x_v ≥ factor x_w².
     pub fn above_square(&mut self, v: usize, factor: f64, w: usize) {
         self.cones.push([
-            Row::new([(v, 1.0)], 1.0),
-            Row::new([(w, 2.0 * factor.sqrt())], 0.0),
-            Row::new([(v, 1.0)], -1.0),
+            LinearRow::new([(v, 1.0)], 1.0),
+            LinearRow::new([(w, 2.0 * factor.sqrt())], 0.0),
+            LinearRow::new([(v, 1.0)], -1.0),
         ]);
     }
 
     /// Returns the x that minimises the objective. Fails if the program is infeasible or the solver finds no answer.
-    pub fn solve(&self) -> Result<Least, NoX> {
+    pub fn solve(&self) -> Result<Optimum, NoOptimum> {
         let n = self.linear.len();
         let (mut entries, mut right) = (Vec::new(), Vec::new());
         // Clarabel takes constraints in the form: right − Σ lies in the cone.
@@ -115,22 +115,22 @@ impl Program {
                 ..DefaultSettings::default()
             };
             let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
-                .map_err(|why| NoX::Failed(why.to_string()))?;
+                .map_err(|why| NoOptimum::Failed(why.to_string()))?;
             solver.solve();
             let found = solver.solution;
             match found.status {
                 SolverStatus::Solved | SolverStatus::AlmostSolved => {
                     let gap = (found.obj_val - found.obj_val_dual).abs();
-                    return Ok(Least { x: found.x, value: found.obj_val, gap });
+                    return Ok(Optimum { x: found.x, value: found.obj_val, gap });
                 }
                 SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
                     let from = self.equal.len();
-                    return Err(NoX::Contradiction(found.z[from..from + self.at_most.len()].to_vec()));
+                    return Err(NoOptimum::Contradiction(found.z[from..from + self.at_most.len()].to_vec()));
                 }
                 status => failed = status.to_string(),
             }
         }
-        Err(NoX::Failed(failed))
+        Err(NoOptimum::Failed(failed))
     }
 }
 
@@ -144,14 +144,14 @@ fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64>
 ///
 /// Starts from the bounds with nonzero `weights` in the solver's proof of infeasibility, or from all bounds if those do
 /// not contradict each other. Then removes each bound without which the rest still contradicts itself.
-pub(crate) fn conflict<B: Clone>(
-    bounds: Vec<(B, Row)>,
+pub(crate) fn infeasible_bounds<B: Clone>(
+    bounds: Vec<(B, LinearRow)>,
     weights: &[f64],
-    contradicts: impl Fn(&[(B, Row)]) -> bool,
+    contradicts: impl Fn(&[(B, LinearRow)]) -> bool,
 ) -> Vec<B> {
     let most = weights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
     let used = bounds.iter().zip(weights).filter(|(_, z)| z.abs() > 1e-7 * most).map(|(bound, _)| bound.clone());
-    let mut kept: Vec<(B, Row)> = used.collect();
+    let mut kept: Vec<(B, LinearRow)> = used.collect();
     if !contradicts(&kept) {
         kept = bounds;
     }

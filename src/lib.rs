@@ -136,13 +136,13 @@
 //!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
 //!   words and its keys are one row of `app/actions.rs`: keyboard, list of commands, card of keys and menus follow.
 //! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. One below the
-//!   scene is a variant of `Below` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`, its
+//!   scene is a variant of `BottomPanel` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`, its
 //!   icon in `app/icon.rs`, its words and its key a row of `app/actions.rs`.
 //! * **Work beside the window**: a row of `app/activity.rs` with its words. A query is asked for in a `refresh_…` that
 //!   `AppState::refresh` calls, and stopped there once it is out of sight. If it derives something it is a query and a row
-//!   of `TOLD` in `app/background.rs`; if it changes what is on display, `Background::run` takes it with what is done then.
-//! * **A query**: a type that implements [`query::Quick`], or [`query::Query`] if it takes longer than a few milliseconds,
-//!   or [`query::Growing`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
+//!   of `REPORTED_QUERIES` in `app/background.rs`; if it changes what is on display, `Background::run` takes it with what is done then.
+//! * **A query**: a type that implements [`query::QuickQuery`], or [`query::Query`] if it takes longer than a few milliseconds,
+//!   or [`query::IncrementalQuery`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //! * **What a command prints** is kept in `../tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `../.ci/run` is what

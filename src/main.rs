@@ -15,7 +15,7 @@ struct Arguments {
     #[command(subcommand)]
     command: Option<commands::Subcommand>,
     #[command(flatten)]
-    open: commands::Open,
+    open: commands::OpenArguments,
 }
 
 const EXAMPLES: &str = "\
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
     commands::watch();
     #[cfg(debug_assertions)]
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {
-        stillbase::files::fault::arm(&wanted);
+        stillbase::files::fault::arm_fault(&wanted);
     }
     let arguments = match Arguments::try_parse_from(commands::words(std::env::args_os())) {
         Ok(arguments) => arguments,

@@ -3,13 +3,13 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use super::command::Look;
+use super::command::CameraMove;
 use super::theme::other;
 use super::{
-    Below, Command, FileDialog, Layout, PlotFile, Purpose, SessionCommand, Switch, ViewChange, ViewState,
+    BottomPanel, Command, FileDialog, FilePurpose, Layout, PlotFile, SessionCommand, Switch, ViewChange, ViewState,
     WindowCommand, set_b,
 };
-use crate::picture::charts::choice::Change;
+use crate::picture::charts::choice::PlotChange;
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
@@ -19,7 +19,7 @@ use crate::simulation::signals::signals;
 /// A command with a name.
 pub struct Action {
     /// Its group.
-    pub group: Group,
+    pub group: ActionGroup,
     /// Its name in lists.
     pub name: &'static str,
     /// Further search words.
@@ -48,7 +48,7 @@ impl Action {
 
 /// Groups of actions, in the order in which they are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum ActionGroup {
     /// Time.
     Run,
     /// The machine and its task.
@@ -61,7 +61,7 @@ pub enum Group {
     File,
 }
 
-impl Group {
+impl ActionGroup {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Run, Self::Task, Self::View, Self::Analysis, Self::File];
 
@@ -113,7 +113,7 @@ fn case(i: usize) -> Option<Command> {
     Scenario::cases().nth(i).map(|it| Command::Session(SessionCommand::Case(it)))
 }
 
-fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
+fn dialog(session: &Session, purpose: FilePurpose) -> Option<Command> {
     Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
 }
 
@@ -126,7 +126,7 @@ fn new_session(session: &Session) -> Option<Command> {
 fn plot_file(session: &Session, view_state: &ViewState, file: PlotFile) -> Option<Command> {
     let signals = signals(&session.scenario().machine);
     let plots = view_state.charts.plots(session.scenario(), &signals, view_state.pins);
-    dialog(session, Purpose::Plot(plots.first()?.name.clone(), file))
+    dialog(session, FilePurpose::Plot(plots.first()?.name.clone(), file))
 }
 
 /// Zooms the time range of the plots about the instant on display by a factor; without a factor, shows the whole run.
@@ -136,7 +136,7 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
         Some(factor) => extent.zoomed(extent.shown(chosen), session.frame().time, factor),
         None => extent.all(chosen),
     };
-    Some(Command::View(ViewChange::Charts(Change::Range(range))))
+    Some(Command::View(ViewChange::Charts(PlotChange::Range(range))))
 }
 
 /// Shows the next view that the machine has.
@@ -161,7 +161,7 @@ macro_rules! actions {
     ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal
         $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
         &[$(Action {
-            group: Group::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
+            group: ActionGroup::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
             turns: actions!(@of Switch $($switch)?), command_fn: actions!(@given $($asks)?),
         }),+]
     };
@@ -241,9 +241,9 @@ pub const ACTIONS: &[Action] = actions![
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
     View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
-        Some(Command::View(ViewChange::Look(Look::Zoom(ZOOM_FACTOR))))
+        Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))
     };
-    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(Look::Zoom(1.0 / ZOOM_FACTOR))));
+    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(CameraMove::Zoom(1.0 / ZOOM_FACTOR))));
     View, "Plots closer to the instant shown", [on(ALT, Key::Plus), on(ALT, Key::Equals)], "plots, Ctrl wheel", |s, v| {
         charts(s, v, Some(1.5))
     };
@@ -275,7 +275,7 @@ pub const ACTIONS: &[Action] = actions![
 
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
-        (v.below == Some(Below::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
+        (v.below == Some(BottomPanel::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
@@ -283,7 +283,7 @@ pub const ACTIONS: &[Action] = actions![
     Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
     Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
-        Some(Command::View(ViewChange::Charts(Change::Statistics(!v.charts.statistics))))
+        Some(Command::View(ViewChange::Charts(PlotChange::Statistics(!v.charts.statistics))))
     };
     Analysis, "Second cursor here, or away", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
         Some(Command::View(ViewChange::Mark(v.mark.is_none().then(|| s.frame().time))))
@@ -294,8 +294,8 @@ pub const ACTIONS: &[Action] = actions![
     File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, scenario", |s, _| new_session(s);
-    File, "Open a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
-    File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
+    File, "Open a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, FilePurpose::Open);
+    File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, FilePurpose::Save);
     File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
     File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
         "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
@@ -303,8 +303,8 @@ pub const ACTIONS: &[Action] = actions![
         |s, v| plot_file(s, v, PlotFile::Png);
     File, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Svg);
-    File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, Purpose::Machine);
-    File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
+    File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
+    File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
     File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
     File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
@@ -351,7 +351,7 @@ fn view(view_state: &ViewState, kind: ViewKind) -> Option<Command> {
 }
 
 fn look(right: f64, up: f64) -> Option<Command> {
-    Some(Command::View(ViewChange::Look(Look::Turn([right, up]))))
+    Some(Command::View(ViewChange::Look(CameraMove::Turn([right, up]))))
 }
 
 /// The selectable playback rates, simulated seconds per second.

@@ -4,17 +4,17 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::change::Change;
-use super::given::assess::Assessing;
-use super::waiting::{Drawing, Waiting};
+use super::change::SessionChange;
+use super::given::assess::AssessmentQuery;
+use super::waiting::{DeferredWorkers, DrawingGuard};
 use super::{Activity, SessionCommand};
-use crate::query::{AtOnce, Job, Poll, Queries, Short, Ticket, Workers};
+use crate::query::{InlineWorkers, Job, Poll, Queries, ShortJobs, Ticket, Workers};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
-use crate::study::comparison::Ways;
+use crate::study::comparison::AlternativeRuns;
 use crate::study::fronts::Fronts;
-use crate::study::lengths::Seeking;
-use crate::study::tolerance::Studying;
+use crate::study::lengths::LengthsQuery;
+use crate::study::tolerance::StudyQuery;
 
 /// Work whose result changes the display.
 trait Pending<A> {
@@ -72,14 +72,14 @@ pub(super) struct Opening {
     /// The message.
     pub news: Option<String>,
     /// The file of the session.
-    pub file: Option<File>,
+    pub file: Option<SessionFile>,
     /// The scenario to open instead if this one cannot be opened, and its message.
     pub instead: Option<Box<(Scenario, String)>>,
 }
 
 /// The file of a session.
 #[derive(Clone, Debug)]
-pub(super) enum File {
+pub(super) enum SessionFile {
     /// A file chosen by the user.
     Own(PathBuf),
     /// A journal left by an earlier program run.
@@ -87,7 +87,7 @@ pub(super) enum File {
 }
 
 /// The changed session, and the message or the reason of a refusal.
-pub(super) type Changed = (Session, Result<Option<String>, Refusal>);
+pub(super) type SessionResult = (Session, Result<Option<String>, Refusal>);
 
 /// Sessions with more frames are freed in the background: that takes milliseconds.
 const MAX_FRAMES_FREED_AT_ONCE: usize = 20_000;
@@ -99,7 +99,7 @@ const SILENT_REPAINTS: u32 = 6;
 pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
     /// Queue in which work waits until the window is drawn; `None` if work is done at once.
-    waiting: Option<Arc<Waiting>>,
+    waiting: Option<Arc<DeferredWorkers>>,
     /// Queries about the session.
     pub queries: Queries,
     /// Repainted when a job has ended.
@@ -107,7 +107,7 @@ pub(super) struct Background<A> {
     /// Work whose result changes the display, in the order of its start.
     running: Vec<(Activity, Box<dyn Pending<A>>)>,
     /// The change of the session under way, and the number of repaints since its start.
-    pub change: Option<(Change, u32)>,
+    pub change: Option<(SessionChange, u32)>,
     /// Commands that wait for its end.
     pub later: VecDeque<SessionCommand>,
 }
@@ -116,17 +116,17 @@ pub(super) struct Background<A> {
 type ReportedQuery = (Activity, fn(&Queries) -> Option<f64>, fn(&Queries));
 
 const REPORTED_QUERIES: [ReportedQuery; 5] = [
-    (Activity::Table, Queries::progress::<Assessing>, Queries::stop::<Assessing>),
-    (Activity::Study, Queries::progress::<Studying>, Queries::stop::<Studying>),
-    (Activity::Seeking, Queries::progress::<Seeking>, Queries::stop::<Seeking>),
+    (Activity::Table, Queries::progress::<AssessmentQuery>, Queries::stop::<AssessmentQuery>),
+    (Activity::Study, Queries::progress::<StudyQuery>, Queries::stop::<StudyQuery>),
+    (Activity::Seeking, Queries::progress::<LengthsQuery>, Queries::stop::<LengthsQuery>),
     (Activity::Fronts, Queries::progress::<Fronts>, Queries::stop::<Fronts>),
-    (Activity::Ways, Queries::progress::<Ways>, Queries::stop::<Ways>),
+    (Activity::Ways, Queries::progress::<AlternativeRuns>, Queries::stop::<AlternativeRuns>),
 ];
 
 impl<A> Default for Background<A> {
     fn default() -> Self {
         Self {
-            workers: Arc::new(AtOnce),
+            workers: Arc::new(InlineWorkers),
             waiting: None,
             queries: Queries::default(),
             ctx: None,
@@ -140,15 +140,15 @@ impl<A> Default for Background<A> {
 impl<A> Background<A> {
     /// Sets the worker threads.
     pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
-        let waiting = Arc::new(Waiting::new(workers));
+        let waiting = Arc::new(DeferredWorkers::new(workers));
         self.workers = waiting.clone();
         self.waiting = Some(waiting);
         self.queries.hire(self.workers.clone());
     }
 
     /// Returns a guard that holds new work back while the window is drawn.
-    pub fn drawing(&self) -> Drawing {
-        Drawing::begin(self.waiting.as_ref())
+    pub fn drawing(&self) -> DrawingGuard {
+        DrawingGuard::begin(self.waiting.as_ref())
     }
 
     /// Sets the context that is repainted when a job has ended.
@@ -188,7 +188,7 @@ impl<A> Background<A> {
     ) {
         let job = match activity {
             // Most changes are finished by the next repaint.
-            Activity::Change => self.start_by(&Short(&*self.workers), work),
+            Activity::Change => self.start_by(&ShortJobs(&*self.workers), work),
             _ => self.start_by(&*self.workers, work),
         };
         self.running.push((activity, Box::new(Running { job: Some(job), result: None, then })));

@@ -1,17 +1,17 @@
-//! [`Change`]: a user's change of a session. It may take long, so it is made on a copy of the session.
+//! [`SessionChange`]: a user's change of a session. It may take long, so it is made on a copy of the session.
 
 use std::path::{Path, PathBuf};
 
-use super::given::assess::Table;
-use super::{LeftOff, RefusedEdit};
-use crate::files::Found;
+use super::given::assess::TableText;
+use super::{RefusedEdit, ResumePoint};
+use crate::files::FoundScenario;
 use crate::session::scenario::Scenario;
-use crate::session::{Edit, Refusal, Session, Watch};
-use crate::settings::text::brief;
+use crate::session::{Edit, ProgressCallback, Refusal, Session};
+use crate::settings::text::shorten_message;
 
 /// A change of a session.
 #[derive(Clone, Debug)]
-pub(super) enum Change {
+pub(super) enum SessionChange {
     /// One edit.
     Edit(Edit),
     /// Undoes the last change.
@@ -28,10 +28,10 @@ pub(super) enum Change {
     BackToPath,
 }
 
-impl Change {
+impl SessionChange {
     /// Makes the change in `session` and returns a message for the user, if there is one. `watch` reports progress and
     /// can stop the change.
-    pub fn make(&self, session: &mut Session, watch: Watch<'_>) -> Result<Option<String>, Refusal> {
+    pub fn make(&self, session: &mut Session, watch: ProgressCallback<'_>) -> Result<Option<String>, Refusal> {
         match self {
             Self::Edit(edit) => session.apply_while(edit.clone(), watch)?,
             Self::Undo => {
@@ -82,7 +82,7 @@ impl Change {
 
 /// Source of a session or table to open.
 #[derive(Clone, Debug)]
-pub(super) enum Source {
+pub(super) enum SessionSource {
     /// A scenario in memory.
     Scenario(Box<Scenario>),
     /// A file.
@@ -95,7 +95,7 @@ pub(super) enum Source {
 pub(super) enum Opened {
     Session(Box<OpenedSession>),
     /// A table of numbers to be assessed for the session on display.
-    Table(PathBuf, Table),
+    Table(PathBuf, TableText),
 }
 
 /// An opened session.
@@ -104,7 +104,7 @@ pub(super) struct OpenedSession {
     /// A note about the source, for the user.
     pub said: Option<String>,
     /// Instant and plots on display when the journal was written, if the journal has them.
-    pub left_off: Option<LeftOff>,
+    pub left_off: Option<ResumePoint>,
 }
 
 /// The reason why a source was not opened.
@@ -114,26 +114,27 @@ pub(super) struct NotOpened {
     pub refused: Option<RefusedEdit>,
 }
 
-impl Source {
+impl SessionSource {
     /// Reads, plans and replays the source. `watch` reports progress and can stop the work.
-    pub fn open(self, watch: Watch<'_>) -> Result<Opened, NotOpened> {
+    pub fn open(self, watch: ProgressCallback<'_>) -> Result<Opened, NotOpened> {
         let read = |path: &Path| {
             let found = crate::files::scenario(&path.display().to_string());
-            found.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })
+            found.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })
         };
         if let Self::File(path) = &self
             && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
         {
             let text = crate::files::text::read(path);
-            let text = text.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })?;
-            return Ok(Opened::Table(path.clone(), Table { name: path.display().to_string(), text }));
+            let text =
+                text.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })?;
+            return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
         }
-        let (Found { scenario, made }, from_file, left_off) = match self {
-            Self::Scenario(scenario) => (Found { scenario: *scenario, made: None }, false, None),
+        let (FoundScenario { scenario, made }, from_file, left_off) = match self {
+            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, made: None }, false, None),
             Self::File(path) => (read(&path)?, true, None),
             Self::Journal(path) => {
                 let text = crate::files::text::read(&path).unwrap_or_default();
-                (read(&path)?, true, LeftOff::of(&text))
+                (read(&path)?, true, ResumePoint::of(&text))
             }
         };
         let change = scenario.task.whole();
@@ -141,7 +142,7 @@ impl Source {
             why: refusal.to_string(),
             refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
         })?;
-        if let Some(LeftOff { time, .. }) = &left_off {
+        if let Some(ResumePoint { time, .. }) = &left_off {
             // The file may name any time: the run is not extended beyond its length.
             session.seek_while(time.min(session.length()), watch);
         }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use super::activity::Activity;
-use super::file_dialog::{FileDialog, PlotFile, Purpose};
-use super::given::assess::{TableOptions, Taking};
+use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
+use super::given::assess::{TableAction, TableOptions};
 use super::layout::Layout;
 use crate::mechanics::counterweights::Objective;
 use crate::mechanics::machine::Machine;
-use crate::picture::charts::choice::Change;
+use crate::picture::charts::choice::PlotChange;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
@@ -102,7 +102,7 @@ pub enum SessionCommand {
     /// Put the machine back at the start of its planned path.
     BackToPath,
     /// Apply a result of the open table.
-    TakeGiven(Taking),
+    TakeGiven(TableAction),
     /// Apply the counterweights of a point of the Pareto front, by its index.
     Take(usize),
     /// Apply the lengths found, with their counterweights.
@@ -182,13 +182,13 @@ pub enum ViewChange {
     /// Frame the camera to show everything.
     Fit,
     /// Move the camera.
-    Look(Look),
+    Look(CameraMove),
     /// Assign these drives, counted from 0, to the axes of joint space, if there are more than three.
     Drives([usize; 3]),
     /// Set the second cursor at a time, s, or remove it.
     Mark(Option<f64>),
     /// Change what plots show.
-    Charts(Change),
+    Charts(PlotChange),
     /// Preview how A would be held on the plane of another b, rad.
     Preview(Option<f64>),
     /// Show the counterweights of a point of the Pareto front, by its index, or hide them.
@@ -260,7 +260,7 @@ pub enum Recovery {
 
 /// A movement of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Look {
+pub enum CameraMove {
     /// Rotate about the scene to the right and up, rad; in 2D pan by these fractions of the view's height.
     Turn([f64; 2]),
     /// Zoom in by this factor.
@@ -284,11 +284,11 @@ impl FileDialog {
     /// Returns the command for the file named in the dialog.
     pub fn named(self, file: PathBuf) -> SessionCommand {
         match self.purpose {
-            Purpose::Open => SessionCommand::OpenFile(file),
-            Purpose::Save => SessionCommand::SaveFile(file),
-            Purpose::Record => SessionCommand::Record(file),
-            Purpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
-            Purpose::Machine => SessionCommand::TakeElsewhere(file),
+            FilePurpose::Open => SessionCommand::OpenFile(file),
+            FilePurpose::Save => SessionCommand::SaveFile(file),
+            FilePurpose::Record => SessionCommand::Record(file),
+            FilePurpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
+            FilePurpose::Machine => SessionCommand::TakeElsewhere(file),
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::picture::charts::figure::dashes;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::scenario::Scenario;
-use crate::study::comparison::{COLUMNS, Column, Comparison, DESIGN, Entry};
+use crate::study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 
 /// Draws this panel.
@@ -70,8 +70,8 @@ struct Head {
 }
 
 impl Head {
-    fn of<T>(at: usize, column: &Column<T>) -> Self {
-        let Column { head, meaning, unit, decimals, .. } = *column;
+    fn of<T>(at: usize, column: &SummaryColumn<T>) -> Self {
+        let SummaryColumn { head, meaning, unit, decimals, .. } = *column;
         Self { at, head, meaning, unit, decimals }
     }
 }
@@ -80,11 +80,11 @@ impl Head {
 fn columns(comparison: &Comparison) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
-    let stands = |c: &Column| runs().any(|r| (c.value)(&r.summary).is_some());
-    let all = COLUMNS.iter().enumerate();
+    let stands = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
+    let all = SUMMARY_COLUMNS.iter().enumerate();
     let of_runs = all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
-    let designs = if comparison.has_designs() { &DESIGN[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(COLUMNS.len() + i, c));
+    let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
+    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c));
     of_runs.map(|(i, c)| Head::of(i, c)).chain(of_designs).collect()
 }
 
@@ -124,7 +124,7 @@ fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, comman
     });
 }
 
-fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[Head], commands: &mut Vec<Command>) {
+fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[Head], commands: &mut Vec<Command>) {
     let mut shown = entry.shown;
     ui.horizontal(|ui| {
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));

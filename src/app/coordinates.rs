@@ -6,7 +6,7 @@ use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewChange, ViewState};
 use crate::picture::numbers::signed;
-use crate::picture::scene::joints::{Joints, SYMBOLS};
+use crate::picture::scene::joints::{JointSpace, SYMBOLS};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::Session;
 
@@ -16,7 +16,7 @@ pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect>
 }
 
 /// Returns the joint space on display if its axes can be chosen.
-fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a Joints> {
+fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a JointSpace> {
     views.joints().filter(|joints| view_state.view == ViewKind::Joints && joints.has_choice())
 }
 

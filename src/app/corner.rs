@@ -6,7 +6,7 @@ use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
 use super::{Command, ViewChange, ViewState};
-use crate::picture::scene::joints::Joints;
+use crate::picture::scene::joints::JointSpace;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
         Some(measure) => key(&mut corner, &p, measure, views, commands),
         None => {
             let joints = views.joints().filter(|_| view_state.view == ViewKind::Joints);
-            let words = joints.map_or(view_state.view.invitation(), Joints::invitation);
+            let words = joints.map_or(view_state.view.invitation(), JointSpace::invitation);
             let words = RichText::new(words).font(plain(11.5)).color(colour(p.dim));
             corner.add(egui::Label::new(words).truncate());
         }
@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
 }
 
 /// Draws the button *show everything* at the upper edge, for when a part of the machine or its target is out of view.
-pub fn way_back(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
     let size = vec2(140.0, 24.0);

@@ -1,15 +1,15 @@
-//! [`Facts`]: values shown by the panels that have to be computed first, queried for each repaint.
+//! [`ScenarioFacts`]: values shown by the panels that have to be computed first, queried for each repaint.
 
 use std::sync::Arc;
 
 use crate::mechanics::machine::{Inertia, Machine, builtins};
 use crate::mechanics::planar::Vector;
 use crate::planning::pose_space::Planes;
-use crate::query::{Queries, Quick, Same, Shared, Whole};
+use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
 use crate::session::Session;
 use crate::session::scenario::{Scenario, Value};
-use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{Holds, Key};
+use crate::settings::change::{self, DEFAULT_WORD};
+use crate::settings::key::{Key, KeyType};
 
 /// A setting and its state.
 pub(super) struct Setting {
@@ -26,7 +26,7 @@ pub(super) struct Setting {
 }
 
 /// Residuals of the balance of a machine.
-pub(super) struct Balance {
+pub(super) struct BalanceSummary {
     /// Largest |g_k|, kg m, and whether it is within the tolerance of zero.
     pub force: (f64, bool),
     /// Largest |C_kl|, kg m², and whether it is within the tolerance of zero.
@@ -37,7 +37,7 @@ pub(super) struct Balance {
     pose_inertia: f64,
 }
 
-impl Quick for Balance {
+impl QuickQuery for BalanceSummary {
     type Input = Machine;
     type Answer = Self;
 
@@ -58,7 +58,7 @@ struct Differs {
     work: bool,
 }
 
-impl Quick for Differs {
+impl QuickQuery for Differs {
     type Input = Shared<Scenario>;
     type Answer = Self;
 
@@ -75,11 +75,11 @@ impl Quick for Differs {
 /// of the workspace, m, positive inside.
 struct Standing;
 
-impl Quick for Standing {
-    type Input = (Same<Planes>, Vector, f64);
+impl QuickQuery for Standing {
+    type Input = (ByIdentity<Planes>, Vector, f64);
     type Answer = (usize, f64);
 
-    fn answer((Same(planes), at, b): &Self::Input) -> (usize, f64) {
+    fn answer((ByIdentity(planes), at, b): &Self::Input) -> (usize, f64) {
         let boundary = planes.boundary();
         (boundary.pose_count(*at, *b), boundary.distance(*at, *b))
     }
@@ -88,16 +88,16 @@ impl Quick for Standing {
 /// All settings of a scenario except tables of samples.
 struct Settings;
 
-impl Quick for Settings {
+impl QuickQuery for Settings {
     type Input = Shared<Scenario>;
     type Answer = Vec<Setting>;
 
     fn answer(Shared(scenario): &Self::Input) -> Vec<Setting> {
         // Tables of samples come from files alone.
-        let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != Holds::Rows);
+        let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != KeyType::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
-            let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT).unwrap_or_default();
-            let normal = || change::same(&change::value(key.default), &value);
+            let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT_WORD).unwrap_or_default();
+            let normal = || change::same_value(&change::value(key.default), &value);
             Setting {
                 usual: typed.is_empty() || key.default.is_empty() || normal(),
                 wants: scenario.idle(&path),
@@ -112,14 +112,14 @@ impl Quick for Settings {
 }
 
 /// Values of a scenario and of the instant on display.
-pub(super) struct Facts<'a> {
+pub(super) struct ScenarioFacts<'a> {
     queries: &'a Queries,
     scenario: Shared<Scenario>,
     /// Whether the machine differs from the built-in one of its name.
     pub machine_differs: bool,
     /// Whether task, plant, base or control differ from those of the built-in scenario of its name.
     pub work_differs: bool,
-    pub balance: Arc<Balance>,
+    pub balance: Arc<BalanceSummary>,
     /// Base moment of a change of b in motion, N m.
     pub price: f64,
     /// Number of poses that put the end effector at its present point, and distance of the point from the boundary of
@@ -127,15 +127,16 @@ pub(super) struct Facts<'a> {
     pub standing: Option<(usize, f64)>,
 }
 
-impl<'a> Facts<'a> {
+impl<'a> ScenarioFacts<'a> {
     /// Queries the values of a session.
     pub fn of(queries: &'a Queries, session: &Session) -> Self {
         let (run, frame) = (session.run(), session.frame());
         let scenario = run.shared_scenario();
-        let differs = queries.ask::<Whole<Differs>>(&scenario);
-        let balance = queries.ask::<Whole<Balance>>(&scenario.0.machine);
+        let differs = queries.ask::<QuickWork<Differs>>(&scenario);
+        let balance = queries.ask::<QuickWork<BalanceSummary>>(&scenario.0.machine);
         let at = frame.in_base(frame.end_effector);
-        let stands = |planes: &Arc<Planes>| *queries.ask::<Whole<Standing>>(&(Same(planes.clone()), at, frame.b));
+        let stands =
+            |planes: &Arc<Planes>| *queries.ask::<QuickWork<Standing>>(&(ByIdentity(planes.clone()), at, frame.b));
         Self {
             machine_differs: differs.machine,
             work_differs: differs.work,
@@ -149,7 +150,7 @@ impl<'a> Facts<'a> {
 
     /// Queries all settings except tables of samples.
     pub fn settings(&self) -> Arc<Vec<Setting>> {
-        self.queries.ask::<Whole<Settings>>(&self.scenario)
+        self.queries.ask::<QuickWork<Settings>>(&self.scenario)
     }
 }
 

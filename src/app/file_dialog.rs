@@ -7,14 +7,14 @@ use crate::session::Session;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileDialog {
     /// The purpose of the file.
-    pub purpose: Purpose,
+    pub purpose: FilePurpose,
     /// The text typed so far.
     pub path: String,
 }
 
 /// Purpose of a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum FilePurpose {
     /// Read a session.
     Open,
     /// Write the session.
@@ -52,7 +52,7 @@ impl PlotFile {
     }
 }
 
-impl Purpose {
+impl FilePurpose {
     /// Returns the title of the dialog, the text of its button, and an example of a file name.
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
@@ -79,19 +79,21 @@ impl Purpose {
 impl FileDialog {
     /// Returns a dialog to open a file.
     pub fn opening() -> Self {
-        Self { purpose: Purpose::Open, path: String::new() }
+        Self { purpose: FilePurpose::Open, path: String::new() }
     }
 
     /// Returns a dialog with an unused file name as its start.
-    pub fn suggest(session: &Session, purpose: Purpose) -> Self {
+    pub fn suggest(session: &Session, purpose: FilePurpose) -> Self {
         let own = &session.scenario().name;
         let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();
         let name = match &purpose {
-            Purpose::Open => String::new(),
-            Purpose::Save => free(own, "toml"),
-            Purpose::Record => free(own, "rrd"),
-            Purpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
-            Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
+            FilePurpose::Open => String::new(),
+            FilePurpose::Save => free(own, "toml"),
+            FilePurpose::Record => free(own, "rrd"),
+            FilePurpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
+            FilePurpose::Plot(plot, file) => {
+                free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase())
+            }
         };
         Self { purpose, path: name }
     }

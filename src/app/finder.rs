@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use super::actions::{ACTIONS, shown};
-use super::facts::{Facts, Setting};
+use super::facts::{ScenarioFacts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
@@ -107,7 +107,7 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
-    (facts, recent): (&Facts<'_>, &[PathBuf]),
+    (facts, recent): (&ScenarioFacts<'_>, &[PathBuf]),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {

@@ -7,13 +7,13 @@ use egui::Rect;
 
 use super::{Framing, ViewState};
 use crate::mechanics::planar::DriveAngles;
-use crate::picture::scene::framing::Room;
+use crate::picture::scene::framing::PictureArea;
 use crate::picture::scene::views::Views;
 use crate::session::Session;
 
 /// Frames the camera of the present view, if it is to show everything. `rect` is the scene on the screen, `covered` its
 /// covered parts.
-pub fn keep(
+pub fn keep_framed(
     rect: Rect,
     covered: &[Rect],
     (session, views): (&Session, &Views),
@@ -34,7 +34,7 @@ pub fn keep(
         let part = part.intersect(rect).translate(-rect.min.to_vec2());
         part.is_positive().then(|| [part.left(), part.top(), part.right(), part.bottom()].map(f64::from))
     };
-    let room = Room { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
+    let room = PictureArea { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
     view_state.cameras[view as usize] = content.framed(views.camera(view), &room);
     view_state.framing[view as usize] = Framing::Held(content, size);
 }

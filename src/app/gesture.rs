@@ -5,7 +5,7 @@ use crate::picture::scene::pick::Pick;
 
 /// What is under the pointer or has the keyboard focus.
 #[derive(Clone, Debug, Default)]
-pub struct Pointed {
+pub struct HoverTarget {
     /// Object of the scene under the pointer.
     pub hot: Option<Handle>,
     /// Object whose rows in the panel are under the pointer.
@@ -18,7 +18,7 @@ pub struct Pointed {
 
 /// A drag, from the press of the button to its release.
 #[derive(Clone, Debug, Default)]
-pub struct Gesture {
+pub struct DragGesture {
     /// Object under the pointer at the press of the button: it may have moved before the drag is noticed.
     pub pressed: Option<Pick>,
     /// The dragged object.

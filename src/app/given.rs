@@ -9,13 +9,13 @@ mod parts;
 use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::widgets::{Row, name, note, unit};
+use super::widgets::{NumberRow, name, note, unit};
 use super::{Command, FileDialog, Switch, ViewChange, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::study::advice::Advice;
-use crate::study::import::Keep;
-use assess::{Assessed, TableContent};
-pub(super) use parts::Shown;
+use crate::study::import::PreservedPath;
+use assess::{TableAssessment, TableContent};
+pub(super) use parts::TableView;
 use parts::{column, worded};
 
 /// Default and minimum height of the panel, points.
@@ -25,11 +25,11 @@ const MIN_HEIGHT_PT: f32 = 150.0;
 const OPTIONS_WIDTH_PT: f32 = 250.0;
 
 /// Returns the title line: file name and content of the table.
-fn summary(shown: &Shown<'_>) -> String {
+fn summary(shown: &TableView<'_>) -> String {
     let file = shown.given.file.file_name().unwrap_or_default().to_string_lossy();
     let held = match shown.answer {
-        Some(Ok(Assessed::Motion { motion, .. })) => motion::summary(motion),
-        Some(Ok(Assessed::Measured(trimmed))) => measured::summary(trimmed),
+        Some(Ok(TableAssessment::Motion { motion, .. })) => motion::summary(motion),
+        Some(Ok(TableAssessment::Measured(trimmed))) => measured::summary(trimmed),
         Some(Err(_)) => String::new(),
         None => "reading it …".into(),
     };
@@ -37,7 +37,7 @@ fn summary(shown: &Shown<'_>) -> String {
 }
 
 /// Draws this panel.
-pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = DEFAULT_HEIGHT_PT.min(0.45 * ui.available_height());
@@ -73,10 +73,12 @@ pub(super) fn show(ui: &mut Ui, shown: Shown<'_>, view_state: &ViewState, comman
                     match shown.answer {
                         None => {}
                         Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
-                        Some(Ok(Assessed::Motion { motion, unwrapped, imported })) => {
+                        Some(Ok(TableAssessment::Motion { motion, unwrapped, imported })) => {
                             motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
                         }
-                        Some(Ok(Assessed::Measured(trimmed))) => measured::show(ui, &p, &shown, trimmed, commands),
+                        Some(Ok(TableAssessment::Measured(trimmed))) => {
+                            measured::show(ui, &p, &shown, trimmed, commands)
+                        }
                     }
                 });
             });
@@ -91,7 +93,7 @@ fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
 }
 
 /// Draws the options for reading and assessing the table.
-fn options_column(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mut Vec<Command>) {
     let (options, content) = (&shown.given.options, shown.content());
     let choices = [
         (None, "as its columns say"),
@@ -117,18 +119,27 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, commands: &mut Ve
     if content == Some(TableContent::Drives) {
         let keeps = [
             (None, "what is nearest"),
-            (Some(Keep::Tip), "the end effector's motion"),
-            (Some(Keep::Joints), "the joint angles"),
+            (Some(PreservedPath::Tip), "the end effector's motion"),
+            (Some(PreservedPath::Joints), "the joint angles"),
         ];
         choice(ui, ("keep", "What the proposal keeps of the motion"), &keeps, options.keep, |to| {
             shown.ask(commands, |options| options.keep = to);
         });
     }
-    let row = Row { tip: "The proposal stays on this plane", ..Row::of("on the plane b", "task.b").with(3, 0.002) };
+    let row = NumberRow {
+        tip: "The proposal stays on this plane",
+        ..NumberRow::of("on the plane b", "task.b").with(3, 0.002)
+    };
     let usual = shown.proposed_b().unwrap_or_default();
     optional(ui, p, &row, (options.b, usual), |to| shown.ask(commands, |options| options.b = to));
     let tip = "Smooths the samples without delay: half of the amplitude is left at this frequency";
-    let row = Row { tip, unit: "Hz", range: 0.01..=1e5, slide: 0.01..=1e5, ..Row::of("smoothed at", "").with(1, 0.2) };
+    let row = NumberRow {
+        tip,
+        unit: "Hz",
+        range: 0.01..=1e5,
+        slide: 0.01..=1e5,
+        ..NumberRow::of("smoothed at", "").with(1, 0.2)
+    };
     optional(ui, p, &row, (options.smoothing, 20.0), |to| shown.ask(commands, |options| options.smoothing = to));
     let tip = "Lets the spline through the samples bridge gaps in time";
     switch(ui, ("bridge gaps", tip), options.gaps, |on| shown.ask(commands, |options| options.gaps = on));
@@ -170,7 +181,13 @@ fn switch(ui: &mut Ui, (label, tip): (&str, &str), now: bool, to: impl FnOnce(bo
 }
 
 /// Draws an optional number: the program chooses it unless it is ticked.
-fn optional(ui: &mut Ui, p: &Palette, row: &Row<'_>, (now, usual): (Option<f64>, f64), to: impl FnOnce(Option<f64>)) {
+fn optional(
+    ui: &mut Ui,
+    p: &Palette,
+    row: &NumberRow<'_>,
+    (now, usual): (Option<f64>, f64),
+    to: impl FnOnce(Option<f64>),
+) {
     let (mut is_set, mut value) = (now.is_some(), now.unwrap_or(usual));
     let mut changed = false;
     ui.horizontal(|ui| {

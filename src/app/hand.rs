@@ -1,16 +1,16 @@
-//! The [`Hand`]: the pointer over the scene, the object that it drags, and the edit of the drag.
+//! The [`ScenePointer`]: the pointer over the scene, the object that it drags, and the edit of the drag.
 
 use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
-use super::widgets::FINE;
-use super::{Command, Gesture, SessionCommand, Tool, ViewChange, ViewState, place, set_b};
+use super::widgets::FINE_DRAG_FACTOR;
+use super::{Command, DragGesture, SessionCommand, Tool, ViewChange, ViewState, place, set_b};
 use crate::mechanics::planar::Vector;
-use crate::picture::paint::Spot;
-use crate::picture::scene::exaggeration::Shown;
+use crate::picture::paint::SceneViewport;
+use crate::picture::scene::exaggeration::DrawnFrame;
 use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{Aim, Pick};
+use crate::picture::scene::pick::{DragAction, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::design::length_of;
+use crate::session::design::length_edit;
 use crate::session::{Edit, Session};
 
 /// Distance within which the tip can be grabbed during the demonstration, points.
@@ -19,12 +19,12 @@ const DEMO_GRAB_DISTANCE_PT: f64 = 60.0;
 const MIN_FORCE_CHANGE_N: f64 = 0.02;
 
 /// The pointer over a scene.
-pub struct Hand<'a> {
+pub struct ScenePointer<'a> {
     ui: &'a Ui,
     response: &'a Response,
-    spot: &'a Spot,
+    spot: &'a SceneViewport,
     session: &'a Session,
-    shown: &'a Shown<'a>,
+    shown: &'a DrawnFrame<'a>,
     views: &'a Views,
     view: ViewKind,
     /// Whether any part of the arm can be grabbed: in the demonstration its tip moves and is hard to catch.
@@ -33,13 +33,13 @@ pub struct Hand<'a> {
     pushes: bool,
 }
 
-impl<'a> Hand<'a> {
+impl<'a> ScenePointer<'a> {
     /// Creates the pointer over a scene of a session; `demonstrates` says whether the scene is the demonstration.
     pub fn over(
         ui: &'a Ui,
         response: &'a Response,
-        spot: &'a Spot,
-        (session, shown): (&'a Session, &'a Shown<'a>),
+        spot: &'a SceneViewport,
+        (session, shown): (&'a Session, &'a DrawnFrame<'a>),
         (views, demonstrates): (&'a Views, bool),
         view_state: &ViewState,
     ) -> Self {
@@ -107,12 +107,12 @@ impl<'a> Hand<'a> {
         if self.response.drag_started_by(PointerButton::Primary) {
             // A drag begins where the button was pressed, not where the drag was noticed.
             let origin = origin();
-            view_state.gesture = Gesture {
+            view_state.gesture = DragGesture {
                 grabbed: view_state.gesture.pressed.or_else(|| origin.and_then(|pos| self.under(pos))),
                 fine: [origin.unwrap_or_default().to_vec2(), Vec2::ZERO],
                 force: self.session.scenario().plant.force,
                 undone_to: self.session.undo_count(),
-                ..Gesture::default()
+                ..DragGesture::default()
             };
         }
     }
@@ -124,7 +124,7 @@ impl<'a> Hand<'a> {
         let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
         let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
         let aim = if snaps { aim.snapped() } else { aim };
-        if let Aim::Target(at) | Aim::Waypoint(_, at) = aim {
+        if let DragAction::Target(at) | DragAction::Waypoint(_, at) = aim {
             view_state.gesture.held = Some(at);
         }
         edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
@@ -143,7 +143,7 @@ impl<'a> Hand<'a> {
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
             let [last, behind] = &mut view_state.gesture.fine;
             if self.ui.input(|i| i.modifiers.shift) {
-                *behind += (1.0 - FINE) * (pos.to_vec2() - *last);
+                *behind += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last);
             }
             *last = pos.to_vec2();
             let at = pos - *behind;
@@ -154,7 +154,7 @@ impl<'a> Hand<'a> {
         }
         let gives_up = self.ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || gives_up {
-            let Gesture { dragged, undone_to, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
+            let DragGesture { dragged, undone_to, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
             if pushes && dragged {
                 // Back to the force that acted before the push.
                 commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
@@ -221,29 +221,31 @@ impl<'a> Hand<'a> {
 }
 
 /// Returns the edit for an aim; `None` if its object does not exist, or the pushing force is unchanged.
-fn edit_of(aim: Aim, session: &Session, view_state: &ViewState) -> Option<Edit> {
+fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option<Edit> {
     let machine = &session.scenario().machine;
     Some(match aim {
-        Aim::Target([x, y]) => Edit::DragTarget { x, y },
-        Aim::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
-        Aim::Pull { link, along, at: [x, y] } => {
+        DragAction::Target([x, y]) => Edit::DragTarget { x, y },
+        DragAction::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
+        DragAction::Pull { link, along, at: [x, y] } => {
             let link = machine.links().get(link)?.name.clone();
             Edit::PullLink { link, along, x, y }
         }
-        Aim::B(b) => set_b(session, view_state, b),
-        Aim::Push([x, y]) => {
+        DragAction::B(b) => set_b(session, view_state, b),
+        DragAction::Push([x, y]) => {
             let [now_x, now_y] = session.scenario().plant.force;
             if (x - now_x).hypot(y - now_y) < MIN_FORCE_CHANGE_N {
                 return None;
             }
             Edit::Push { x, y }
         }
-        Aim::Limit { angle, ends, .. } => Edit::at(&["limits", &machine.angles().get(angle)?.name], ends.to_vec()),
-        Aim::Mass { link, to } => Edit::at(&["link", &machine.links().get(link)?.name, "com"], to),
-        Aim::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
-        Aim::Length { link, to } => length_of(machine.spec().links.get(link)?, to),
-        Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
-        Aim::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),
+        DragAction::Limit { angle, ends, .. } => {
+            Edit::at(&["limits", &machine.angles().get(angle)?.name], ends.to_vec())
+        }
+        DragAction::Mass { link, to } => Edit::at(&["link", &machine.links().get(link)?.name, "com"], to),
+        DragAction::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
+        DragAction::Length { link, to } => length_edit(machine.spec().links.get(link)?, to),
+        DragAction::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
+        DragAction::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),
     })
 }
 

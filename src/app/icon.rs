@@ -311,11 +311,11 @@ pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
 }
 
 /// Height of a rule with the space about it, points.
-pub const RULE: f32 = 11.0;
+pub const SEPARATOR_HEIGHT: f32 = 11.0;
 
 /// Draws a thin line between groups.
 pub fn rule(ui: &mut Ui, p: &Palette, width: f32) {
-    let (rect, _) = ui.allocate_exact_size(vec2(width, RULE), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(width, SEPARATOR_HEIGHT), Sense::hover());
     let y = rect.center().y.round() + 0.5;
     let ends = [pos2(rect.left() + 6.0, y), pos2(rect.right() - 6.0, y)];
     ui.painter().line_segment(ends, Stroke::new(1.0, colour(p.line)));

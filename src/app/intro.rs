@@ -10,7 +10,7 @@ use super::widgets::name;
 use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use crate::picture::numbers::signed;
 use crate::picture::paint::words::words;
-use crate::picture::paint::{Spot, paint};
+use crate::picture::paint::{SceneViewport, paint};
 use crate::picture::scene::camera::Camera;
 use crate::picture::scene::exaggeration::Exaggeration;
 use crate::picture::scene::options::ViewOptions;
@@ -188,7 +188,7 @@ impl Intro {
         let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
-        words(ui, &Spot { rect, camera: *camera }, &scene, &[]);
+        words(ui, &SceneViewport { rect, camera: *camera }, &scene, &[]);
         let turn = MOUNT_COMPLIANCE.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);

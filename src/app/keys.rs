@@ -2,10 +2,10 @@
 
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
-use super::actions::{ACTIONS, Action, FINE_ACTIONS, GESTURES, Group, shown};
+use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shown};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Layout, Open, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
+use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
@@ -64,14 +64,14 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 fn escape(view_state: &ViewState) -> Command {
     let ViewState { open, tool, arrangement, .. } = view_state;
     match open {
-        Open { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
-        Open { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
-        Open { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
+        OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
+        OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
+        OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
         _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
         _ if arrangement.layout == Layout::Present => ViewChange::Layout(Layout::Explore).into(),
-        Open { tour: Some(_), .. } => WindowCommand::Tour(false).into(),
+        OpenDialogs { tour: Some(_), .. } => WindowCommand::Tour(false).into(),
         _ => WindowCommand::SkipHints.into(),
     }
 }
@@ -134,14 +134,14 @@ type Lines = Vec<(String, &'static str)>;
 /// Returns the titles of the card, with the keys below each title and their effects; filtered by the search text.
 fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
     let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
-    let of = |group: Group| -> Lines {
+    let of = |group: ActionGroup| -> Lines {
         let keyed = ACTIONS.iter().filter(|action| action.group == group && !action.keys.is_empty());
         let lines = keyed.map(|action| (all_keys(action), action.name));
         lines.filter(|(keys, does)| answers(keys, does)).collect()
     };
     let pointer = GESTURES.iter().filter(|(keys, does)| answers(keys, does));
     let pointer = ("Pointer", pointer.map(|(keys, does)| ((*keys).to_owned(), *does)).collect::<Lines>());
-    let all = Group::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
+    let all = ActionGroup::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
     all.filter(|(_, lines)| !lines.is_empty()).collect()
 }
 

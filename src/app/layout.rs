@@ -80,7 +80,7 @@ impl Panels {
 
 /// Content of the panel below the scene: there is room for one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Below {
+pub enum BottomPanel {
     /// The table of runs side by side.
     Runs,
     /// The study of tolerances.
@@ -91,7 +91,7 @@ pub enum Below {
 
 /// Arrangement of the window: a preference of the user, which outlives the session.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Arrangement {
+pub struct WindowArrangement {
     /// Light or dark.
     pub theme: Theme,
     /// The present layout.
@@ -104,7 +104,7 @@ pub struct Arrangement {
     pub panels: [Panels; Layout::ALL.len()],
 }
 
-impl Arrangement {
+impl WindowArrangement {
     /// Returns the default arrangement.
     pub fn usual(theme: Theme) -> Self {
         let panels = Layout::ALL.map(Panels::usual);

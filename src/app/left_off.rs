@@ -1,22 +1,22 @@
-//! [`LeftOff`]: the state of the display that no edit contains: the instant, and the user's plots. A journal keeps it
+//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal keeps it
 //! in comments before the session, so that a crash loses neither.
 
 use serde::{Deserialize, Serialize};
 
 use crate::files::heading;
-use crate::picture::charts::choice::Choice;
+use crate::picture::charts::choice::PlotChoice;
 
 /// Instant and plots on display.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct LeftOff {
+pub struct ResumePoint {
     /// The instant on display, s.
     pub time: f64,
     /// The choice of plots.
-    pub plots: Choice,
+    pub plots: PlotChoice,
 }
 
-impl LeftOff {
+impl ResumePoint {
     /// Returns the text of a session, with this state in comments before it.
     pub fn before(&self, session: &str) -> String {
         heading::under(self, session)

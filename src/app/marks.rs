@@ -3,16 +3,16 @@
 
 use std::sync::Arc;
 
-use crate::query::{Grown, Queries, Quick, Same, Shared, Whole};
-use crate::session::events::{Event, Gestures, Kind};
+use crate::query::{ByIdentity, IncrementalAnswer, Queries, QuickQuery, QuickWork, Shared};
+use crate::session::events::{Event, EventKind, Gestures};
 use crate::session::scenario::Bookmark;
 use crate::session::{Fork, Session};
 use crate::settings::number::significant;
-use crate::study::comparison::{Compared, Comparison};
+use crate::study::comparison::{ComparedRun, Comparison};
 
 /// A marked instant.
 #[derive(Clone, Debug)]
-pub(super) struct Mark {
+pub(super) struct TimelineMark {
     /// Time, s.
     pub time: f64,
     /// Its description.
@@ -35,7 +35,7 @@ pub(super) enum Tone {
 
 /// Marks that are drawn as one.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub(super) struct MarkGroup {
     /// Time of its most important mark, s.
     pub time: f64,
     pub tone: Tone,
@@ -59,40 +59,43 @@ const MAX_LINES: usize = 6;
 const FRAMES_PER_REPAINT: usize = 20_000;
 
 /// Query for all marks, by time; of marks at one instant, the most important first.
-pub(super) struct Marking;
+pub(super) struct MarksByTime;
 
 /// The input of the marks.
 #[derive(Clone, PartialEq)]
-pub(super) struct Marked {
+pub(super) struct MarksInput {
     /// Time step, s.
     step: f64,
     /// Gestures of the user.
-    gestures: Grown<Gestures>,
+    gestures: IncrementalAnswer<Gestures>,
     /// Other events.
     events: Shared<Vec<Event>>,
     peak: Option<Event>,
     bookmarks: Shared<Vec<Bookmark>>,
-    forks: Same<Vec<Fork>>,
+    forks: ByIdentity<Vec<Fork>>,
     /// Runs shown in comparison, with their titles.
-    others: Vec<(String, Same<Compared>)>,
+    others: Vec<(String, ByIdentity<ComparedRun>)>,
 }
 
-impl Quick for Marking {
-    type Input = Marked;
-    type Answer = Vec<Mark>;
+impl QuickQuery for MarksByTime {
+    type Input = MarksInput;
+    type Answer = Vec<TimelineMark>;
 
-    fn answer(of: &Marked) -> Vec<Mark> {
+    fn answer(of: &MarksInput) -> Vec<TimelineMark> {
         let gestures: Vec<Event> = of.gestures.answer().map_or_else(Vec::new, |all| all.told().collect());
         let events = gestures.iter().chain(&*of.events.0).chain(&of.peak).filter(|event| event.step > 0);
         let event = |event: &Event| {
-            let tone = if matches!(event.kind, Kind::Peak | Kind::Fault) { Tone::Peak } else { Tone::Event };
-            Mark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
+            let tone = if matches!(event.kind, EventKind::Peak | EventKind::Fault) { Tone::Peak } else { Tone::Event };
+            TimelineMark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
         };
-        let own = |mark: &Bookmark| Mark { time: mark.time, words: mark.name.clone(), tone: Tone::Own };
-        let fork =
-            |fork: &Fork| Mark { time: fork.from, words: format!("a branch parts: {}", fork.title), tone: Tone::Fork };
+        let own = |mark: &Bookmark| TimelineMark { time: mark.time, words: mark.name.clone(), tone: Tone::Own };
+        let fork = |fork: &Fork| TimelineMark {
+            time: fork.from,
+            words: format!("a branch parts: {}", fork.title),
+            tone: Tone::Fork,
+        };
         let worst = of.others.iter().filter_map(|(title, run)| worst(title, &run.0));
-        let mut marks: Vec<Mark> = events
+        let mut marks: Vec<TimelineMark> = events
             .map(event)
             .chain(worst)
             .chain(of.bookmarks.0.iter().map(own))
@@ -102,7 +105,7 @@ impl Quick for Marking {
         marks
     }
 
-    fn let_go(of: &mut Marked) {
+    fn let_go(of: &mut MarksInput) {
         of.gestures.let_go();
     }
 }
@@ -110,24 +113,24 @@ impl Quick for Marking {
 /// Query for the groups of marks on a time line of this length, s, and width, points.
 struct Grouping;
 
-impl Quick for Grouping {
-    type Input = (Same<Vec<Mark>>, [f64; 2]);
-    type Answer = Vec<Group>;
+impl QuickQuery for Grouping {
+    type Input = (ByIdentity<Vec<TimelineMark>>, [f64; 2]);
+    type Answer = Vec<MarkGroup>;
 
-    fn answer((marks, [length, width]): &Self::Input) -> Vec<Group> {
+    fn answer((marks, [length, width]): &Self::Input) -> Vec<MarkGroup> {
         grouped(within(&marks.0, *length), MIN_SEPARATION_PT / width.max(1.0) * length)
     }
 }
 
 /// Returns the marks on a time line of this length, s: a bookmark may lie beyond it.
-fn within(marks: &[Mark], length: f64) -> &[Mark] {
+fn within(marks: &[TimelineMark], length: f64) -> &[TimelineMark] {
     &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
 }
 
 /// All marks, as far as the frames of the run have been read.
 pub(super) struct Marks {
     queries: Queries,
-    marks: Arc<Vec<Mark>>,
+    marks: Arc<Vec<TimelineMark>>,
     /// Whether all frames have been read.
     pub is_whole: bool,
 }
@@ -137,29 +140,29 @@ impl Marks {
     pub fn of(queries: &Queries, session: &Session, beside: Option<&Comparison>) -> Self {
         let watched = session.events(queries, FRAMES_PER_REPAINT);
         let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
-        let marked = Marked {
+        let marked = MarksInput {
             step: session.scenario().step,
             gestures: session.gestures(queries),
             events: watched.answer().map_or_else(|| Shared(Arc::default()), |watched| watched.shared_events()),
             peak: watched.answer().filter(|_| shakes).map(|watched| watched.peak()),
             bookmarks: session.shared_bookmarks(),
-            forks: Same(session.forks()),
-            others: laid_over(beside).map(|(title, run)| (title.to_owned(), Same(run.clone()))).collect(),
+            forks: ByIdentity(session.forks()),
+            others: laid_over(beside).map(|(title, run)| (title.to_owned(), ByIdentity(run.clone()))).collect(),
         };
-        let marks = queries.ask::<Whole<Marking>>(&marked);
+        let marks = queries.ask::<QuickWork<MarksByTime>>(&marked);
         Self { queries: queries.clone(), marks, is_whole: watched.is_whole }
     }
 
     /// Returns the groups of marks on a time line of this length, s, and width, points.
-    pub fn on_line(&self, length: f64, width: f64) -> Arc<Vec<Group>> {
-        self.queries.ask::<Whole<Grouping>>(&(Same(self.marks.clone()), [length, width]))
+    pub fn on_line(&self, length: f64, width: f64) -> Arc<Vec<MarkGroup>> {
+        self.queries.ask::<QuickWork<Grouping>>(&(ByIdentity(self.marks.clone()), [length, width]))
     }
 }
 
 /// Returns the time of the next mark after the instant on display (`on`), or of the last mark before it, s.
 pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
-    let marks = queries.last::<Whole<Marking>>()?;
+    let marks = queries.last::<QuickWork<MarksByTime>>()?;
     let mut times = within(&marks, session.length()).iter().map(|mark| mark.time);
     match on {
         true => times.find(|mark| *mark > time + 0.5 * step),
@@ -168,23 +171,23 @@ pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f
 }
 
 /// Returns the runs shown in plots and scene, with their titles.
-fn laid_over(beside: Option<&Comparison>) -> impl Iterator<Item = (&str, &Arc<Compared>)> {
+fn laid_over(beside: Option<&Comparison>) -> impl Iterator<Item = (&str, &Arc<ComparedRun>)> {
     let shown = beside.map_or(&[][..], Comparison::entries).iter().filter(|entry| entry.shown);
     shown.filter_map(|entry| Some((entry.title.as_str(), entry.outcome.as_ref().ok()?)))
 }
 
 /// Returns the mark at the peak base moment of a run, if it has reactions.
-fn worst(title: &str, run: &Compared) -> Option<Mark> {
+fn worst(title: &str, run: &ComparedRun) -> Option<TimelineMark> {
     let peaks = run.frames.last().map(|last| &last.peaks).filter(|peaks| !peaks.is_reactionless())?;
     let first = run.frames.iter().find(|frame| frame.peaks.arm_moment >= peaks.arm_moment)?;
     let words = format!("{title}: peak |n_B| {} N m", significant(peaks.arm_moment));
-    Some(Mark { time: first.time, words, tone: Tone::Peak })
+    Some(TimelineMark { time: first.time, words, tone: Tone::Peak })
 }
 
 /// Groups marks, sorted by time, so that drawn marks are at least `min_separation` apart, s.
-fn grouped(marks: &[Mark], min_separation: f64) -> Vec<Group> {
+fn grouped(marks: &[TimelineMark], min_separation: f64) -> Vec<MarkGroup> {
     // Start index and most important mark of each group, the first of equals: the group is drawn there.
-    let mut groups: Vec<(usize, &Mark)> = Vec::new();
+    let mut groups: Vec<(usize, &TimelineMark)> = Vec::new();
     for (i, mark) in marks.iter().enumerate() {
         let (mut start, mut best) = (i, mark);
         // A mark that joins a group may move it too close to the previous group.
@@ -194,12 +197,12 @@ fn grouped(marks: &[Mark], min_separation: f64) -> Vec<Group> {
         groups.push((start, best));
     }
     let ends = groups.iter().skip(1).map(|(start, _)| *start).chain([marks.len()]);
-    groups.iter().zip(ends).map(|((start, best), end)| Group::of(&marks[*start..end], best)).collect()
+    groups.iter().zip(ends).map(|((start, best), end)| MarkGroup::of(&marks[*start..end], best)).collect()
 }
 
-impl Group {
-    fn of(marks: &[Mark], best: &Mark) -> Self {
-        let line = |mark: &Mark| (format!("{:.3} s", mark.time), mark.words.clone());
+impl MarkGroup {
+    fn of(marks: &[TimelineMark], best: &TimelineMark) -> Self {
+        let line = |mark: &TimelineMark| (format!("{:.3} s", mark.time), mark.words.clone());
         let lines: Vec<(String, String)> = marks.iter().take(MAX_LINES).map(line).collect();
         let more = marks.len() - lines.len();
         let mut words: Vec<String> = lines.iter().map(|(when, what)| format!("{what} at {when}")).collect();

@@ -2,7 +2,7 @@
 
 use egui::{Id, PointerButton, Response, Ui};
 
-use super::widgets::HELD;
+use super::widgets::CLICK_PAYLOAD;
 use super::{Command, SessionCommand, ViewChange, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
@@ -61,8 +61,8 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
     let machine = &session.scenario().machine;
     let on_tip = thing == Some(Handle::Target) || thing == Some(Handle::Link(machine.end_link()));
     if on_tip && session.scenario().plant.payload.mass == 0.0 {
-        let words = format!("Hang a payload of {HELD} kg on it");
-        entry(ui, &words, once(Edit::set("plant.payload.mass", HELD)));
+        let words = format!("Hang a payload of {CLICK_PAYLOAD} kg on it");
+        entry(ui, &words, once(Edit::set("plant.payload.mass", CLICK_PAYLOAD)));
     }
     if let Some([x, y]) = at {
         if thing != Some(Handle::Target) && session.run().pose_space().is_ok() {

@@ -61,18 +61,18 @@ pub mod window;
 
 pub use activity::Activity;
 pub use command::{
-    Command, ComparisonCommand, FrontsCommand, Look, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
+    CameraMove, Command, ComparisonCommand, FrontsCommand, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
 };
-pub use file_dialog::{FileDialog, PlotFile, Purpose};
-pub use gesture::{Gesture, Pointed, Tool};
-pub use given::assess::{TableContent, TableOptions, Taking};
+pub use file_dialog::{FileDialog, FilePurpose, PlotFile};
+pub use gesture::{DragGesture, HoverTarget, Tool};
+pub use given::assess::{TableAction, TableContent, TableOptions};
 use intro::Intro;
-pub use layout::{Arrangement, Below, Layout, Panel, Panels};
-pub use left_off::LeftOff;
-pub use open::{Finder, Open};
+pub use layout::{BottomPanel, Layout, Panel, Panels, WindowArrangement};
+pub use left_off::ResumePoint;
+pub use open::{Finder, OpenDialogs};
 pub use preferences::Preferences;
-pub use said::{RefusedEdit, Said};
+pub use said::{RefusedEdit, StatusMessage};
 pub use state::AppState;
 use view_state::set_b;
 pub use view_state::{Framing, ViewState};
-pub use waiting::Drawing;
+pub use waiting::DrawingGuard;

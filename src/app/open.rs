@@ -14,7 +14,7 @@ pub struct Finder {
 
 /// Which cards, lists and dialogs are open.
 #[derive(Clone, Debug, Default)]
-pub struct Open {
+pub struct OpenDialogs {
     /// The card of keys.
     pub help: bool,
     /// The list of changes.

@@ -8,11 +8,11 @@ use egui::{Context, Event, Plugin, RawInput, Ui};
 
 /// Plugin that holds back the events after a press or a release, for the next frame.
 #[derive(Debug, Default)]
-pub struct Order {
+pub struct EventQueue {
     waiting: Vec<Event>,
 }
 
-impl Plugin for Order {
+impl Plugin for EventQueue {
     fn debug_name(&self) -> &'static str {
         "order of pointer events"
     }

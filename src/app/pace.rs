@@ -1,9 +1,9 @@
-//! [`Pace`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so that
+//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so that
 //! the picture stays smooth.
 
 /// Measured playback rate and cost of a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct PlaybackRate {
     /// Playback rate, simulated seconds per second, averaged over [`AVERAGING_TIME_S`].
     rate: Option<f64>,
     /// Wall time in the average, s.
@@ -34,7 +34,7 @@ const MAX_MEASURED_S: f64 = 0.2;
 /// Weight of the newest measurement in the cost of a step.
 const NEWEST_WEIGHT: f64 = 0.3;
 
-impl Pace {
+impl PlaybackRate {
     /// Returns the maximum number of steps in a repaint.
     pub fn most_steps(&self) -> f64 {
         self.step_cost_s

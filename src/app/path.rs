@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::theme::{colour, plain};
-use super::widgets::{Row, name, note, section, send, unit};
+use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
@@ -14,10 +14,10 @@ use crate::picture::scene::palette::Palette;
 use crate::planning::off_plane::least_reaction::FixedB;
 use crate::planning::posture::Posture;
 use crate::planning::timing::TimeLaw;
-use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
+use crate::session::scenario::{Corners, PathShape, ReactionObjective, Task, TaskChange, TaskKind, Value};
 use crate::session::{Edit, Session};
 use crate::settings::number::counted;
-use crate::settings::word::{Choice, Words};
+use crate::settings::word::{Choice, ChoiceWords};
 
 /// Maximum number of points that are listed.
 const MAX_LISTED_POINTS: usize = 8;
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     kinds.sort_by_key(|kind| matches!(kind, TaskKind::SameTip | TaskKind::Given));
     choose(ui, session, ("Redundancy", "kind"), &kinds, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, session, ("Shape", "shape"), Shape::ALL, task.shape(), half - 16.0, commands);
+        choose(ui, session, ("Shape", "shape"), PathShape::ALL, task.shape(), half - 16.0, commands);
         choose(ui, session, ("Time law", "law"), TimeLaw::ALL, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
@@ -54,9 +54,9 @@ fn choose<T: Choice>(
     let combo = ComboBox::from_id_salt(key).selected_text(now.words().screen).width(width);
     let response = combo.show_ui(ui, |ui| {
         for choice in choices {
-            let Words { file: word, screen, meaning } = choice.words();
+            let ChoiceWords { file: word, screen, meaning } = choice.words();
             if ui.selectable_label(*choice == now, screen).on_hover_text(meaning).clicked() && *choice != now {
-                let mut change = Change::from_iter([(key.to_owned(), Value::String(word.into()))]);
+                let mut change = TaskChange::from_iter([(key.to_owned(), Value::String(word.into()))]);
                 if word == "arc" && session.scenario().task.via.is_empty() {
                     // The arc passes through the middle of the present path.
                     let p = session.run().on_path(0.5);
@@ -103,7 +103,7 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
     let mut time = session.scenario().task.time;
     let tip = "Duration T from A to B: peaks of torque go with 1/T²";
-    let row = Row { tip, ..Row::of("time T", "task.time").sliding(0.1..=10.0) };
+    let row = NumberRow { tip, ..NumberRow::of("time T", "task.time").sliding(0.1..=10.0) };
     let responses = row.with_slider(ui, p, &mut time);
     send(commands, &responses, || Edit::set("task.time", time));
 }
@@ -115,11 +115,11 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         return;
     }
     let all = task.points();
-    if all.len() > MAX_LISTED_POINTS || task.shape() == Shape::Freehand {
+    if all.len() > MAX_LISTED_POINTS || task.shape() == PathShape::Freehand {
         note(ui, p, &format!("{} points from A to B", all.len()));
         return;
     }
-    let change = |commands: &mut Vec<Command>, change: Option<Change>, lasts: bool| {
+    let change = |commands: &mut Vec<Command>, change: Option<TaskChange>, lasts: bool| {
         if let Some(change) = change {
             commands.push(SessionCommand::Edit(Edit::of("task", change)).into());
         }
@@ -155,7 +155,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
                 for (axis, word) in [(1, "y"), (0, "x")] {
                     let label = format!("{label} {word}");
                     let tip = "A point of the path; drag it in the scene, or type";
-                    let row = Row { tip, ..Row::of(&label, "task.from").with(3, 0.002) };
+                    let row = NumberRow { tip, ..NumberRow::of(&label, "task.from").with(3, 0.002) };
                     responses.push(row.number(ui, &mut xy[axis]));
                 }
                 if responses.iter().any(|r| r.changed()) {
@@ -166,7 +166,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
                 }
             });
         };
-        place::of(ui, Handle::Waypoint(i), p, |ui| ui.horizontal(row));
+        place::place_of_thing(ui, Handle::Waypoint(i), p, |ui| ui.horizontal(row));
     }
     let plus = RichText::new("+ point").font(plain(11.5)).color(colour(p.dim));
     let response =
@@ -182,7 +182,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
 }
 
 fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
-    let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
+    let straight = matches!(task.shape(), PathShape::JointLine | PathShape::Line);
     ui.horizontal_wrapped(|ui| {
         let mut closed = task.closed;
         let tip = "Return from B to A";
@@ -209,10 +209,10 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
             }
             if blend {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let measure = if task.shape() == Shape::JointLine { "rad" } else { "m" };
+                    let measure = if task.shape() == PathShape::JointLine { "rad" } else { "m" };
                     unit(ui, p, measure);
                     let mut distance = task.blend;
-                    let row = Row { unit: measure, ..Row::of("blend", "task.blend").with(3, 0.002) };
+                    let row = NumberRow { unit: measure, ..NumberRow::of("blend", "task.blend").with(3, 0.002) };
                     let response = row.number(ui, &mut distance);
                     send(commands, &[response], || Edit::set("task.blend", distance));
                 });
@@ -237,14 +237,14 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 let turned = plan.motion.path.at(0.0).q[link.drive] + if link.sign < 0.0 { PI } else { 0.0 };
                 let mut angle = task.orientation.unwrap_or(turned - TAU * (turned / TAU).round());
                 let tip = "Which way the last link points, counted from the x axis; the path keeps it";
-                let row = Row { tip, ..Row::of("hand points to", "task.orientation").with(3, 0.005) };
+                let row = NumberRow { tip, ..NumberRow::of("hand points to", "task.orientation").with(3, 0.005) };
                 let response = row.show(ui, p, &mut angle);
                 send(commands, &[response], || Edit::set("task.orientation", angle));
             }
         }
         TaskKind::ChangeB => {
             let mut b_to = plan.forecast.b_end;
-            let row = Row::of("b at B", "task.b_to").with(3, 0.005);
+            let row = NumberRow::of("b at B", "task.b_to").with(3, 0.005);
             let response = row.show(ui, p, &mut b_to);
             send(commands, &[response], || Edit::set("task.b_to", b_to));
             let mut limited = task.moment_limit.is_some();
@@ -258,7 +258,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     unit(ui, p, "N m");
                     if limited {
-                        let row = Row::of("n_B at most", "task.moment_limit").with(2, 0.02);
+                        let row = NumberRow::of("n_B at most", "task.moment_limit").with(2, 0.02);
                         let response = row.number(ui, &mut limit);
                         send(commands, &[response], || Edit::set("task.moment_limit", limit));
                     }
@@ -275,7 +275,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
         }
         TaskKind::LeastReaction => {
             let width = ui.available_width() - 10.0;
-            choose(ui, session, ("What to keep small", "least"), Least::ALL, task.least, width, commands);
+            choose(ui, session, ("What to keep small", "least"), ReactionObjective::ALL, task.least, width, commands);
             if let Some(verdicts) = &plan.verdicts {
                 let fixed = match verdicts.fixed {
                     FixedB::Serves => "b can stay: no reaction at all".into(),
@@ -289,7 +289,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
         }
         TaskKind::ZeroMomentum => {
             let mut cycles = f64::from(task.cycles);
-            let row = Row::of("cycles", "task.cycles").with(0, 0.05);
+            let row = NumberRow::of("cycles", "task.cycles").with(0, 0.05);
             let response = row.show(ui, p, &mut cycles);
             send(commands, &[response], || Edit::set("task.cycles", cycles.round() as i64));
             if task.closed {

@@ -35,7 +35,7 @@ pub fn chosen_id(what: &str) -> Id {
 }
 
 /// Name of the list of links that differ from the model.
-pub const LINKS: &str = "a link differs";
+pub const LINK_LIST: &str = "a link differs";
 
 /// Whether an object has rows in the panel.
 pub fn is_in_panel(thing: Handle) -> bool {
@@ -67,7 +67,7 @@ pub fn open(ctx: &Context, thing: Handle, session: &Session) {
         if let Handle::Link(i) = thing
             && let Some(link) = session.scenario().machine.links().get(i)
         {
-            data.insert_temp(chosen_id(LINKS), link.name.clone());
+            data.insert_temp(chosen_id(LINK_LIST), link.name.clone());
         }
         data.insert_temp(id(), Places { marked: Some((thing, None)), lit: None });
     });
@@ -84,7 +84,7 @@ fn links_id() -> Id {
 }
 
 /// Lights up links that a panel mentions.
-pub fn light_links(ctx: &Context, links: Vec<usize>) {
+pub fn highlight_links(ctx: &Context, links: Vec<usize>) {
     ctx.data_mut(|data| data.insert_temp(links_id(), links));
 }
 
@@ -94,12 +94,12 @@ pub fn lit_links(ctx: &Context) -> Vec<usize> {
 }
 
 /// Lights up an object that a panel mentions.
-pub fn light(ctx: &Context, thing: Handle) {
+pub fn highlight(ctx: &Context, thing: Handle) {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
 }
 
 /// Draws the rows of an object.
-pub fn of<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn place_of_thing<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOnce(&mut Ui) -> R) -> R {
     let behind = ui.painter().add(Shape::Noop);
     let shown = ui.scope(add);
     let rect = shown.response.rect;

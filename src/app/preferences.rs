@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::layout::{Arrangement, Layout, Panel, Panels};
+use super::layout::{Layout, Panel, Panels, WindowArrangement};
 use crate::picture::scene::palette::Theme;
 
 /// Preferences for the window. A file of an older or newer program is read as far as its keys are known.
@@ -67,8 +67,8 @@ impl Default for Preferences {
 
 impl Preferences {
     /// Returns the preferences of a window with this arrangement and size, points of the screen.
-    pub(super) fn of(arrangement: &Arrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
-        let Arrangement { theme, layout, swapped, learns, panels: [explore, compare, _] } = arrangement;
+    pub(super) fn of(arrangement: &WindowArrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
+        let WindowArrangement { theme, layout, swapped, learns, panels: [explore, compare, _] } = arrangement;
         Self {
             theme: *theme,
             size,
@@ -89,7 +89,7 @@ impl Preferences {
     }
 
     /// Returns the arrangement of the window, with the layout *Explore*; the caller then chooses the stored layout.
-    pub(super) fn arrangement(&self) -> Arrangement {
+    pub(super) fn arrangement(&self) -> WindowArrangement {
         let panel = |shown, width| Panel { shown, width };
         let explore = Panels { side: panel(self.side, self.side_width), plots: panel(self.plots, self.plots_width) };
         let compare = Panels {
@@ -97,7 +97,7 @@ impl Preferences {
             plots: panel(self.compare_plots, self.compare_plots_width),
         };
         let panels = [explore, compare, Panels::usual(Layout::Present)];
-        Arrangement { swapped: self.swapped, learns: self.learns, panels, ..Arrangement::usual(self.theme) }
+        WindowArrangement { swapped: self.swapped, learns: self.learns, panels, ..WindowArrangement::usual(self.theme) }
     }
 
     /// Limits all sizes to those that a window can have, and removes invalid recent files.

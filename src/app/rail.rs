@@ -4,7 +4,7 @@
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::{key_of, key_of_switch};
-use super::icon::{Icon, IconButton, RULE, rule, word_button, word_without};
+use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, rule, word_button, word_without};
 use super::{Command, Switch, ViewChange, ViewState, arrangement, history};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -115,7 +115,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
 /// Returns the height of a button, if all have this space, points.
 fn height(room: f32) -> f32 {
     let words = ViewKind::ALL.len() as f32 * (VIEW_BUTTON_HEIGHT_PT + GAP_PT);
-    let rules = 4.0 * (RULE + GAP_PT);
+    let rules = 4.0 * (SEPARATOR_HEIGHT + GAP_PT);
     // Including those of *show everything*, the arrangement and the history.
     let buttons = (POINTER_TOOLS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
     ((room - words - rules) / buttons - GAP_PT).floor().clamp(MIN_BUTTON_HEIGHT_PT, BUTTON_SIZE_PT.y)

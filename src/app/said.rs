@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::picture::scene::options::Refused;
+use crate::picture::scene::options::RefusedCurve;
 use crate::planning::reactionless::Decimal;
 use crate::session::{Edit, Refusal};
 
 /// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]
-pub struct Said {
+pub struct StatusMessage {
     /// The last message, and whether it reports a problem.
     pub message: Option<(String, bool)>,
     /// Whether the message concerns a branch that was left: a button then shows that branch.
@@ -21,14 +21,14 @@ pub struct Said {
 #[derive(Clone, Debug)]
 pub struct RefusedEdit {
     /// The requested curve, and where it stops.
-    pub curve: Option<Arc<Refused>>,
+    pub curve: Option<Arc<RefusedCurve>>,
     /// The edit with a feasible b, rad, and this b as displayed.
     pub remedy: Option<(Edit, Decimal)>,
 }
 
 impl RefusedEdit {
     pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
-        let curve = Refused::of(refusal);
+        let curve = RefusedCurve::of(refusal);
         let remedy = edit.part("task").zip(refusal.mending_b().zip(refusal.shown_b())).map(|(change, (b, shown))| {
             let mut change = change.clone();
             change.insert("b".into(), b.into());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, Recovery, SessionCommand, ViewChange, ViewState, WindowCommand};
+use super::{Command, FileDialog, FilePurpose, Recovery, SessionCommand, ViewChange, ViewState, WindowCommand};
 use crate::picture::scene::palette::faded;
 use crate::session::Session;
 
@@ -52,7 +52,7 @@ impl Saving {
 
     /// Adds a file to the recent files, by its absolute path; ignores a file that does not exist.
     pub fn uses(&mut self, file: &Path) {
-        let Some(file) = crate::files::whole(file) else { return };
+        let Some(file) = crate::files::absolute_path(file) else { return };
         self.recent.retain(|other| *other != file);
         self.recent.insert(0, file);
         self.recent.truncate(MAX_RECENT_FILES);
@@ -60,7 +60,7 @@ impl Saving {
 
     /// Removes a file from the recent files if it does not exist any more.
     pub fn misses(&mut self, file: &Path) {
-        self.recent.retain(|other| other != file || crate::files::whole(file).is_some());
+        self.recent.retain(|other| other != file || crate::files::absolute_path(file).is_some());
     }
 }
 
@@ -80,7 +80,7 @@ pub(super) fn show(
             1 => "One change of this session is in no file.".to_owned(),
             n => format!("{n} changes of this session are in no file."),
         };
-        let save = Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Save))));
+        let save = Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, FilePurpose::Save))));
         card(
             ctx,
             view_state,

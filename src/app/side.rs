@@ -10,18 +10,18 @@ pub use all::look_up;
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
-use super::facts::Facts;
+use super::facts::ScenarioFacts;
 use super::theme::{bold, colour, plain};
-use super::widgets::{Row, name, note, section, send, unit};
+use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
 use crate::mechanics::machine::MAX_ANGLE;
 use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::planning::pose_space::NoPoseSpace;
-use crate::session::scenario::{PLACE, Value};
+use crate::session::scenario::{POINT_RANGE, Value};
 use crate::session::{Edit, Session};
-use crate::settings::change::DEFAULT;
+use crate::settings::change::DEFAULT_WORD;
 use crate::settings::number::{significant, subscript};
 
 /// Default width: a fraction of the window width, within bounds, points.
@@ -30,13 +30,13 @@ const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
 
 /// Space for the scroll bar, which grows when the pointer is near, points.
-pub(super) const BAR: f32 = 14.0;
+pub(super) const SCROLL_BAR_WIDTH: f32 = 14.0;
 
 /// Draws this panel; returns the width set by the user, if any.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    facts: &Facts<'_>,
+    facts: &ScenarioFacts<'_>,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) -> Option<f32> {
@@ -51,12 +51,12 @@ pub fn show(
         .resizable(true);
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.set_width(ui.available_width() - BAR);
-            place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
+            ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
+            place::place_of_thing(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
             if session.run().pose_space().is_ok() {
-                place::of(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
+                place::place_of_thing(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
             }
-            place::of(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
+            place::place_of_thing(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
             plant::show(ui, session, &p, commands);
@@ -72,7 +72,7 @@ pub fn show(
 fn pose_constant(
     ui: &mut Ui,
     session: &Session,
-    facts: &Facts<'_>,
+    facts: &ScenarioFacts<'_>,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -100,8 +100,15 @@ fn pose_constant(
         "b = Σ λ q, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing it turns what \
          can be reached without a reaction."
     );
-    let row =
-        Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period, slide: 0.0..=period };
+    let row = NumberRow {
+        label: "b",
+        unit: "rad",
+        tip: &tip,
+        decimals: 3,
+        speed: 0.005,
+        range: 0.0..=period,
+        slide: 0.0..=period,
+    };
     // The knob stops where b stops; it does not jump to the other end.
     let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
         Edit::PoseB { b } if b != turns + asked => {
@@ -172,14 +179,14 @@ fn pose_constant(
         if tick.changed() {
             commands.push(Command::Session(SessionCommand::Edit(Edit::set(
                 "compare_b",
-                if shown { Value::from(other) } else { DEFAULT.into() },
+                if shown { Value::from(other) } else { DEFAULT_WORD.into() },
             ))));
             commands.push(SessionCommand::EndGesture.into());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if shown {
                 unit(ui, p, "rad");
-                let row = Row::of("compare b", "compare_b").with(3, 0.005);
+                let row = NumberRow::of("compare b", "compare_b").with(3, 0.005);
                 let response = row.number(ui, &mut other);
                 send(commands, &[response], || Edit::set("compare_b", other));
             }
@@ -201,8 +208,8 @@ fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
             unit(ui, p, "m");
             let mut changed = Vec::new();
             for (i, label) in [(1, "target y"), (0, "target x")] {
-                let range = PLACE.low()..=PLACE.high();
-                let row = Row { label, unit: "m", tip, decimals: 3, speed: 0.002, slide: range.clone(), range };
+                let range = POINT_RANGE.low()..=POINT_RANGE.high();
+                let row = NumberRow { label, unit: "m", tip, decimals: 3, speed: 0.002, slide: range.clone(), range };
                 changed.push(row.number(ui, &mut place[i]));
             }
             let [x, y] = place;
@@ -239,7 +246,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                 let widest = MAX_ANGLE.to_degrees();
                 for (end, word) in [(1, "greatest"), (0, "least")] {
                     let range = if end == 1 { ends[0]..=widest } else { -widest..=ends[1] };
-                    let row = Row {
+                    let row = NumberRow {
                         label: &format!("{symbol} {word}"),
                         unit: "°",
                         tip: "Joint limit; the workspace is what (a₁, a₂) within them reach",
@@ -274,12 +281,12 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     // Subtracted from zero, so that zero gravity reads 0.00 and not −0.00.
     let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
-    let row = Row { tip, slide: 0.0..=20.0, ..Row::of("gravity", "gravity").with(2, 0.05) };
+    let row = NumberRow { tip, slide: 0.0..=20.0, ..NumberRow::of("gravity", "gravity").with(2, 0.05) };
     let responses = row.with_slider(ui, p, &mut down);
     send(commands, &responses, || Edit::set("gravity", vec![gravity.re, 0.0 - down]));
 }
 
-fn balance(ui: &mut Ui, session: &Session, facts: &Facts<'_>, p: &Palette) {
+fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palette) {
     section(ui, p, "Balance");
     let balance = &facts.balance;
     let rows = [

@@ -14,24 +14,24 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::background::Background;
-use super::change::Change;
-use super::given::assess::Given;
-use super::pace::Pace;
+use super::change::SessionChange;
+use super::given::assess::OpenedTable;
+use super::pace::PlaybackRate;
 use super::saving::Saving;
-use super::{Activity, Framing, Intro, Layout, LeftOff, Preferences, SessionCommand, ViewState};
+use super::{Activity, Framing, Intro, Layout, Preferences, ResumePoint, SessionCommand, ViewState};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::query::{Queries, Query, Whole, Workers};
+use crate::query::{Queries, Query, QuickWork, Workers};
 use crate::session::scenario::Scenario;
-use crate::session::{Ahead, Edit, Refusal, Session};
+use crate::session::{Edit, Refusal, RunAhead, Session};
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, SignalsOf};
 use crate::study::comparison::Comparison;
-use crate::study::fronts::FrontOf;
-use crate::study::lengths::Seeking;
+use crate::study::fronts::FrontCase;
+use crate::study::lengths::LengthsQuery;
 
 /// A session on display.
 pub struct AppState {
@@ -49,16 +49,16 @@ pub struct AppState {
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// Machines whose Pareto fronts are drawn beside that of the machine being designed.
-    fronts: Vec<FrontOf>,
+    fronts: Vec<FrontCase>,
     /// Request of the search for lengths, under way or finished.
-    seeking: Option<<Seeking as Query>::Input>,
+    seeking: Option<<LengthsQuery as Query>::Input>,
     /// The table opened last.
-    given: Option<Given>,
+    given: Option<OpenedTable>,
     /// Work in the background.
     background: Background<Self>,
     /// Simulated time that is due but not yet run, s.
     due_s: f64,
-    pace: Pace,
+    pace: PlaybackRate,
     /// Message about the branch that the current gesture has left.
     branch_message: Option<String>,
     applied_theme: Option<Theme>,
@@ -94,7 +94,7 @@ impl AppState {
             seeking: None,
             background,
             due_s: 0.0,
-            pace: Pace::default(),
+            pace: PlaybackRate::default(),
             branch_message: None,
             applied_theme: None,
             has_fonts: false,
@@ -195,8 +195,8 @@ impl AppState {
     }
 
     /// Returns the state of the display that no edit contains: the instant and the plots.
-    pub fn left_off(&self) -> LeftOff {
-        LeftOff { time: self.session.frame().time, plots: self.view_state.charts.clone() }
+    pub fn left_off(&self) -> ResumePoint {
+        ResumePoint { time: self.session.frame().time, plots: self.view_state.charts.clone() }
     }
 
     /// Returns the window title: the scenario, with ` *` if there are unsaved changes.
@@ -204,7 +204,7 @@ impl AppState {
         let scenario = self.session.scenario();
         let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
         let mark = if self.saving.is_unsaved() { " *" } else { "" };
-        format!("{}{mark} – Stillbase", crate::settings::text::brief(name))
+        format!("{}{mark} – Stillbase", crate::settings::text::shorten_message(name))
     }
 
     /// Returns the number of changes so far, and whether some of them are not saved in a file of the user.
@@ -220,7 +220,7 @@ impl AppState {
     /// Whether a change is being made in the background that the count of changes does not contain yet.
     fn is_making(&self) -> bool {
         let change = self.background.change.as_ref();
-        change.is_some_and(|(change, _)| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
+        change.is_some_and(|(change, _)| !matches!(change, SessionChange::Seek(_))) || !self.background.later.is_empty()
     }
 
     /// Whether the window is to close.
@@ -264,14 +264,14 @@ impl AppState {
             return 1.0;
         }
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
-        let ahead = self.queries().last::<Ahead>().map_or_else(Totals::default, |totals| *totals);
+        let ahead = self.queries().last::<RunAhead>().map_or_else(Totals::default, |totals| *totals);
         let motion = [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)];
         exaggeration(motion, self.views.stage().linkage().reach())
     }
 
     /// The signals of the machine on display.
     fn signals(&self) -> Arc<Vec<Signal>> {
-        self.queries().ask::<Whole<SignalsOf>>(&self.session.scenario().machine)
+        self.queries().ask::<QuickWork<SignalsOf>>(&self.session.scenario().machine)
     }
 
     /// Clears all cached queries, so that they are computed anew; the display stays the same.

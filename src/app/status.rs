@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
-use super::facts::Facts;
+use super::facts::ScenarioFacts;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, SessionCommand, Tool, ViewState, WindowCommand};
@@ -10,12 +10,12 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::planning::pose_space::NoPoseSpace;
-use crate::session::verdict::{Lamp, Statement, Statements, Verdict};
+use crate::session::verdict::{Statement, Statements, StatusLight, Verdict};
 use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
 
 /// Whether a problem is to be shown.
-pub fn tells(session: &Session, view_state: &ViewState) -> bool {
+pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {
     let bad = matches!(view_state.said.message, Some((_, true))) || session.run().waiting().is_some();
     (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
 }
@@ -130,7 +130,7 @@ pub fn statements(session: &Session) -> Statements {
 /// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
 pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
     let tone = tone_of(statement.lamp, p);
-    let ink = if statement.lamp == Lamp::Bad { tone } else { p.ink };
+    let ink = if statement.lamp == StatusLight::Bad { tone } else { p.ink };
     // Painted, so that a screen reader announces lamp and words as one.
     let words = format!("{about}: {}", statement.words);
     let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
@@ -144,25 +144,25 @@ pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &
     response.on_hover_text(&statement.why);
 }
 
-fn tone_of(lamp: Lamp, p: &Palette) -> Rgba {
+fn tone_of(lamp: StatusLight, p: &Palette) -> Rgba {
     match lamp {
-        Lamp::Good => p.zero,
-        Lamp::Bad => p.reaction,
-        Lamp::Open => p.dim,
+        StatusLight::Good => p.zero,
+        StatusLight::Bad => p.reaction,
+        StatusLight::Open => p.dim,
     }
 }
 
 /// Draws a lamp; its shape tells the state without the colour.
-fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: Lamp, tone: egui::Color32) {
+fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: StatusLight, tone: egui::Color32) {
     let (middle, r) = (rect.center(), 0.5 * rect.height());
     match lamp {
-        Lamp::Good => {
+        StatusLight::Good => {
             painter.circle_filled(middle, 0.9 * r, tone);
         }
-        Lamp::Open => {
+        StatusLight::Open => {
             painter.circle_stroke(middle, 0.75 * r, egui::Stroke::new(0.3 * r, tone));
         }
-        Lamp::Bad => {
+        StatusLight::Bad => {
             let corners = [vec2(0.0, -1.0), vec2(1.05, 0.85), vec2(-1.05, 0.85)].map(|at| middle + at * r);
             painter.add(egui::Shape::convex_polygon(corners.to_vec(), tone, egui::Stroke::NONE));
         }
@@ -173,7 +173,7 @@ fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: Lamp, tone: egui::Color
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    found: &Facts<'_>,
+    found: &ScenarioFacts<'_>,
     view_state: &ViewState,
     under_way: Option<(Activity, f64)>,
     commands: &mut Vec<Command>,

@@ -6,12 +6,12 @@ use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, Plot
 
 use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
-use super::widgets::{Row, name, send};
+use super::widgets::{NumberRow, name, send};
 use super::{Command, Switch, ViewChange, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::Edit;
-use crate::session::scenario::{Amount, Change, Spread, Value};
+use crate::session::scenario::{Amount, Spread, TaskChange, Value};
 use crate::settings::number::counted;
 use crate::study::tolerance::Study;
 
@@ -149,7 +149,8 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
                     Amount::Absolute(_) => Amount::Absolute(value / times),
                 };
                 // The defaults are written out with the first change, so that the others stay.
-                let mut change: Change = spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
+                let mut change: TaskChange =
+                    spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
                 change.insert(key.clone(), spread.with(amount).to_value());
                 Edit::of("tolerance", change)
             });
@@ -170,7 +171,8 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
             let text = RichText::new(unit).font(plain(11.5)).color(colour(p.dim));
             ui.add_sized([42.0, 18.0], Label::new(text).halign(Align::LEFT));
             let called = format!("Spread of {label}");
-            let row = Row { label: &called, unit, tip, decimals: 3, speed: 0.01, range: 0.0..=1e3, slide: 0.0..=1e3 };
+            let row =
+                NumberRow { label: &called, unit, tip, decimals: 3, speed: 0.01, range: 0.0..=1e3, slide: 0.0..=1e3 };
             row.number(ui, value)
         })
         .inner

@@ -5,7 +5,7 @@ use egui::{
 };
 
 use super::icon::{Icon, IconButton};
-use super::marks::{Group, Marks, Tone};
+use super::marks::{MarkGroup, Marks, Tone};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
@@ -89,7 +89,7 @@ fn pace(rate: f64) -> String {
 
 /// Draws a mark: a triangle above the line. A click shows its instant; the right button edits a bookmark or lists the
 /// branches.
-fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
+fn mark(ui: &Ui, p: &Palette, group: &MarkGroup, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
     let tone = match group.tone {
         Tone::Own => p.amber,
         Tone::Peak => p.reaction,
@@ -122,7 +122,7 @@ fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut 
 }
 
 /// Draws time and description of each mark of a group.
-fn descriptions(ui: &mut Ui, p: &Palette, group: &Group) {
+fn descriptions(ui: &mut Ui, p: &Palette, group: &MarkGroup) {
     let dim = |text: String| RichText::new(text).font(plain(12.5)).color(colour(p.dim));
     egui::Grid::new("mark told").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
         for (when, what) in &group.lines {

@@ -7,11 +7,11 @@ use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
-use super::facts::Facts;
+use super::facts::ScenarioFacts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChange, ViewState, gallery, timeline};
+use super::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, gallery, timeline};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
@@ -22,7 +22,7 @@ use crate::session::scenario::Scenario;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    (facts, recent): (&Facts<'_>, &[PathBuf]),
+    (facts, recent): (&ScenarioFacts<'_>, &[PathBuf]),
     line: (&Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,
@@ -101,7 +101,8 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
             }
         }
         ui.separator();
-        for (label, purpose) in [("Open…   Ctrl O", Purpose::Open), ("Save session…   Ctrl S", Purpose::Save)] {
+        for (label, purpose) in [("Open…   Ctrl O", FilePurpose::Open), ("Save session…   Ctrl S", FilePurpose::Save)]
+        {
             if ui.selectable_label(false, label).clicked() {
                 commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose))).into());
             }
@@ -174,7 +175,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     }
     let record = IconButton::of(Icon::Record, "Record", "Write this run for the Rerun viewer (R)");
     if record.show_in(ui, &p, colour(p.reaction)).clicked() {
-        commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Record))).into());
+        commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, FilePurpose::Record))).into());
     }
 }
 
@@ -205,7 +206,7 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 if ui.button("Cancel").clicked() {
                     commands.push(ViewChange::Dialog(None).into());
                 }
-                if dialog.purpose == Purpose::Open {
+                if dialog.purpose == FilePurpose::Open {
                     ui.label(RichText::new("or drop a file on the window").weak());
                 }
             });

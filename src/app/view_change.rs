@@ -1,6 +1,6 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
-use super::{Below, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
+use super::{BottomPanel, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::ViewKind;
 use crate::session::Session;
@@ -23,9 +23,9 @@ impl ViewState {
             }
             Switch::Swapped => self.arrangement.swapped,
             Switch::History => self.open.history,
-            Switch::Compare => self.below == Some(Below::Runs),
-            Switch::Study => self.below == Some(Below::Tolerances),
-            Switch::Table => self.below == Some(Below::Table),
+            Switch::Compare => self.below == Some(BottomPanel::Runs),
+            Switch::Study => self.below == Some(BottomPanel::Tolerances),
+            Switch::Table => self.below == Some(BottomPanel::Table),
             Switch::Pins => self.pins,
             Switch::Snapshots => self.snapshots,
             Switch::Help => self.open.help,
@@ -68,9 +68,9 @@ impl ViewState {
             }
             Switch::Swapped => self.arrangement.swapped = on,
             Switch::History => self.open.history = on,
-            Switch::Compare => self.put_below(Below::Runs, on),
-            Switch::Study => self.put_below(Below::Tolerances, on),
-            Switch::Table => self.put_below(Below::Table, on),
+            Switch::Compare => self.put_below(BottomPanel::Runs, on),
+            Switch::Study => self.put_below(BottomPanel::Tolerances, on),
+            Switch::Table => self.put_below(BottomPanel::Table, on),
             Switch::Pins => self.pins = on,
             Switch::Snapshots => self.snapshots = on,
             Switch::Help => self.open.help = on,
@@ -98,7 +98,7 @@ impl ViewState {
     }
 
     /// Shows a panel below the scene in place of the present one, or closes it.
-    fn put_below(&mut self, thing: Below, on: bool) {
+    fn put_below(&mut self, thing: BottomPanel, on: bool) {
         match on {
             true => self.below = Some(thing),
             false if self.below == Some(thing) => self.below = None,

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use super::Look;
-use super::gesture::{Gesture, Pointed, Tool};
-use super::layout::{Arrangement, Below, Layout};
-use super::open::Open;
-use super::said::Said;
-use crate::picture::charts::choice::Choice;
+use super::CameraMove;
+use super::gesture::{DragGesture, HoverTarget, Tool};
+use super::layout::{BottomPanel, Layout, WindowArrangement};
+use super::open::OpenDialogs;
+use super::said::StatusMessage;
+use crate::picture::charts::choice::PlotChoice;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
-use crate::picture::scene::framing::Content;
+use crate::picture::scene::framing::ViewContent;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, Theme, palette};
 use crate::picture::scene::views::{ViewKind, Views};
@@ -25,7 +25,7 @@ pub enum Framing {
     Wanted,
     /// Framed to this content, in a scene of this size. A scene of another size is framed anew; motion of the content
     /// does not change the view.
-    Held(Arc<Content>, [f32; 2]),
+    Held(Arc<ViewContent>, [f32; 2]),
     /// Moved by the user.
     Free,
 }
@@ -45,15 +45,15 @@ impl Framing {
 #[derive(Clone, Debug)]
 pub struct ViewState {
     /// Arrangement of the window: a preference of the user.
-    pub arrangement: Arrangement,
+    pub arrangement: WindowArrangement,
     /// Open dialogs, lists and cards.
-    pub open: Open,
+    pub open: OpenDialogs,
     /// Messages.
-    pub said: Said,
+    pub said: StatusMessage,
     /// What is under the pointer.
-    pub pointed: Pointed,
+    pub pointed: HoverTarget,
     /// The drag under way.
-    pub gesture: Gesture,
+    pub gesture: DragGesture,
     /// Tool of the pointer.
     pub tool: Tool,
     /// The view on display.
@@ -63,7 +63,7 @@ pub struct ViewState {
     /// Framing of each view.
     pub framing: [Framing; ViewKind::ALL.len()],
     /// The panel below the scene.
-    pub below: Option<Below>,
+    pub below: Option<BottomPanel>,
     /// The object whose rows are to be shown in the panel of settings.
     pub revealed: Option<Handle>,
     /// The setting that is to be shown in the list of all settings, by its path.
@@ -77,7 +77,7 @@ pub struct ViewState {
     /// Time of the second cursor, s.
     pub mark: Option<f64>,
     /// The choice of plots.
-    pub charts: Choice,
+    pub charts: PlotChoice,
     /// Whether pin forces are shown.
     pub pins: bool,
     /// Whether snapshots along the motion are shown.
@@ -98,11 +98,11 @@ impl ViewState {
     /// Returns the initial state: a flat view of everything.
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
-            arrangement: Arrangement::usual(theme),
-            open: Open::default(),
-            said: Said::default(),
-            pointed: Pointed::default(),
-            gesture: Gesture::default(),
+            arrangement: WindowArrangement::usual(theme),
+            open: OpenDialogs::default(),
+            said: StatusMessage::default(),
+            pointed: HoverTarget::default(),
+            gesture: DragGesture::default(),
             tool: Tool::default(),
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
@@ -114,7 +114,7 @@ impl ViewState {
             speed: 1.0,
             loops: false,
             mark: None,
-            charts: Choice::default(),
+            charts: PlotChoice::default(),
             pins: false,
             snapshots: false,
             drives: [0, 1, 2],
@@ -139,20 +139,20 @@ impl ViewState {
     pub(super) fn lay_out(&mut self, layout: Layout) {
         self.arrangement.lay_out(layout);
         self.below = match layout {
-            Layout::Explore => self.below.filter(|below| *below != Below::Runs),
-            Layout::Compare => Some(Below::Runs),
+            Layout::Explore => self.below.filter(|below| *below != BottomPanel::Runs),
+            Layout::Compare => Some(BottomPanel::Runs),
             Layout::Present => None,
         };
         (self.open.history, self.open.naming) = (false, None);
     }
 
     /// Moves the camera of the view on display.
-    pub(super) fn look(&mut self, look: Look) {
+    pub(super) fn look(&mut self, look: CameraMove) {
         let camera = self.camera_mut();
         match look {
-            Look::Turn([right, up]) if camera.is_flat() => camera.pan(-right, up, 1.0),
-            Look::Turn([right, up]) => camera.turn(right, up),
-            Look::Zoom(factor) => camera.zoom(factor, [0.5, 0.5], 1.0),
+            CameraMove::Turn([right, up]) if camera.is_flat() => camera.pan(-right, up, 1.0),
+            CameraMove::Turn([right, up]) => camera.turn(right, up),
+            CameraMove::Zoom(factor) => camera.zoom(factor, [0.5, 0.5], 1.0),
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
 
 use super::card::Card;
-use super::hand::Hand;
+use super::hand::ScenePointer;
 use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::name;
@@ -15,9 +15,9 @@ use super::{
 };
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
-use crate::picture::paint::{Spot, paint};
-use crate::picture::scene::exaggeration::{Exaggeration, Shown};
-use crate::picture::scene::options::{Handle, Offered, Other, ViewOptions};
+use crate::picture::paint::{SceneViewport, paint};
+use crate::picture::scene::exaggeration::{DrawnFrame, Exaggeration};
+use crate::picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
 use crate::picture::scene::pick::Pick;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
@@ -30,7 +30,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     (views, exaggeration): (&Views, f64),
-    (comparison, intro, chosen): (Option<&Comparison>, Option<&Intro>, &[Offered]),
+    (comparison, intro, chosen): (Option<&Comparison>, Option<&Intro>, &[WeightOption]),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) -> Rect {
@@ -53,17 +53,17 @@ pub fn show(
         let presents = view_state.arrangement.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
-        framing::keep(rect, &covered, (session, views), || motion(session), view_state);
+        framing::keep_framed(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let exaggeration = Exaggeration::Times(exaggeration);
-        let shown = Shown::of(session.frame(), exaggeration);
-        let spot = Spot { rect, camera: *view_state.camera() };
+        let shown = DrawnFrame::of(session.frame(), exaggeration);
+        let spot = SceneViewport { rect, camera: *view_state.camera() };
         if matches!(view_state.tool, Tool::Draw(_)) && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             let demonstrates = intro.is_some_and(Intro::demonstrates);
-            let hand = Hand::over(ui, &response, &spot, (session, &shown), (views, demonstrates), view_state);
+            let hand = ScenePointer::over(ui, &response, &spot, (session, &shown), (views, demonstrates), view_state);
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
@@ -102,15 +102,15 @@ pub fn show(
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
-        let spot = Spot { rect, camera: *view_state.camera() };
+        let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
-        covered.extend(status::tells(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
+        covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
         words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, (session, views), view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
         if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
-            corner::way_back(ui, rect, view_state, commands);
+            corner::recentre_button(ui, rect, view_state, commands);
         }
         if presents {
             present::show(ui, rect, session, view_state, commands);
@@ -131,7 +131,7 @@ pub fn show(
 }
 
 /// Returns the rectangles of the objects that hints mention: target, end effector and the ring of b, on the screen.
-fn spoken_of(spot: &Spot, stage: &Stage, shown: &Shown<'_>) -> Vec<Rect> {
+fn spoken_of(spot: &SceneViewport, stage: &Stage, shown: &DrawnFrame<'_>) -> Vec<Rect> {
     let ring = stage.handle(Handle::Ring, shown).and_then(|knob| {
         let middle = spot.screen([shown.base.at.re, shown.base.at.im, knob[2]])?;
         // Its label lies outside.
@@ -167,9 +167,9 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
 }
 
 /// Returns the frames of the runs shown in comparison, at a time, s.
-fn others(comparison: &Comparison, time: f64) -> Vec<Other> {
-    let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
-        Some(Other { name: (i + 1).to_string(), frame: *run.at(time)? })
+fn others(comparison: &Comparison, time: f64) -> Vec<OtherRun> {
+    let other = |(i, run): (usize, &crate::study::comparison::ComparedRun)| {
+        Some(OtherRun { name: (i + 1).to_string(), frame: *run.at(time)? })
     };
     comparison.shown().filter_map(other).collect()
 }
@@ -222,7 +222,7 @@ fn drawn(tool: &Tool) -> Vec<[f64; 2]> {
 fn draw(
     ui: &Ui,
     response: &egui::Response,
-    spot: &Spot,
+    spot: &SceneViewport,
     views: &Views,
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,

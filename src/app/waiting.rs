@@ -1,4 +1,4 @@
-//! [`Waiting`]: a queue of background work that waits until the window is drawn.
+//! [`DeferredWorkers`]: a queue of background work that waits until the window is drawn.
 
 use std::mem::take;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -7,7 +7,7 @@ use crate::query::{Work, Workers};
 
 /// Worker threads that start no work while the window is drawn. New work on the same processor could delay the drawing
 /// by a time slice of the operating system.
-pub(super) struct Waiting {
+pub(super) struct DeferredWorkers {
     workers: Box<dyn Workers + Send + Sync>,
     line: Mutex<Line>,
 }
@@ -18,7 +18,7 @@ struct Line {
     work: Vec<Work>,
 }
 
-impl Waiting {
+impl DeferredWorkers {
     pub fn new(workers: impl Workers + Send + Sync + 'static) -> Self {
         Self { workers: Box::new(workers), line: Mutex::default() }
     }
@@ -45,7 +45,7 @@ impl Waiting {
     }
 }
 
-impl Workers for Waiting {
+impl Workers for DeferredWorkers {
     fn start(&self, work: Work) {
         let mut line = self.line();
         if line.is_closed {
@@ -63,11 +63,11 @@ impl Workers for Waiting {
 }
 
 /// A guard that lives while the window is drawn: background work that nobody waits for starts after it is dropped.
-pub struct Drawing(Option<Arc<Waiting>>);
+pub struct DrawingGuard(Option<Arc<DeferredWorkers>>);
 
-impl Drawing {
+impl DrawingGuard {
     /// Creates the guard; without a queue, work is done at once and nothing is held back.
-    pub(super) fn begin(waiting: Option<&Arc<Waiting>>) -> Self {
+    pub(super) fn begin(waiting: Option<&Arc<DeferredWorkers>>) -> Self {
         if let Some(waiting) = waiting {
             waiting.close();
         }
@@ -75,7 +75,7 @@ impl Drawing {
     }
 }
 
-impl Drop for Drawing {
+impl Drop for DrawingGuard {
     fn drop(&mut self) {
         if let Some(waiting) = &self.0 {
             waiting.open();

@@ -17,7 +17,7 @@ use crate::settings::quantity;
 use crate::settings::range::shortened;
 
 /// The payload that is added with a click, kg.
-pub(super) const HELD: f64 = 0.3;
+pub(super) const CLICK_PAYLOAD: f64 = 0.3;
 
 /// Sets the name of a widget for screen readers.
 pub fn name(response: &Response, label: &str) {
@@ -40,7 +40,7 @@ pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
 }
 
 /// A row: a name on the left, an editable number and its unit on the right.
-pub(super) struct Row<'a> {
+pub(super) struct NumberRow<'a> {
     pub label: &'a str,
     pub unit: &'a str,
     pub tip: &'a str,
@@ -58,7 +58,7 @@ pub(super) fn tip_of(path: &str) -> &'static str {
     key_of(path).map_or("", |key| key.words)
 }
 
-impl<'a> Row<'a> {
+impl<'a> NumberRow<'a> {
     /// Returns the row of a setting, by its path; unit, range and tip are those of its key.
     pub fn of(label: &'a str, path: &str) -> Self {
         let key = key_of(path);
@@ -78,7 +78,7 @@ impl<'a> Row<'a> {
     }
 }
 
-impl Row<'_> {
+impl NumberRow<'_> {
     pub fn show(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> Response {
         ui.horizontal(|ui| {
             ui.label(self.label).on_hover_text(self.tip);
@@ -182,7 +182,7 @@ impl Row<'_> {
         let slider = Slider::from_get_set(self.slide.clone(), turned);
         let slider = slider.clamping(SliderClamping::Edits).show_value(false);
         let mut slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
-        held(&mut slider, value, before, &self.slide, f64::from(FINE), self.round());
+        held(&mut slider, value, before, &self.slide, f64::from(FINE_DRAG_FACTOR), self.round());
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
         // During a drag the tooltip would cover the scene.
@@ -191,7 +191,7 @@ impl Row<'_> {
 }
 
 /// Fraction of the movement that a drag with Shift makes.
-pub(super) const FINE: f32 = 0.1;
+pub(super) const FINE_DRAG_FACTOR: f32 = 0.1;
 
 /// A number that is being dragged.
 #[derive(Clone, Copy)]
@@ -245,7 +245,7 @@ fn given_up_id() -> egui::Id {
 }
 
 /// Whether the drag of a number was cancelled in this pass.
-pub(super) fn gave_up(ctx: &egui::Context) -> bool {
+pub(super) fn drag_cancelled(ctx: &egui::Context) -> bool {
     ctx.data_mut(|data| data.remove_temp::<bool>(given_up_id())).unwrap_or_default()
 }
 
@@ -280,6 +280,6 @@ pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: im
 }
 
 /// Sends an edit that is an undo entry of its own.
-pub(super) fn once(commands: &mut Vec<Command>, edit: Edit) {
+pub(super) fn undoable_edit(commands: &mut Vec<Command>, edit: Edit) {
     commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
 }

@@ -10,7 +10,7 @@ use stillbase::study::balance_constants::BalanceConstants;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table, yes};
+use super::output::{Format, TextTable, yes};
 use stillbase::settings::number::fixed;
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
@@ -20,7 +20,7 @@ Examples:
   stillbase check nine-link
   stillbase check nine-link --set payload.mass=0.4     what 0.4 kg at the end effector does
   stillbase check arm.toml --json")]
-pub struct Check {
+pub struct CheckArguments {
     #[command(flatten)]
     machine: MachineArgument,
     #[command(flatten)]
@@ -30,7 +30,7 @@ pub struct Check {
 /// Formats the balance constants, with a row for each drive, then one for each pair of drives.
 pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
     let drives = &machine.spec().drives;
-    let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
+    let mut by_drive = TextTable::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
     for (k, drive) in drives.iter().enumerate() {
         let [g, h, d, l] =
             [&balance.gamma_coefficients, &balance.h, &balance.d, &balance.lambda].map(|of| fixed(of[k], 9));
@@ -40,7 +40,7 @@ pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
     if drives.len() < 2 {
         return by_drive.to_string();
     }
-    let mut by_pair = Table::new(["pair", "C kg m²"]);
+    let mut by_pair = TextTable::new(["pair", "C kg m²"]);
     for ((k, l), c) in Inertia::pairs(drives.len()).zip(&balance.coupling_coefficients) {
         by_pair.row([format!("{}, {}", drives[k].name, drives[l].name), fixed(*c, 9)]);
     }
@@ -62,7 +62,7 @@ struct Answer {
     pose_constant: &'static str,
 }
 
-impl Check {
+impl CheckArguments {
     /// Prints the verdict; a valid machine that is not balanced is an answer too.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;

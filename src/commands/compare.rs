@@ -6,12 +6,14 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError};
 use stillbase::session::scenario::Scenario;
-use stillbase::study::comparison::{COLUMNS, DESIGN, Row, Rows, Summary, alternatives};
+use stillbase::study::comparison::{
+    ComparisonRow, ComparisonTable, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, alternatives,
+};
 
 use super::exit::say;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario, told_apart};
-use super::output::{Format, Table, check_output};
+use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
+use super::output::{Format, TextTable, check_output};
 use stillbase::settings::number::{fixed, nine_digits};
 use stillbase::settings::text::sheet_cell;
 
@@ -28,7 +30,7 @@ Examples:
   stillbase compare case-3 --set base.wheel.torque_limit=0.5      when does the wheel saturate?
   stillbase compare nine-link-bare case-3                         what balance costs, and what it brings
   stillbase compare case-1 case-3 my.toml -o table.csv")]
-pub struct Compare {
+pub struct CompareArguments {
     /// One scenario to do in several ways, or several to compare
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenarios: Vec<String>,
@@ -46,10 +48,10 @@ pub struct Compare {
 
 #[derive(Serialize)]
 struct Answer {
-    runs: Rows,
+    runs: ComparisonTable,
 }
 
-impl Compare {
+impl CompareArguments {
     /// Runs all scenarios and prints a row for each.
     pub fn run(&self) -> Result<(), Failure> {
         let ending = match &self.output {
@@ -57,14 +59,14 @@ impl Compare {
             None => "",
         };
         let scenarios = self.scenarios()?;
-        let mut runs = Rows::default();
+        let mut runs = ComparisonTable::default();
         scenarios.iter().for_each(|(way, scenario)| runs.run(*way, scenario));
         let faults =
             || runs.rows().iter().filter_map(|row| Some((&row.name, row.outcome.as_ref().ok()?.fault.as_ref()?)));
         faults().for_each(|(name, fault)| say(format!("{name}: audit failed: {fault}")));
         let good = runs.rows().iter().zip(scenarios).filter(|(row, _)| row.outcome.is_ok());
         let good: Vec<Scenario> = good.map(|(_, (_, scenario))| scenario).collect();
-        if let [Row { name, outcome: Err(why), .. }] = runs.rows() {
+        if let [ComparisonRow { name, outcome: Err(why), .. }] = runs.rows() {
             return Err(Failure::NoAnswer(format!("{name}: {why}")));
         }
         if good.is_empty() {
@@ -92,7 +94,7 @@ impl Compare {
         let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
         for name in &self.scenarios {
             let mut next = scenario(name, &self.settings)?;
-            next.name = told_apart(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
+            next.name = distinct_name(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
             all.push((None, next));
         }
         Ok(all)
@@ -111,20 +113,20 @@ impl Compare {
         Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv").of(file.display()))
     }
 
-    fn csv(&self, runs: &[Row], file: &std::path::Path) -> Result<(), Failure> {
+    fn csv(&self, runs: &[ComparisonRow], file: &std::path::Path) -> Result<(), Failure> {
         let mut writer = csv::Writer::from_writer(NewFile::create(file, self.force)?);
         let failed = |e: csv::Error| match e.into_kind() {
             csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
             other => Failure::wrong_input(format!("CSV: {other:?}")),
         };
-        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.name(), c.unit));
+        let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.name(), c.unit));
         let machines =
-            DESIGN.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
+            DESIGN_COLUMNS.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
         let head = ["scenario".to_owned()].into_iter().chain(heads).chain(["reactionless".into(), "refused".into()]);
         let head = head.chain(machines);
         writer.write_record(head).map_err(failed)?;
         for row in runs {
-            let values = COLUMNS.iter().map(|c| match &row.outcome {
+            let values = SUMMARY_COLUMNS.iter().map(|c| match &row.outcome {
                 Ok(summary) => (c.value)(summary).map_or_else(String::new, nine_digits),
                 Err(_) => String::new(),
             });
@@ -132,7 +134,7 @@ impl Compare {
                 Ok(summary) => (summary.verdict.answer(), String::new()),
                 Err(why) => (String::new(), why.clone()),
             };
-            let machine = DESIGN.iter().map(|c| {
+            let machine = DESIGN_COLUMNS.iter().map(|c| {
                 let value = row.design.as_ref().and_then(|design| (c.value)(design));
                 value.map_or_else(String::new, nine_digits)
             });
@@ -150,11 +152,12 @@ impl Compare {
 }
 
 /// Formats the machines of the runs, compared with that of the first run; empty columns are left out.
-fn designs(rows: &[Row]) -> String {
+fn designs(rows: &[ComparisonRow]) -> String {
     let all = || rows.iter().filter_map(|row| Some((row, row.design.as_ref()?)));
-    let columns: Vec<_> = DESIGN.iter().filter(|c| all().any(|(_, design)| (c.value)(design).is_some())).collect();
+    let columns: Vec<_> =
+        DESIGN_COLUMNS.iter().filter(|c| all().any(|(_, design)| (c.value)(design).is_some())).collect();
     let heads = columns.iter().map(|c| if c.unit == "1" { c.head.into() } else { format!("{} {}", c.head, c.unit) });
-    let mut table = Table::new(["machine of".to_owned()].into_iter().chain(heads));
+    let mut table = TextTable::new(["machine of".to_owned()].into_iter().chain(heads));
     let mut apart = String::new();
     for (row, design) in all() {
         let cells = columns.iter().map(|c| (c.value)(design).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
@@ -168,16 +171,16 @@ fn designs(rows: &[Row]) -> String {
 }
 
 /// Formats the runs, one in each row; empty columns are left out.
-fn table(rows: &[Row]) -> String {
+fn table(rows: &[ComparisonRow]) -> String {
     let good: Vec<&Summary> = rows.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
     let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);
-    let columns: Vec<_> = COLUMNS
+    let columns: Vec<_> = SUMMARY_COLUMNS
         .iter()
         .filter(|c| moves || !matches!(c.key, "base_shift" | "base_tilt"))
         .filter(|c| good.iter().any(|s| (c.value)(s).is_some()))
         .collect();
     let heads = columns.iter().map(|c| format!("{} {}", c.head, c.unit));
-    let mut table = Table::new(["run".to_owned()].into_iter().chain(heads).chain(["reactionless".into()]));
+    let mut table = TextTable::new(["run".to_owned()].into_iter().chain(heads).chain(["reactionless".into()]));
     let mut refused = String::new();
     for row in rows {
         let name = row.title().to_owned();

@@ -12,7 +12,7 @@ use stillbase::settings::range::shortened;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, read};
-use super::output::{Format, Table};
+use super::output::{Format, TextTable};
 use stillbase::settings::number::{counted, fixed};
 
 /// Torques of the motors, and what the base feels, of given states of motion, Eqs (1) to (6)
@@ -24,7 +24,7 @@ use stillbase::settings::number::{counted, fixed};
 Example:
   echo '[{\"q\": [0.1, 0.2, 0.3], \"qd\": [0, 0, 1], \"qdd\": [0, 1, 0]}]' > states.json
   stillbase dynamics nine-link --states states.json --set gravity=0,-9.81")]
-pub struct Dynamics {
+pub struct DynamicsArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// JSON: a list of states {"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}, absolute angles, one number a drive
@@ -47,7 +47,7 @@ struct Answer {
     results: Vec<Loads>,
 }
 
-impl Dynamics {
+impl DynamicsArguments {
     /// Prints one result for each state.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
@@ -99,10 +99,10 @@ pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDr
 fn tables(answer: &Answer, n: usize) -> String {
     let torques = (1..=n).map(|k| format!("τ_{k} N m"));
     let rest = ["f_Bx N", "f_By N", "n_B N m", "x_CM m", "y_CM m", "h_B kg m²/s"].map(String::from);
-    let mut motion = Table::new(["state".to_string()].into_iter().chain(torques).chain(rest));
+    let mut motion = TextTable::new(["state".to_string()].into_iter().chain(torques).chain(rest));
     let upper = || (0..n).flat_map(|k| (k..n).map(move |l| (k, l)));
     let entries = upper().map(|(k, l)| format!("H_{}{} kg m²", k + 1, l + 1));
-    let mut matrix = Table::new(["state".to_string()].into_iter().chain(entries));
+    let mut matrix = TextTable::new(["state".to_string()].into_iter().chain(entries));
     for (i, r) in answer.results.iter().enumerate() {
         let name = || [(i + 1).to_string()].into_iter();
         let after =

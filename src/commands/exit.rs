@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use stillbase::settings::text::{brief, plain};
+use stillbase::settings::text::{plain, shorten_message};
 
 use super::failure::Failure;
 
@@ -12,7 +12,7 @@ use super::failure::Failure;
 pub fn say(message: impl Display) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
-    let line = brief(&line);
+    let line = shorten_message(&line);
     let line = plain(&line);
     // When standard error is closed, there is no place for a message.
     let _ = writeln!(io::stderr(), "stillbase: {line}");

@@ -9,13 +9,13 @@ use stillbase::mechanics::dynamics::{Surroundings, inverse};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Run, replay_if, settled};
+use stillbase::session::{Run, replay_if, with_start_edits};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, check_output, check_size};
-use super::simulate::trusted;
+use super::simulate::require_audit;
 use stillbase::settings::number::{counted, fixed};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
@@ -30,7 +30,7 @@ use stillbase::settings::number::{counted, fixed};
 Examples:
   stillbase export case-3 --rate 500 -o case-3.csv
   stillbase export case-1 --what simulated --set plant.payload.mass=0.2 | head")]
-pub struct Export {
+pub struct ExportArguments {
     /// A built-in scenario or a TOML file
     #[arg(value_name = "SCENARIO")]
     scenario: String,
@@ -86,7 +86,7 @@ struct Answer {
     audit_failed: Option<String>,
 }
 
-impl Export {
+impl ExportArguments {
     /// Writes the motion as CSV.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
@@ -97,7 +97,7 @@ impl Export {
         let drives = scenario.machine.drives();
         let (rows, duration, audit_failed) = match self.what {
             What::Reference => {
-                let (start, later) = settled(&scenario)?;
+                let (start, later) = with_start_edits(&scenario)?;
                 if later > 0 {
                     say(format!(
                         "note: the reference leaves out {} after the start; --what simulated",
@@ -147,7 +147,7 @@ impl Export {
             }
             None => self.format.print(&answer, |_| csv)?,
         }
-        trusted(&answer.scenario, answer.audit_failed)
+        require_audit(&answer.scenario, answer.audit_failed)
     }
 
     /// Returns the rows of the planned motion, and its duration, s.

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::drawing::Sheet;
-use stillbase::exchange::form::{self, Form, Shows};
+use stillbase::exchange::form::{self, Form, ModelContent};
 use stillbase::exchange::mjcf::{hinges, middle};
 use stillbase::exchange::urdf::joint;
 use stillbase::files::write_new;
@@ -16,7 +16,7 @@ use stillbase::settings::number::{counted, fixed};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table, check_output};
+use super::output::{Format, TextTable, check_output};
 
 /// Take a machine elsewhere: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), its links drawn to be cut
 /// (.svg, .dxf), a list of its parts (.csv, .md)
@@ -32,7 +32,7 @@ Examples:
   stillbase export-model serial-3r --pose 1.2,0.1,-0.8 -o arm.xml
   stillbase export-model two-drive --bar-width 0.025 --pin-diameter 0.006 -o links.svg
   stillbase export-model scara --material 2700 -o parts.csv")]
-pub struct ExportModel {
+pub struct ExportModelArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// Angles of the drives in the keyframe of .xml, rad; amid the limits where it is left out
@@ -93,7 +93,7 @@ enum Written {
     },
 }
 
-impl ExportModel {
+impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
@@ -125,11 +125,13 @@ impl ExportModel {
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
         let all: [Counting; 5] = [
-            ("--pose", self.pose.is_empty(), |shows| shows == Shows::Pose),
-            ("--bar-width", self.bar_width.is_none(), |shows| shows == Shows::Links),
-            ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == Shows::Links),
-            ("--material", self.material.is_none(), |shows| matches!(shows, Shows::Links | Shows::Parts)),
-            ("--thickness", self.thickness.is_none(), |shows| matches!(shows, Shows::Links | Shows::Parts)),
+            ("--pose", self.pose.is_empty(), |shows| shows == ModelContent::Pose),
+            ("--bar-width", self.bar_width.is_none(), |shows| shows == ModelContent::Links),
+            ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
+            ("--material", self.material.is_none(), |shows| matches!(shows, ModelContent::Links | ModelContent::Parts)),
+            ("--thickness", self.thickness.is_none(), |shows| {
+                matches!(shows, ModelContent::Links | ModelContent::Parts)
+            }),
         ];
         match all.into_iter().find(|(_, is_left_out, counts)| !is_left_out && !counts(form.shows)) {
             Some((option, _, counts)) => {
@@ -143,22 +145,22 @@ impl ExportModel {
 }
 
 /// An option, whether it is left out, and for which files it has an effect.
-type Counting = (&'static str, bool, fn(Shows) -> bool);
+type Counting = (&'static str, bool, fn(ModelContent) -> bool);
 
 /// Describes what was written.
 fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
     let links = machine.links().len();
     Ok(match form.shows {
-        Shows::Pose => {
+        ModelContent::Pose => {
             let qpos = hinges(machine, &pose).map_err(Failure::wrong_input)?;
             Written::Mjcf { pose, qpos }
         }
-        Shows::Joints => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
-        Shows::Links => {
+        ModelContent::Joints => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
+        ModelContent::Links => {
             let size = Sheet::of(machine, cut).map_err(Failure::wrong_input)?.size;
             Written::Drawing { size: size.map(|mm| 1e-3 * mm), links }
         }
-        Shows::Parts => {
+        ModelContent::Parts => {
             Written::List { links, counterweights: machine.spec().counterweights.len(), mass: machine.mass() }
         }
     })
@@ -170,14 +172,14 @@ impl Written {
         let drives = machine.spec().drives.iter().map(|drive| drive.name.clone());
         match self {
             Self::Mjcf { pose, qpos } => {
-                let mut table = Table::new(["drive", "q rad at the start"]);
+                let mut table = TextTable::new(["drive", "q rad at the start"]);
                 for (drive, q) in drives.zip(pose) {
                     table.row([drive, fixed(*q, 6)]);
                 }
                 format!("{name} · {} hinges\n\n{table}", qpos.len())
             }
             Self::Urdf { joints } => {
-                let mut table = Table::new(["drive", "joint of its motor"]);
+                let mut table = TextTable::new(["drive", "joint of its motor"]);
                 for (drive, joint) in drives.zip(joints) {
                     table.row([drive, joint.clone()]);
                 }

@@ -13,7 +13,7 @@ use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
-use stillbase::session::scenario::{Change, Value};
+use stillbase::session::scenario::{TaskChange, Value};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -21,7 +21,7 @@ use super::failure::Failure;
 /// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
 #[derive(Args)]
 #[command(after_help = "Examples:\n  stillbase figures -o assets/pictures --force\n  stillbase figures window tower")]
-pub struct Figures {
+pub struct FiguresArguments {
     /// Which pictures; none: all
     #[arg(value_name = "PICTURE", value_parser = PossibleValuesParser::new(PICTURES.map(|(name, ..)| name)))]
     pictures: Vec<String>,
@@ -52,7 +52,7 @@ const PICTURES: [(&str, &str, f64, Shown); 7] = [
     ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
 
-impl Figures {
+impl FiguresArguments {
     /// Draws the chosen pictures.
     pub fn run(&self) -> Result<(), Failure> {
         let is_chosen = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
@@ -127,7 +127,7 @@ fn designed() -> Vec<Command> {
 fn study() -> Vec<Command> {
     let limit: (String, Value) = ("moment_limit".into(), 0.01.into());
     vec![
-        Command::Session(SessionCommand::Edit(Edit::of("tolerance", Change::from_iter([limit])))),
+        Command::Session(SessionCommand::Edit(Edit::of("tolerance", TaskChange::from_iter([limit])))),
         Command::View(ViewChange::Switch(Switch::Study, true)),
     ]
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::verdict::Statements;
 use stillbase::settings::text::plain;
@@ -13,8 +13,8 @@ use stillbase::settings::text::plain;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, Table, check_output};
-use super::simulate::trusted;
+use super::output::{Format, TextTable, check_output};
+use super::simulate::require_audit;
 use stillbase::settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -24,7 +24,7 @@ Examples:
   stillbase headless -o cases.rrd                             the paper's three cases
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
   stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1")]
-pub struct Headless {
+pub struct HeadlessArguments {
     /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; none: the three cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
@@ -112,7 +112,7 @@ impl From<Recording> for Row {
     }
 }
 
-impl Headless {
+impl HeadlessArguments {
     /// Records and prints the peaks.
     pub fn run(&self) -> Result<(), Failure> {
         let scenarios = self.scenarios()?;
@@ -127,7 +127,7 @@ impl Headless {
             row.remarks.iter().for_each(|remark| say(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;
-        answer.recordings.iter().try_for_each(|row| trusted(&row.scenario, row.audit_failed.clone()))
+        answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
@@ -157,7 +157,7 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
     if let Ok(style) = ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} %  {eta:>4}") {
         bar.set_style(style);
     }
-    let recordings = record(scenarios, file, options, &mut |progress: Progress| {
+    let recordings = record(scenarios, file, options, &mut |progress: RecordingProgress| {
         let what = plain(progress.what);
         if bar.message() != what {
             bar.set_message(what.into_owned());
@@ -191,7 +191,7 @@ fn table(answer: &Answer) -> String {
     let past = wheels.then(|| "peak past the wheel N m".to_owned());
     let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);
     let heads = ["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest);
-    let mut table = Table::new(heads.chain(["reactionless".into()]));
+    let mut table = TextTable::new(heads.chain(["reactionless".into()]));
     for r in &answer.recordings {
         let torques = (0..drives).map(|k| r.peak_torque.get(k).map_or_else(String::new, |t| fixed(*t, 6)));
         let past = wheels.then(|| r.peak_moment_past_wheel.map_or_else(|| "–".into(), |n| fixed(n, 6)));

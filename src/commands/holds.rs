@@ -1,6 +1,6 @@
 //! `--fix`, `--free` and `--bound`: numbers that may change to achieve balance, and their bounds.
 
-use stillbase::mechanics::balance::{Hold, Keep, Parameter};
+use stillbase::mechanics::balance::{Parameter, ParameterBounds, RebalanceRequest};
 use stillbase::mechanics::machine::Machine;
 
 use super::ends::named;
@@ -16,14 +16,15 @@ pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
 /// # Errors
 /// If there is no such number, or one is held in two ways.
 pub fn hold(
-    asked: &mut Keep,
+    asked: &mut RebalanceRequest,
     machine: &Machine,
     fix: &[String],
     free: &[String],
     bound: &[(String, [f64; 2])],
 ) -> Result<(), Failure> {
-    let (fixed, free) = (fix.iter().map(|key| (key, Hold::Fixed)), free.iter().map(|key| (key, Hold::Free)));
-    let bounds = bound.iter().map(|(key, ends)| (key, Hold::Within(*ends)));
+    let (fixed, free) =
+        (fix.iter().map(|key| (key, ParameterBounds::Fixed)), free.iter().map(|key| (key, ParameterBounds::Free)));
+    let bounds = bound.iter().map(|(key, ends)| (key, ParameterBounds::Within(*ends)));
     let mut seen = Vec::new();
     for (key, hold) in fixed.chain(free).chain(bounds) {
         let parameter = find(machine, key)?;

@@ -10,9 +10,9 @@ use serde::Serialize;
 use stillbase::files::table::{SampleTable, samples};
 use stillbase::files::{finish_all, made};
 use stillbase::planning::curves::Coordinates;
-use stillbase::query::{Shared, answered};
+use stillbase::query::{Shared, answer_now};
 use stillbase::session::scenario::Scenario;
-use stillbase::study::import::{GivenMotion, ImportError, Imported, Importing, Keep, Request};
+use stillbase::study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -35,7 +35,7 @@ Examples:
   stillbase import motion.csv --smooth 20 -o quiet.toml     also writes quiet-given.toml
   stillbase headless quiet.toml quiet-given.toml -o both.rrd
   stillbase export quiet.toml --rate 500 -o quiet.csv")]
-pub struct Import {
+pub struct ImportArguments {
     /// A CSV file with a header
     #[arg(value_name = "FILE.csv")]
     file: PathBuf,
@@ -91,20 +91,20 @@ enum Kept {
 struct Answer<'a> {
     file: &'a str,
     #[serde(flatten)]
-    imported: &'a Imported,
+    imported: &'a ImportedMotion,
 }
 
-impl From<ImportError> for Failure {
-    fn from(why: ImportError) -> Self {
+impl From<MotionImportError> for Failure {
+    fn from(why: MotionImportError) -> Self {
         match why {
-            ImportError::NoPoses(_) => Self::no_answer(why),
-            ImportError::NoJoints => Self::wrong_input(why).of("--keep joints has no use here"),
-            ImportError::TooDense => Self::wrong_input(why),
+            MotionImportError::NoPoses(_) => Self::no_answer(why),
+            MotionImportError::NoJoints => Self::wrong_input(why).of("--keep joints has no use here"),
+            MotionImportError::TooDense => Self::wrong_input(why),
         }
     }
 }
 
-impl Import {
+impl ImportArguments {
     /// Reads the samples, prints what they do to the base, and writes the proposal if asked.
     pub fn run(&self) -> Result<(), Failure> {
         let files = self.output.as_deref().map(|file| [file.to_owned(), given_path(file)]);
@@ -139,14 +139,14 @@ impl Import {
         let stem = files.as_ref().map_or_else(|| "import".to_owned(), |[file, _]| stem(file));
         let title = self.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let keep = self.keep.map(|keep| match keep {
-            Kept::Tip => Keep::Tip,
-            Kept::Joints => Keep::Joints,
+            Kept::Tip => PreservedPath::Tip,
+            Kept::Joints => PreservedPath::Joints,
         });
         let scenario = Shared(Scenario { name: stem, title, machine, ..base }.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
-        let found = answered::<Importing>(request)?;
+        let found = answer_now::<ImportQuery>(request)?;
         found.notes.iter().for_each(|note| say(format!("note: {}", note.worded(option))));
-        let imported = Imported { reason: found.reason.map(|reason| reason.worded(option)), ..found };
+        let imported = ImportedMotion { reason: found.reason.map(|reason| reason.worded(option)), ..found };
         self.format.print(&Answer { file: &name, imported: &imported }, |answer| table(answer.imported))?;
         let Some([proposed, given]) = &imported.scenarios else {
             return Err(Failure::no_answer(imported.reason.unwrap_or_default()));

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::exchange::import::{BaseBody, Imported, import};
+use stillbase::exchange::import::{BaseBody, ImportedMachine, import};
 use stillbase::files::write_new;
 use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
-use stillbase::session::around;
+use stillbase::session::gentle_motion;
 use stillbase::session::scenario::Scenario;
 use stillbase::settings::number::{counted, fixed, shown};
 use stillbase::simulation::plant::{Base, BaseKind};
@@ -15,7 +15,7 @@ use stillbase::simulation::plant::{Base, BaseKind};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, read};
-use super::output::{Format, Table, check_output, yes};
+use super::output::{Format, TextTable, check_output, yes};
 
 /// Read a machine from a model of another program: planar URDF or MJCF whose links each follow one drive
 ///
@@ -33,7 +33,7 @@ Examples:
 
 Keys of --json: file and scenario (where they are written), drives, links, mass, pose, base (mass, inertia, com; where the
 file has one), notes, force_balanced, invariant")]
-pub struct ImportModel {
+pub struct ImportModelArguments {
     /// A URDF or MJCF file
     #[arg(value_name = "FILE")]
     file: PathBuf,
@@ -82,7 +82,7 @@ struct OfBase {
     com: [f64; 2],
 }
 
-impl ImportModel {
+impl ImportModelArguments {
     /// Reads the model, prints a summary, and writes the machine if asked.
     pub fn run(&self) -> Result<(), Failure> {
         for file in [&self.output, &self.scenario].into_iter().flatten() {
@@ -93,7 +93,7 @@ impl ImportModel {
         }
         let name = self.file.display();
         let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).of(&name))?;
-        let Imported { machine, pose, base, mut notes } = found;
+        let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {
             let (mass, inertia) = (shown(base.mass, 6), shown(base.inertia, 6));
@@ -128,7 +128,7 @@ impl ImportModel {
             invariant: inertia.is_invariant(),
         };
         self.format.print(&answer, |answer| {
-            let mut table = Table::new(["drive", "q rad in the file's pose", "H_kk kg m²"]);
+            let mut table = TextTable::new(["drive", "q rad in the file's pose", "H_kk kg m²"]);
             for (k, (drive, q)) in answer.drives.iter().zip(&answer.pose).enumerate() {
                 table.row([drive.clone(), fixed(*q, 6), shown(inertia.diagonal(k), 9)]);
             }
@@ -145,7 +145,7 @@ impl ImportModel {
 
 /// Returns a scenario with a task for a machine, on the base of its file, if it has one.
 fn scenario(machine: &Machine, base: Option<BaseBody>) -> Result<Scenario, Failure> {
-    let scenario = around(machine)?;
+    let scenario = gentle_motion(machine)?;
     let Some(BaseBody { mass, inertia, com }) = base else { return Ok(scenario) };
     let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
     // Parsed again, so that what a file may not hold is refused.

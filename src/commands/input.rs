@@ -9,11 +9,11 @@ use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario, key_of};
+use stillbase::session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
 use stillbase::settings::change;
 use stillbase::settings::key::Key;
 use stillbase::settings::range::Range;
-use stillbase::settings::text::MOST_BYTES;
+use stillbase::settings::text::MAX_TEXT_BYTES;
 use stillbase::settings::word::Choice;
 
 use super::exit::say;
@@ -62,7 +62,7 @@ impl Settings {
         }
         let machine = machine.set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())));
         let machine = machine.map_err(|e| Failure::wrong_input(e).of("--set"))?;
-        match self.pairs.iter().find(|(key, value)| value != change::DEFAULT && !machine.uses(key, false)) {
+        match self.pairs.iter().find(|(key, value)| value != change::DEFAULT_WORD && !machine.uses(key, false)) {
             Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).of("--set")),
             None => Ok(machine),
         }
@@ -74,7 +74,7 @@ impl Settings {
     /// If there is such a setting.
     pub fn none_of_tolerance(&self) -> Result<(), Failure> {
         let given = |(key, value): &&(String, String)| {
-            key.split('.').next() == Some("tolerance") && ![change::DEFAULT, Key::NONE].contains(&value.as_str())
+            key.split('.').next() == Some("tolerance") && ![change::DEFAULT_WORD, Key::NONE].contains(&value.as_str())
         };
         self.pairs.iter().find(given).map_or(Ok(()), |(key, _)| Err(no_use(key, STUDY).of("--set")))
     }
@@ -85,9 +85,9 @@ impl Settings {
     }
 
     /// Returns all settings as a file would state them; the last value of a key counts.
-    fn change(&self) -> Change {
-        let one = |(key, value): &(String, String)| change::one(key, change::value(value));
-        self.pairs.iter().map(one).fold(Change::new(), |all, one| change::join(all, &one))
+    fn change(&self) -> TaskChange {
+        let one = |(key, value): &(String, String)| change::single_change(key, change::value(value));
+        self.pairs.iter().map(one).fold(TaskChange::new(), |all, one| change::join(all, &one))
     }
 }
 
@@ -119,14 +119,14 @@ impl MachineArgument {
         for called in std::iter::once(&self.name).chain(others) {
             let machine = stillbase::files::machine(called, None)?;
             let machine = self.settings.apply(machine).map_err(|why| why.of(called))?;
-            all.push((told_apart(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
+            all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
         }
         Ok(all)
     }
 }
 
 /// Returns a name that is not taken: `own`, or `own` with the first free number, from 2 on.
-pub fn told_apart(own: &str, taken: impl Fn(&str) -> bool) -> String {
+pub fn distinct_name(own: &str, taken: impl Fn(&str) -> bool) -> String {
     let (mut name, mut count) = (own.to_owned(), 1);
     while taken(&name) {
         count += 1;
@@ -139,16 +139,16 @@ pub fn told_apart(own: &str, taken: impl Fn(&str) -> bool) -> String {
 /// machines. Prints a note if the scenario has tolerances.
 ///
 /// # Errors
-/// As [`studied`], or if a setting is of tolerances.
+/// As [`overlay_for_study`], or if a setting is of tolerances.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = studied(name, settings)?;
+    let scenario = overlay_for_study(name, settings)?;
     settings.none_of_tolerance()?;
-    tell_tolerance(&scenario);
+    report_tolerance(&scenario);
     Ok(scenario)
 }
 
 /// Prints a note if a scenario has tolerances, which have no effect in a command that draws no machines.
-pub fn tell_tolerance(scenario: &Scenario) {
+pub fn report_tolerance(scenario: &Scenario) {
     if !scenario.tolerance.is_empty() {
         say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
     }
@@ -162,27 +162,27 @@ const STUDY: &str = "the command tolerance, or the window";
 ///
 /// # Errors
 /// If there is no such scenario or setting, or the result is not valid.
-pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = stated(name, settings)?;
+pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let scenario = overlay_unchecked(name, settings)?;
     none_idle(&scenario, settings)?;
-    tell_idle(&scenario);
+    report_idle(&scenario);
     Ok(scenario)
 }
 
 /// Does the same as [`studied`], but accepts settings without an effect, because other arguments may give them one.
 ///
 /// # Errors
-/// As [`studied`], except for settings without an effect.
-pub fn stated(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+/// As [`overlay_for_study`], except for settings without an effect.
+pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase::files::scenario(name)?;
     if let Some(made) = &found.made {
         say(format!("note: {made}"));
     }
-    laid(found.scenario, settings)
+    overlay_settings(found.scenario, settings)
 }
 
 /// Prints which keys of a scenario have no effect.
-pub fn tell_idle(scenario: &Scenario) {
+pub fn report_idle(scenario: &Scenario) {
     for (path, want) in scenario.idle_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }
@@ -192,8 +192,8 @@ pub fn tell_idle(scenario: &Scenario) {
 ///
 /// # Errors
 /// If there is no such setting, it has no effect, or the result is not valid.
-pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = laid(scenario, settings)?;
+pub fn overlay_used(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
+    let scenario = overlay_settings(scenario, settings)?;
     none_idle(&scenario, settings)?;
     Ok(scenario)
 }
@@ -202,7 +202,7 @@ pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure>
 ///
 /// # Errors
 /// If there is no such setting, or the result is not valid.
-pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
+pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = scenario.with(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
     Ok(scenario)
@@ -214,7 +214,7 @@ pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure
 /// If there is one, with the condition for an effect.
 pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
-        let freed = value.as_str().is_some_and(|word| [change::DEFAULT, Key::NONE].contains(&word));
+        let freed = value.as_str().is_some_and(|word| [change::DEFAULT_WORD, Key::NONE].contains(&word));
         if let Some(want) = scenario.idle(&path).filter(|_| !freed) {
             return Err(no_use(&path, want).of("--set"));
         }
@@ -231,7 +231,7 @@ pub fn no_use(what: &str, want: &str) -> Failure {
 ///
 /// # Errors
 /// If there is no such key, or its value is out of range.
-pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failure> {
+pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), Failure> {
     if !change.is_empty() {
         let task = scenario.task.with(change, &scenario.machine);
         scenario.task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
@@ -270,13 +270,14 @@ fn padded(word: OsString) -> OsString {
 
 /// Parses a point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, String> {
-    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, PLACE)?, number(y, PLACE)?)));
-    both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {PLACE}"))
+    let both =
+        text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, POINT_RANGE)?, number(y, POINT_RANGE)?)));
+    both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {POINT_RANGE}"))
 }
 
 /// Parses a pose constant, rad.
 pub fn pose_constant(text: &str) -> Result<f64, String> {
-    number(text, POSE_CONSTANT).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT}"))
+    number(text, POSE_CONSTANT_RANGE).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT_RANGE}"))
 }
 
 fn number(text: &str, range: Range) -> Option<f64> {
@@ -294,7 +295,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// If it cannot be read.
 pub fn read(file: &Path) -> Result<String, Failure> {
     stillbase::files::text::read(file).map_err(|e| {
-        let why = format!("{e}: want a plain file that can be read, of at most {MOST_BYTES} bytes");
+        let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
         Failure::wrong_input(why).of(file.display())
     })
 }

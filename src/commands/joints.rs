@@ -12,8 +12,8 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_output, check_size};
-use super::simulate::trusted;
+use super::output::{Format, TextTable, check_output, check_size};
+use super::simulate::require_audit;
 use stillbase::settings::number::{counted, fixed, shown};
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
@@ -23,7 +23,7 @@ Examples:
   stillbase joints case-3
   stillbase joints case-1 --set gravity=0,-9.81 -o pins.csv
   stillbase joints case-3 --set link.5.axial=0.02 --json")]
-pub struct JointsCommand {
+pub struct JointsArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
@@ -40,7 +40,7 @@ pub struct JointsCommand {
     format: Format,
 }
 
-impl JointsCommand {
+impl JointsArguments {
     /// Runs the scenario and prints the extremes of pin forces, transmission and tilt.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
@@ -74,7 +74,7 @@ impl JointsCommand {
         }
         let answer = extremes.report(&scenario.name, &run.frame());
         self.format.print(&answer, human)?;
-        trusted(&answer.scenario, answer.audit_failed)
+        require_audit(&answer.scenario, answer.audit_failed)
     }
 
     fn csv<'a>(&self, begun: &'a mut Option<Csv>, pins: &[Pin]) -> Result<&'a mut Csv, Failure> {
@@ -101,7 +101,7 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
 }
 
 fn human(answer: &JointReport) -> String {
-    let mut pins = Table::new(["pin", "on link", "peak N", "at s", "mean N"]);
+    let mut pins = TextTable::new(["pin", "on link", "peak N", "at s", "mean N"]);
     let mut undefined = 0;
     for pin in &answer.pins {
         pins.row([pin.name.clone(), pin.to.clone(), shown(pin.peak, 3), fixed(pin.time, 3), shown(pin.mean, 3)]);
@@ -121,7 +121,7 @@ fn human(answer: &JointReport) -> String {
         );
     }
     if !answer.transmission.is_empty() {
-        let mut pairs = Table::new(["drives", "least |sin|", "angle rad", "at s", "closed by"]).with_words(4);
+        let mut pairs = TextTable::new(["drives", "least |sin|", "angle rad", "at s", "closed by"]).with_words(4);
         for pair in &answer.transmission {
             let closures = if pair.closures.is_empty() { "none".into() } else { pair.closures.join(", ") };
             let (least, angle) = (fixed(pair.least, 6), fixed(pair.angle, 6));
@@ -142,7 +142,7 @@ fn human(answer: &JointReport) -> String {
             + "\ntilting moment   not in the model: all axial offsets are zero; --set link.NAME.axial=0.02 (m) tells \
                at what height a link lies\n";
     }
-    let mut tilts = Table::new(["tilting moment", "peak N m", "at s"]);
+    let mut tilts = TextTable::new(["tilting moment", "peak N m", "at s"]);
     for (name, peak) in [("about x", tilt.x), ("about y", tilt.y), ("from motion", tilt.motion)] {
         tilts.row([name.into(), fixed(peak.value, 6), fixed(peak.time, 3)]);
     }

@@ -19,7 +19,7 @@ use super::output::Format;
 Examples:
   stillbase keys friction
   stillbase keys base. --json")]
-pub struct Keys {
+pub struct KeysArguments {
     /// Only the keys with all of these in their name, such as link.5.com, or in what is said of them, such as Hz
     #[arg(value_name = "WORD")]
     words: Vec<String>,
@@ -58,7 +58,7 @@ struct Row {
     usual: String,
 }
 
-impl Keys {
+impl KeysArguments {
     /// Prints the settings.
     pub fn run(&self) -> Result<(), Failure> {
         let sought: Vec<String> = self.words.iter().flat_map(|w| w.split_whitespace()).map(str::to_lowercase).collect();
@@ -82,7 +82,7 @@ impl Keys {
         };
         let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();
         if keys.is_empty() {
-            let words = stillbase::settings::range::clipped(&sought.join(" "));
+            let words = stillbase::settings::range::quote_clipped(&sought.join(" "));
             let why = format!("nothing is said of {words:?} in the list of keys: `stillbase keys` prints all of it");
             return Err(Failure::no_answer(why));
         }

@@ -9,11 +9,12 @@ use stillbase::planning::Reference;
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::equations::{
-    Cell, Equation, Line, NUMBERS, NoInstant, State, Stated, When, cells, equations, plain,
+    DriveState, EQUATION_NUMBERS, Equality, Equation, EquationCell, InstantKind, NoInstant, StatedEquations, cells,
+    equations, plain,
 };
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, no_use, set};
+use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_used};
 use super::output::Format;
 use stillbase::settings::number::{counted, fixed, shown};
 
@@ -29,7 +30,7 @@ Examples:
   stillbase learn case-1 --at 0.3 --equation 5 --equation 12
   stillbase learn serial-3r --set link.2.com=-0.1 --json
   stillbase learn nine-link-table-1 --pose 1.7,3.7,2.2 --rates 0.1,0,-0.5")]
-pub struct Learn {
+pub struct LearnArguments {
     /// A built-in scenario or machine (case-1, four-drive …), or a TOML file of either
     #[arg(value_name = "SCENARIO|MACHINE", default_value = DEFAULT_SCENARIO)]
     what: String,
@@ -56,7 +57,7 @@ pub struct Learn {
 
 fn number(text: &str) -> Result<&'static str, String> {
     let bare = text.trim().trim_start_matches('(').trim_end_matches(')');
-    let known = NUMBERS.into_iter().find(|known| known.eq_ignore_ascii_case(bare));
+    let known = EQUATION_NUMBERS.into_iter().find(|known| known.eq_ignore_ascii_case(bare));
     known.ok_or_else(|| "want the number of an equation, 1 to 16 or A1 to A3".into())
 }
 
@@ -78,14 +79,14 @@ enum Subject {
     Machine(Box<Machine>),
 }
 
-impl Learn {
+impl LearnArguments {
     /// Prints the equations.
     pub fn run(&self) -> Result<(), Failure> {
         let (machine, state) = self.machine_and_state()?;
         let all = equations(&machine, &state, Preset::Table1);
         let is_chosen = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
         let chosen: Vec<&Equation> = all.iter().filter(is_chosen).collect();
-        let answer = Stated::of(&machine, &state, chosen.iter().copied());
+        let answer = StatedEquations::of(&machine, &state, chosen.iter().copied());
         self.format.print(&answer, |_| {
             let texts: Vec<String> = chosen.iter().map(|equation| text(equation)).collect();
             format!("{}\n\n{}", head(&machine, &state), texts.join("\n"))
@@ -93,7 +94,7 @@ impl Learn {
     }
 
     /// Returns the machine and its state at the instant.
-    fn machine_and_state(&self) -> Result<(Machine, State), Failure> {
+    fn machine_and_state(&self) -> Result<(Machine, DriveState), Failure> {
         let machine = match self.find()? {
             Subject::Scenario(scenario) if self.pose.is_empty() => {
                 let state = self.state(&scenario)?;
@@ -118,7 +119,7 @@ impl Learn {
         };
         let q = DriveAngles(given("--pose", &pose)?);
         let (qd, qdd) = (given("--rates", &self.rates)?, given("--accelerations", &self.accelerations)?);
-        Ok((machine, State::given(Reference { q, qd, qdd })))
+        Ok((machine, DriveState::given(Reference { q, qd, qdd })))
     }
 
     /// Returns the scenario or the machine of the name.
@@ -128,7 +129,7 @@ impl Learn {
             // For a machine, no scenario made around it is used.
             Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
-                let scenario = set(found.scenario, &self.settings)?;
+                let scenario = overlay_used(found.scenario, &self.settings)?;
                 self.settings.none_of_tolerance()?;
                 Ok(Subject::Scenario(Box::new(scenario)))
             }
@@ -137,12 +138,12 @@ impl Learn {
         }
     }
 
-    fn state(&self, scenario: &Scenario) -> Result<State, Failure> {
+    fn state(&self, scenario: &Scenario) -> Result<DriveState, Failure> {
         let Some(at) = self.at else {
             let session = Session::open(scenario.clone())?;
-            return Ok(State::of(session.run(), session.frame()));
+            return Ok(DriveState::of(session.run(), session.frame()));
         };
-        State::at(scenario, at).map_err(|why| match why {
+        DriveState::at(scenario, at).map_err(|why| match why {
             NoInstant::Refused(why) => why.into(),
             later => Failure::wrong_input(format!("--at {at}: {later}")),
         })
@@ -152,11 +153,11 @@ impl Learn {
 /// Maximum magnitude of a given angle, rate or acceleration, rad, rad/s or rad/s².
 const MAX_MAGNITUDE: f64 = 1e6;
 
-fn head(machine: &Machine, state: &State) -> String {
+fn head(machine: &Machine, state: &DriveState) -> String {
     let when = match state.when {
-        When::Run(time) => format!("at {} s", fixed(time, 3)),
-        When::Plan(time) => format!("{} s into the planned motion", fixed(time, 3)),
-        When::Given => "in one pose".to_owned(),
+        InstantKind::Run(time) => format!("at {} s", fixed(time, 3)),
+        InstantKind::Plan(time) => format!("{} s into the planned motion", fixed(time, 3)),
+        InstantKind::Given => "in one pose".to_owned(),
     };
     let all = |values: &[f64]| values.iter().map(|x| fixed(*x, 4)).collect::<Vec<_>>().join(", ");
     let motion =
@@ -202,7 +203,7 @@ fn verdict(equation: &Equation) -> String {
 }
 
 /// Formats a line of terms: symbols, and below each its number.
-fn of_terms(line: &Line) -> String {
+fn of_terms(line: &Equality) -> String {
     let mut rows: Vec<[String; 2]> = Vec::new();
     let mut width = MAX_WIDTH;
     let cells = cells(line, DECIMALS);
@@ -230,7 +231,7 @@ fn of_terms(line: &Line) -> String {
     both.map(|(label, text)| format!("{:INDENT$}{label:<9}{}\n", "", text.trim_end())).collect()
 }
 
-fn both(cell: &Cell<'_>) -> [String; 2] {
+fn both(cell: &EquationCell<'_>) -> [String; 2] {
     let joined = |sign: &str, text: &str| match (sign, text) {
         ("", text) => format!("  {text}"),
         (sign, "") => sign.to_owned(),

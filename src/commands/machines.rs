@@ -6,11 +6,11 @@ use stillbase::mechanics::machine::builtins;
 
 use super::failure::Failure;
 use super::input::Settings;
-use super::output::{Format, Table};
+use super::output::{Format, TextTable};
 
 /// List the built-in machines
 #[derive(Args)]
-pub struct Machines {
+pub struct MachinesArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
@@ -30,7 +30,7 @@ struct Row {
     summary: String,
 }
 
-impl Machines {
+impl MachinesArguments {
     /// Prints the machines.
     pub fn run(&self) -> Result<(), Failure> {
         let mut machines = Vec::new();
@@ -44,7 +44,7 @@ impl Machines {
             });
         }
         self.format.print(&Answer { machines }, |answer| {
-            let mut table = Table::new(["machine", "drives", "links", ""]).with_words(3);
+            let mut table = TextTable::new(["machine", "drives", "links", ""]).with_words(3);
             for m in &answer.machines {
                 table.row([m.name.clone(), m.drives.to_string(), m.links.to_string(), m.summary.clone()]);
             }

@@ -42,7 +42,7 @@ mod workspace;
 pub use exit::{exit_code, usage};
 pub use input::words;
 pub use interrupt::watch;
-pub use open::Open;
+pub use open::OpenArguments;
 
 use failure::Failure;
 
@@ -69,27 +69,27 @@ macro_rules! subcommands {
 // In the order of the help.
 subcommands! {
     #[cfg(feature = "record")]
-    Headless: headless::Headless,
-    Simulate: simulate::Simulate,
-    Compare: compare::Compare,
-    Joints: joints::JointsCommand,
-    Machines: machines::Machines,
-    Keys: keys::Keys,
-    Check: check::Check,
-    Learn: learn::Learn,
-    Design: design::Design,
-    Dynamics: dynamics::Dynamics,
-    Reach: reach::Reach,
-    Pose: pose::Pose,
-    Plan: plan::Plan,
-    Workspace: workspace::Workspace,
-    Import: import::Import,
-    Export: export::Export,
-    ExportModel: export_model::ExportModel,
-    ImportModel: import_model::ImportModel,
-    Tolerance: tolerance::Tolerance,
-    Spectrum: spectrum::SpectrumOf,
-    Trim: trim::Trim,
+    Headless: headless::HeadlessArguments,
+    Simulate: simulate::SimulateArguments,
+    Compare: compare::CompareArguments,
+    Joints: joints::JointsArguments,
+    Machines: machines::MachinesArguments,
+    Keys: keys::KeysArguments,
+    Check: check::CheckArguments,
+    Learn: learn::LearnArguments,
+    Design: design::DesignArguments,
+    Dynamics: dynamics::DynamicsArguments,
+    Reach: reach::ReachArguments,
+    Pose: pose::PoseArguments,
+    Plan: plan::PlanArguments,
+    Workspace: workspace::WorkspaceArguments,
+    Import: import::ImportArguments,
+    Export: export::ExportArguments,
+    ExportModel: export_model::ExportModelArguments,
+    ImportModel: import_model::ImportModelArguments,
+    Tolerance: tolerance::ToleranceArguments,
+    Spectrum: spectrum::SpectrumArguments,
+    Trim: trim::TrimArguments,
     #[cfg(feature = "ui")]
-    Figures: figures::Figures,
+    Figures: figures::FiguresArguments,
 }

@@ -8,11 +8,11 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, studied};
+use super::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 
 /// What to open.
 #[derive(Args)]
-pub struct Open {
+pub struct OpenArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file to open in a window
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
@@ -41,10 +41,10 @@ impl From<ThemeName> for Theme {
     }
 }
 
-impl Open {
+impl OpenArguments {
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
-        let scenario = studied(&self.scenario, &self.settings).map_err(|failure| match failure {
+        let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
             // Most likely a mistyped command.
             Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
                 Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))

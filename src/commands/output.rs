@@ -72,13 +72,13 @@ pub fn yes(is_so: bool) -> &'static str {
 }
 
 /// A table with aligned columns: the first to the left, numbers to the right.
-pub struct Table {
+pub struct TextTable {
     rows: Vec<Vec<String>>,
     /// Index of a further column that is aligned to the left.
     words: Option<usize>,
 }
 
-impl Table {
+impl TextTable {
     /// Returns a table with a head; the unit of each column follows its name.
     pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
         Self { rows: vec![head.into_iter().map(Into::into).collect()], words: None }
@@ -98,7 +98,7 @@ impl Table {
     }
 }
 
-impl Display for Table {
+impl Display for TextTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let width = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.rows.iter().map(Vec::len).max().unwrap_or(0)).map(width).collect();

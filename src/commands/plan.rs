@@ -11,18 +11,18 @@ use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{Change, Content, Scenario, Shape, Task, TaskKind, content};
-use stillbase::session::{Run, settled};
+use stillbase::session::scenario::{FileContent, PathShape, Scenario, Task, TaskChange, TaskKind, content};
+use stillbase::session::{Run, with_start_edits};
 use stillbase::simulation::plant::PlantDifferences;
 use stillbase::study::plan_summary::PlanSummary;
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, laid, no_use, none_idle, point, pose_constant,
-    pose_space, stated, tell_idle, tell_tolerance,
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, none_idle, overlay_settings,
+    overlay_unchecked, point, pose_constant, pose_space, report_idle, report_tolerance,
 };
-use super::output::{Format, Table, check_output};
+use super::output::{Format, TextTable, check_output};
 use stillbase::settings::number::{counted, fixed};
 use stillbase::settings::word::Choice;
 
@@ -41,7 +41,7 @@ Examples:
   stillbase plan nine-link 0.5,0.5 0.55,0.9 --shape line --b 2.4 --law fastest
   stillbase plan nine-link 0.6,0.6 0.52,0.68 0.44,0.6 --shape arc --closed -o circle.toml
   stillbase plan case-3 --set task.law=septic --json")]
-pub struct Plan {
+pub struct PlanArguments {
     /// A built-in machine or scenario, or a TOML file of either
     #[arg(value_name = "MACHINE|SCENARIO")]
     name: String,
@@ -56,8 +56,8 @@ pub struct Plan {
     #[arg(long, value_parser = choice(kinds()))]
     kind: Option<TaskKind>,
     /// What joins the points
-    #[arg(long, value_parser = choice(Shape::ALL.iter().copied()))]
-    shape: Option<Shape>,
+    #[arg(long, value_parser = choice(PathShape::ALL.iter().copied()))]
+    shape: Option<PathShape>,
     /// Return to the first point
     #[arg(long)]
     closed: bool,
@@ -108,7 +108,7 @@ fn kinds() -> impl Iterator<Item = TaskKind> {
     TaskKind::ALL.iter().copied().filter(|kind| !matches!(kind, TaskKind::SameTip | TaskKind::Given))
 }
 
-impl Plan {
+impl PlanArguments {
     /// Plans, prints, and writes the scenario if asked.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
@@ -175,27 +175,27 @@ impl Plan {
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }
-                let own = stated(DEFAULT_SCENARIO, &Settings::default())?;
+                let own = overlay_unchecked(DEFAULT_SCENARIO, &Settings::default())?;
                 let with =
                     Scenario { machine, name: DEFAULT_NAME.into(), title: String::new(), compare_b: None, ..own };
-                laid(with, &self.settings)?
+                overlay_settings(with, &self.settings)?
             }
             // A wrong file that is meant as a machine gives the error of a machine, any other that of a scenario.
-            Err(wrong) if meant(&self.name) == Some(Content::Machine) => return Err(wrong.into()),
+            Err(wrong) if meant(&self.name) == Some(FileContent::Machine) => return Err(wrong.into()),
             _ => {
-                let found = stated(&self.name, &self.settings)?;
+                let found = overlay_unchecked(&self.name, &self.settings)?;
                 // A written scenario keeps its tolerances for other commands.
                 if self.output.is_none() {
-                    tell_tolerance(&found);
+                    report_tolerance(&found);
                 }
-                let (start, later) = settled(&found)?;
+                let (start, later) = with_start_edits(&found)?;
                 if later > 0 {
                     say(format!("note: the plan leaves out {} after the start", counted(later, "edit")));
                 }
                 start
             }
         };
-        let mut change = Change::new();
+        let mut change = TaskChange::new();
         match Task::visiting(&self.points) {
             Some(points) => change.extend(points),
             None if self.points.is_empty() => {}
@@ -244,7 +244,7 @@ impl Plan {
         none_idle(&scenario, &self.settings)?;
         // With another kind, keys of a built-in task may lose their effect, but the user has not given them.
         if self.kind.is_none() || Scenario::builtin(&scenario.name).is_none() {
-            tell_idle(&scenario);
+            report_idle(&scenario);
         }
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
             let machine = &scenario.machine;
@@ -256,12 +256,12 @@ impl Plan {
 }
 
 /// Returns whether a file is meant as a machine or as a scenario, if there is one of that name.
-fn meant(name: &str) -> Option<Content> {
+fn meant(name: &str) -> Option<FileContent> {
     if Scenario::builtin(name).is_some() { None } else { content(&text::read(Path::new(name)).ok()?) }
 }
 
 fn table(answer: &PlanSummary) -> String {
-    let mut table = Table::new(["", "", ""]).with_words(2);
+    let mut table = TextTable::new(["", "", ""]).with_words(2);
     let mut row = |name: &str, value: f64, decimals: usize, unit: &str| {
         table.row([name.to_owned(), fixed(value, decimals), unit.into()]);
     };

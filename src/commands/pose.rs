@@ -9,7 +9,7 @@ use stillbase::study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
-use super::output::{Format, Table};
+use super::output::{Format, TextTable};
 use stillbase::settings::number::fixed;
 
 /// The poses that put the end effector on a point without leaving the plane b = const, and what each is good for
@@ -24,7 +24,7 @@ use stillbase::settings::number::fixed;
 #[command(after_help = "\
 Example:
   stillbase pose nine-link 0.5,0.5 --b 2.4")]
-pub struct Pose {
+pub struct PoseArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// Point of the end effector in base axes, m
@@ -42,7 +42,7 @@ struct Answer {
     poses: Vec<PoseMeasures>,
 }
 
-impl Pose {
+impl PoseArguments {
     /// Prints every pose. Fails if there is none.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
@@ -54,7 +54,7 @@ impl Pose {
         self.format.print(&Answer { poses }, |answer| {
             let drives = (1..=space.drives()).map(|k| format!("q_{k} rad"));
             let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
-            let mut table = Table::new(["pose".to_owned()].into_iter().chain(drives).chain(names));
+            let mut table = TextTable::new(["pose".to_owned()].into_iter().chain(drives).chain(names));
             for (i, pose) in answer.poses.iter().enumerate() {
                 let numbers = pose.q.iter().chain(&pose.a).map(|x| fixed(*x, 9));
                 table.row([(i + 1).to_string()].into_iter().chain(numbers));

@@ -3,13 +3,13 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common::{common, no_common};
-use stillbase::planning::pose_constant::{Mend, Unreachable};
+use stillbase::planning::common::{common_b_set, no_common};
+use stillbase::planning::pose_constant::{PointCorrection, Unreachable};
 use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_space};
-use super::output::{Format, Table};
+use super::output::{Format, TextTable};
 use stillbase::settings::number::fixed;
 
 /// The pose constants b whose reactionless workspace holds a point, and those that hold all points
@@ -21,7 +21,7 @@ use stillbase::settings::number::fixed;
 Examples:
   stillbase reach nine-link 0.5,0.5 0.55,0.9
   stillbase reach nine-link -0.6,-0.2 --set limits.a1=0.4,2.7")]
-pub struct Reach {
+pub struct ReachArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// Points of the end effector in base axes, m
@@ -38,7 +38,7 @@ struct Answer {
     period: f64,
     /// The least move of one point after which all have a b in common, if they have none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    mend: Option<Mend>,
+    mend: Option<PointCorrection>,
 }
 
 #[derive(Serialize)]
@@ -47,7 +47,7 @@ struct OfPoint {
     intervals: Vec<[f64; 2]>,
 }
 
-impl Reach {
+impl ReachArguments {
     /// Prints the b of each point and of all. Fails if the points have no b in common.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
@@ -57,7 +57,7 @@ impl Reach {
             let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
             sets.push(space.reach(*p).map_err(none)?);
         }
-        let overlap = common(&space, &self.points).map_or_else(Vec::new, |set| set.intervals);
+        let overlap = common_b_set(&space, &self.points).map_or_else(Vec::new, |set| set.intervals);
         let apart = overlap.is_empty();
         let why = if apart { no_common(&space, &self.points) } else { None };
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
@@ -88,7 +88,7 @@ fn inward([from, to]: [f64; 2], decimals: usize, period: f64) -> [String; 2] {
 }
 
 fn table(answer: &Answer) -> String {
-    let mut table = Table::new(["point m", "b_min rad", "b_max rad"]);
+    let mut table = TextTable::new(["point m", "b_min rad", "b_max rad"]);
     let mut rows = |name: String, intervals: &[[f64; 2]]| {
         let first = [name].into_iter().chain(std::iter::repeat(String::new()));
         for (name, [from, to]) in first.zip(intervals) {

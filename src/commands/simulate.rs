@@ -15,7 +15,7 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_output, check_size};
+use super::output::{Format, TextTable, check_output, check_size};
 use stillbase::settings::number::{counted, fixed};
 
 /// Run a scenario and print every signal over time as CSV
@@ -25,7 +25,7 @@ Examples:
   stillbase simulate case-1 -o case-1.csv
   stillbase simulate --every 10 --set payload.mass=0.1 | head
   stillbase simulate case-3 --json")]
-pub struct Simulate {
+pub struct SimulateArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
@@ -144,7 +144,7 @@ impl<T: Serialize> Serialize for Columns<T> {
     }
 }
 
-impl Simulate {
+impl SimulateArguments {
     /// Simulates the scenario and writes its signals as CSV, or the verdict.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
@@ -179,7 +179,7 @@ impl Simulate {
         let verdict = Outcome::of(&run);
         if !self.format.json && !self.writes_csv() {
             self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
-            return trusted(&scenario.name, verdict.audit_failed);
+            return require_audit(&scenario.name, verdict.audit_failed);
         }
         if !self.format.json {
             let past = verdict.peak_moment_past_wheel;
@@ -196,7 +196,7 @@ impl Simulate {
             for remark in &verdict.remarks {
                 say(format!("{}: {remark}", scenario.name));
             }
-            return trusted(&scenario.name, verdict.audit_failed);
+            return require_audit(&scenario.name, verdict.audit_failed);
         }
         let fault = verdict.audit_failed.clone();
         let name = scenario.name.clone();
@@ -208,7 +208,7 @@ impl Simulate {
             verdict,
         };
         self.format.print(&answer, |_| String::new())?;
-        trusted(&name, fault)
+        require_audit(&name, fault)
     }
 
     /// Whether rows are written: to a file, or to standard output if it is not a terminal.
@@ -231,7 +231,7 @@ impl Simulate {
 
 /// Formats the summary that a terminal gets instead of rows.
 fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
-    let mut table = Table::new(["", "", ""]).with_words(2);
+    let mut table = TextTable::new(["", "", ""]).with_words(2);
     let mut row = |name: String, value: f64, decimals: usize, unit: &str| {
         table.row([name, fixed(value, decimals), unit.into()]);
     };
@@ -256,7 +256,7 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
 }
 
 /// Fails if an audit has failed: the figures are printed, but they are no answer.
-pub fn trusted(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
+pub fn require_audit(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
     match fault {
         Some(why) => Err(Failure::untrusted(scenario, why)),
         None => Ok(()),

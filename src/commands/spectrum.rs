@@ -6,13 +6,13 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError};
 use stillbase::study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
-use stillbase::study::spectrum::{JitterLimit, Window};
+use stillbase::study::spectrum::{JitterLimit, WindowFunction};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_output, yes};
-use super::simulate::trusted;
+use super::output::{Format, TextTable, check_output, yes};
+use super::simulate::require_audit;
 use stillbase::settings::number::{counted, fixed, shown};
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
@@ -33,7 +33,7 @@ The exit status is 0 whether limits are kept or not.
 
 JSON keys: scenario, window, samples, step, resolution (Hz); axes {force_x, force_y, moment: {unit, rms, weighted_rms, limit?: {frequency,
 density, limit, ratio, within}}}; frequency[]; density and cumulative_rms {force_x[], force_y[], moment[]}; file with -o.")]
-pub struct SpectrumOf {
+pub struct SpectrumArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
@@ -45,7 +45,7 @@ pub struct SpectrumOf {
     limit_force: Option<JitterLimit>,
     /// How samples are weighted: hann, or rectangular
     #[arg(long, value_name = "WINDOW", default_value = "hann")]
-    window: Window,
+    window: WindowFunction,
     /// Write the spectra to this CSV file
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
@@ -77,7 +77,7 @@ fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
     }
 }
 
-impl SpectrumOf {
+impl SpectrumArguments {
     /// Prints the spectra, and whether they keep within limits.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
@@ -97,16 +97,16 @@ impl SpectrumOf {
         let file = self.output.as_ref().map(|file| file.display().to_string());
         let answer = Answer { file, audit_failed: of.fault.clone(), of };
         self.format.print(&answer, |answer| text(&answer.of))?;
-        trusted(&answer.of.scenario, answer.audit_failed)
+        require_audit(&answer.of.scenario, answer.audit_failed)
     }
 }
 
 fn text(answer: &BaseSpectrum) -> String {
     let window = match answer.window {
-        Window::Hann => "Hann window",
-        Window::Rectangular => "no window",
+        WindowFunction::Hann => "Hann window",
+        WindowFunction::Rectangular => "no window",
     };
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "axis",
         "unit",
         "RMS",
@@ -127,7 +127,7 @@ fn text(answer: &BaseSpectrum) -> String {
     let (samples, step, resolution) = (counted(answer.samples, "sample"), answer.step, fixed(answer.resolution(), 3));
     let head = format!("{} · {samples} by {step} s, {window}, lines by {resolution} Hz", answer.scenario);
     let mut verdicts =
-        Table::new(["limit", "unit", "kept", "worst at Hz", "density", "limit", "density/limit"]).with_words(1);
+        TextTable::new(["limit", "unit", "kept", "worst at Hz", "density", "limit", "density/limit"]).with_words(1);
     let mut any = false;
     for (name, unit, axis) in answer.axes.named() {
         let Some(v) = &axis.limit else { continue };
@@ -137,11 +137,11 @@ fn text(answer: &BaseSpectrum) -> String {
         any = true;
     }
     let why = match answer.window {
-        Window::Hann => {
+        WindowFunction::Hann => {
             "Frequencies and the cumulative RMS are of the samples as the window weighs them, its middle most: it ends at the \
              weighted RMS. --window rectangular weighs all alike.\n"
         }
-        Window::Rectangular => "",
+        WindowFunction::Rectangular => "",
     };
     if any { format!("{head}\n\n{table}{why}\n{verdicts}") } else { format!("{head}\n\n{table}{why}") }
 }

@@ -2,11 +2,11 @@
 
 use clap::Args;
 use stillbase::mechanics::planar::Vector;
-use stillbase::study::workspace::{Inside, WorkspaceReport};
+use stillbase::study::workspace::{WorkspaceInterior, WorkspaceReport};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
-use super::output::{Format, Table, yes};
+use super::output::{Format, TextTable, yes};
 use stillbase::settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
@@ -22,7 +22,7 @@ Examples:
   stillbase workspace nine-link --b 2.4
   stillbase workspace nine-link --b 2.4 --set limits.a1=0.4,2.7 --json
   stillbase workspace nine-link --b 2.4 --at 0.5,0.5 --at 0.55,0.9")]
-pub struct Workspace {
+pub struct WorkspaceArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// Pose constant b, rad
@@ -36,7 +36,7 @@ pub struct Workspace {
     format: Format,
 }
 
-impl Workspace {
+impl WorkspaceArguments {
     /// Prints area, extent and boundary of the workspace, what lies inside, and the measures of given points.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
@@ -60,8 +60,8 @@ impl Workspace {
 }
 
 /// Returns the table for machines that do not have three drives; with two drives the workspace is a curve.
-fn outline(a: &WorkspaceReport) -> Table {
-    let mut table = Table::new(["", "", ""]).with_words(2);
+fn outline(a: &WorkspaceReport) -> TextTable {
+    let mut table = TextTable::new(["", "", ""]).with_words(2);
     let size = match a.length.filter(|_| is_curve(a)) {
         Some(length) => ("length of the curve", length, "m"),
         None => ("area", a.area, "m²"),
@@ -77,8 +77,8 @@ fn is_curve(a: &WorkspaceReport) -> bool {
     a.curve.as_ref().is_some_and(|curve| !curve.is_empty())
 }
 
-fn table(a: &WorkspaceReport, inside: &Inside) -> Table {
-    let mut table = Table::new(["", "", ""]).with_words(2);
+fn table(a: &WorkspaceReport, inside: &WorkspaceInterior) -> TextTable {
+    let mut table = TextTable::new(["", "", ""]).with_words(2);
     // Nine decimals are too few digits for a workspace of millimetres.
     let small = (a.x_max - a.x_min).hypot(a.y_max - a.y_min) < 1e-2;
     let number = |x: f64| if small { format!("{x:.9e}") } else { fixed(x, 9) };
@@ -114,7 +114,7 @@ fn table(a: &WorkspaceReport, inside: &Inside) -> Table {
     table
 }
 
-fn remarks(a: &WorkspaceReport, inside: &Inside) -> String {
+fn remarks(a: &WorkspaceReport, inside: &WorkspaceInterior) -> String {
     let vertices: usize = a.loops.iter().map(Vec::len).sum();
     let count = |n: usize, one: &str, many: &str| match n {
         1 => format!("one {one}"),
@@ -142,12 +142,12 @@ fn remarks(a: &WorkspaceReport, inside: &Inside) -> String {
 }
 
 /// Returns the table of points: angles and measures of each pose.
-fn points(a: &WorkspaceReport, angles: &[String]) -> Table {
+fn points(a: &WorkspaceReport, angles: &[String]) -> TextTable {
     let from = if is_curve(a) { "from curve m" } else { "from boundary m" };
     let det = a.inside.is_some().then_some("det m²");
     let measures = det.into_iter().chain(["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]).map(String::from);
     let head = ["point m", from].map(String::from).into_iter().chain(angles.iter().cloned());
-    let mut table = Table::new(head.chain(measures));
+    let mut table = TextTable::new(head.chain(measures));
     for p in &a.points {
         let numbers = p.poses.iter().map(|pose| {
             let measures = [pose.manipulability, pose.worst_torque_per_force, pose.transmission];
@@ -159,7 +159,7 @@ fn points(a: &WorkspaceReport, angles: &[String]) -> Table {
 }
 
 /// Adds the rows of a point, one for each pose; the first states its place.
-fn add_point(table: &mut Table, [x, y]: [f64; 2], distance: f64, poses: Vec<Vec<f64>>) {
+fn add_point(table: &mut TextTable, [x, y]: [f64; 2], distance: f64, poses: Vec<Vec<f64>>) {
     let mut first = [format!("{x}, {y}"), fixed(distance, 9)];
     if poses.is_empty() {
         table.row(first.clone().into_iter().chain(["no pose".into()]));

@@ -1,7 +1,7 @@
 //! [`Cut`]: dimensions of bars and holes, and the material of discs.
 
 use crate::mechanics::machine::Machine;
-use crate::settings::number::{Short, fixed};
+use crate::settings::number::{ShortNumber, fixed};
 
 /// Dimensions of bars, holes and discs, and the density of discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Cut {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CutError {
     /// A dimension or density that is out of range.
-    #[error("{what} {} {unit}: want a number from {} to {}", Short(*value), Short(*MEASURES.start()), Short(*MEASURES.end()))]
+    #[error("{what} {} {unit}: want a number from {} to {}", ShortNumber(*value), ShortNumber(*MEASURES.start()), ShortNumber(*MEASURES.end()))]
     Measure {
         /// Name of the quantity.
         what: &'static str,
@@ -89,7 +89,7 @@ impl Cut {
         for (link, part) in machine.links().iter().zip(machine.resolved_links()) {
             let apart = part.pins.windows(2).map(|pins| pins[1] - pins[0]);
             // Several positions of one pin differ by rounding.
-            if let Some(apart) = apart.filter(|apart| *apart > SAME).find(|apart| *apart <= diameter) {
+            if let Some(apart) = apart.filter(|apart| *apart > SAME_PIN_DISTANCE).find(|apart| *apart <= diameter) {
                 return Err(CutError::Holes { link: link.name.clone(), apart, diameter });
             }
         }
@@ -110,7 +110,7 @@ impl Cut {
 /// Range of dimensions and densities, in SI units.
 const MEASURES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Pins closer than this are treated as one, m.
-pub const SAME: f64 = 1e-9;
+pub const SAME_PIN_DISTANCE: f64 = 1e-9;
 
 fn measure(what: &'static str, value: Option<f64>, unit: &'static str) -> Result<(), CutError> {
     match value {
@@ -126,7 +126,7 @@ fn disc_area(radius: f64) -> f64 {
 /// Returns the positions of the holes of a link, m from its root, in ascending order.
 pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
     let mut holes = machine.resolved_links()[j].pins.clone();
-    holes.dedup_by(|b, a| *b - *a <= SAME);
+    holes.dedup_by(|b, a| *b - *a <= SAME_PIN_DISTANCE);
     holes
 }
 

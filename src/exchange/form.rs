@@ -3,7 +3,7 @@
 use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
 use super::mjcf::{MjcfError, mjcf};
-use super::parts::Parts;
+use super::parts::PartsList;
 use super::urdf::urdf;
 use crate::mechanics::machine::Machine;
 
@@ -13,13 +13,13 @@ pub struct Form {
     /// Ending of its files' names, without dot.
     pub ending: &'static str,
     /// The part of a machine that it shows.
-    pub shows: Shows,
+    pub shows: ModelContent,
     write: fn(&Machine, &[f64], &Cut) -> Result<String, ExchangeError>,
 }
 
 /// The part of a machine that a file shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shows {
+pub enum ModelContent {
     /// A model with an initial pose.
     Pose,
     /// A model with the joints of its motors.
@@ -33,17 +33,21 @@ pub enum Shows {
 /// All export formats.
 pub const FORMS: [Form; 6] = [
     // For MuJoCo.
-    Form { ending: "xml", shows: Shows::Pose, write: |machine, pose, _| Ok(mjcf(machine, pose)?) },
+    Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, _| Ok(mjcf(machine, pose)?) },
     // For ROS, Pinocchio and others.
-    Form { ending: "urdf", shows: Shows::Joints, write: |machine, _, _| Ok(urdf(machine)) },
+    Form { ending: "urdf", shows: ModelContent::Joints, write: |machine, _, _| Ok(urdf(machine)) },
     // To look at.
-    Form { ending: "svg", shows: Shows::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
+    Form { ending: "svg", shows: ModelContent::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
     // For cutting.
-    Form { ending: "dxf", shows: Shows::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
+    Form { ending: "dxf", shows: ModelContent::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
     // For a spreadsheet.
-    Form { ending: "csv", shows: Shows::Parts, write: |machine, _, cut| Ok(Parts::of(machine, cut)?.csv()) },
+    Form { ending: "csv", shows: ModelContent::Parts, write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()) },
     // To read.
-    Form { ending: "md", shows: Shows::Parts, write: |machine, _, cut| Ok(Parts::of(machine, cut)?.markdown()) },
+    Form {
+        ending: "md",
+        shows: ModelContent::Parts,
+        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.markdown()),
+    },
 ];
 
 /// The default ending.
@@ -72,7 +76,7 @@ pub fn endings() -> [&'static str; FORMS.len()] {
 }
 
 /// Returns the endings of the formats that `of` accepts, as a list in words: `.svg, .dxf or .csv`.
-pub fn listed(of: impl Fn(Shows) -> bool) -> String {
+pub fn listed(of: impl Fn(ModelContent) -> bool) -> String {
     let endings: Vec<String> =
         FORMS.iter().filter(|form| of(form.shows)).map(|form| format!(".{}", form.ending)).collect();
     match endings.as_slice() {

@@ -1,9 +1,9 @@
 //! Appearance of models for other programs.
 
 /// Half the drawn width of a bar, m.
-pub const RADIUS: f64 = 0.012;
+pub const DRAWN_BAR_RADIUS: f64 = 0.012;
 /// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
-pub const COLOURS: [&str; 8] = [
+pub const DRIVE_COLOURS: [&str; 8] = [
     "0.34 0.71 0.91 1",
     "0.84 0.37 0 1",
     "0 0.62 0.45 1",

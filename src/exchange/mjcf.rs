@@ -11,9 +11,9 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use super::look::{COLOURS, RADIUS};
-use super::tree::{Part, Tree};
-use super::turn::Turn;
+use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
+use super::tree::{Tree, TreePart};
+use super::turn::PinAngleSum;
 use super::xml::quoted;
 use crate::mechanics::machine::Machine;
 
@@ -79,11 +79,11 @@ struct Model<'a> {
     /// Names of bodies and hinges.
     tree: Tree<'a>,
     /// The angle of each motor.
-    motors: Vec<Turn>,
+    motors: Vec<PinAngleSum>,
     /// Relative angles with limits: name, sum of pin angles, and limits, rad.
-    limited: Vec<(String, Turn, [f64; 2])>,
+    limited: Vec<(String, PinAngleSum, [f64; 2])>,
     /// Links that need an equality to stay parallel to the first link of their drive, with the angle between the two.
-    parallel: Vec<(usize, Turn)>,
+    parallel: Vec<(usize, PinAngleSum)>,
     out: String,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Model<'a> {
         }
         let motor = |k: usize| {
             let idle = || MjcfError::Idle { drive: machine.spec().drives[k].name.clone() };
-            Turn::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
+            PinAngleSum::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
         };
         let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
         Ok(Self {
@@ -122,7 +122,11 @@ impl<'a> Model<'a> {
         line!(self, 1, "<compiler angle=\"radian\" autolimits=\"true\" inertiafromgeom=\"false\"/>");
         line!(self, 1, "<option gravity=\"{gx} {gy} 0\" timestep=\"0.0005\" integrator=\"implicitfast\"/>");
         line!(self, 1, "<default>");
-        line!(self, 2, "<geom type=\"capsule\" size=\"{RADIUS}\" contype=\"0\" conaffinity=\"0\" mass=\"0\"/>");
+        line!(
+            self,
+            2,
+            "<geom type=\"capsule\" size=\"{DRAWN_BAR_RADIUS}\" contype=\"0\" conaffinity=\"0\" mass=\"0\"/>"
+        );
         line!(self, 2, "<joint type=\"hinge\" axis=\"0 0 1\"/>");
         line!(self, 2, "<equality solref=\"0.002 1\" solimp=\"0.99 0.9999 0.001\"/>");
         line!(self, 1, "</default>");
@@ -160,7 +164,7 @@ impl<'a> Model<'a> {
     /// Writes a link with all links that hang on it.
     fn body(&mut self, depth: usize, j: usize) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
-        let (name, colour) = (self.tree.name(Part::Link(j)), COLOURS[part.drive % COLOURS.len()]);
+        let (name, colour) = (self.tree.name(TreePart::Link(j)), DRIVE_COLOURS[part.drive % DRIVE_COLOURS.len()]);
         let on = part.parent.map_or(1.0, |on| self.machine.resolved_links()[on].sign);
         line!(self, depth, "<body name=\"{name}\" pos=\"{} 0 0\">", on * part.at);
         let limits = self.limited.iter().find(|(_, turn, _)| turn.pin() == Some(j));
@@ -174,11 +178,11 @@ impl<'a> Model<'a> {
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
         for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let (at, radius) = (part.sign * weight.at, weight.radius.max(RADIUS));
+            let (at, radius) = (part.sign * weight.at, weight.radius.max(DRAWN_BAR_RADIUS));
             line!(
                 self,
                 depth + 1,
-                "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{radius} {RADIUS}\" rgba=\"{colour}\"/>"
+                "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{radius} {DRAWN_BAR_RADIUS}\" rgba=\"{colour}\"/>"
             );
         }
         for (number, pinned) in self.machine.loops().iter().enumerate() {
@@ -221,7 +225,7 @@ impl<'a> Model<'a> {
 
     /// Returns the name of a link's hinge.
     fn hinge(&self, j: usize) -> String {
-        self.tree.holder(Part::Link(j))
+        self.tree.holder(TreePart::Link(j))
     }
 
     /// Returns the link that carries the motor of a drive; `None` for the base.
@@ -240,7 +244,7 @@ impl<'a> Model<'a> {
             let parts = self.machine.resolved_links();
             let sign = on.map_or(1.0, |on| parts[on].sign);
             let at = self.motors[k].pin().map_or(0.0, |j| sign * parts[j].at);
-            let (name, hinge) = (self.tree.name(Part::Rotor(k)), self.rotor_hinge(k));
+            let (name, hinge) = (self.tree.name(TreePart::Rotor(k)), self.rotor_hinge(k));
             line!(self, depth, "<body name=\"{name}\" pos=\"{at} 0 0\">");
             line!(self, depth + 1, "<joint name=\"{hinge}\"/>");
             self.inertial(depth + 1, [0.0; 3], ROTOR_MASS_KG, rotor.inertia);
@@ -249,7 +253,7 @@ impl<'a> Model<'a> {
     }
 
     fn rotor_hinge(&self, k: usize) -> String {
-        self.tree.holder(Part::Rotor(k))
+        self.tree.holder(TreePart::Rotor(k))
     }
 
     /// Returns whether the rotor of a drive is a body of the model.
@@ -260,7 +264,7 @@ impl<'a> Model<'a> {
     /// Writes sums of hinge angles as fixed tendons.
     fn tendons(&mut self) {
         let drives = &self.machine.spec().drives;
-        let mut all: Vec<(String, Turn)> = Vec::new();
+        let mut all: Vec<(String, PinAngleSum)> = Vec::new();
         for (k, turn) in self.motors.iter().enumerate().filter(|(_, turn)| turn.pin().is_none()) {
             all.push((format!("drive_{}", quoted(&drives[k].name)), turn.clone()));
         }
@@ -298,7 +302,7 @@ impl<'a> Model<'a> {
         line!(self, 1, "</tendon>");
     }
 
-    fn tendon(&mut self, name: &str, more: &str, turn: &Turn) {
+    fn tendon(&mut self, name: &str, more: &str, turn: &PinAngleSum) {
         line!(self, 2, "<fixed name=\"{name}\"{more}>");
         for (j, coefficient) in &turn.pins {
             let hinge = self.hinge(*j);
@@ -322,7 +326,7 @@ impl<'a> Model<'a> {
             }
         }
         for (j, _) in parallel {
-            let name = self.tree.name(Part::Link(j));
+            let name = self.tree.name(TreePart::Link(j));
             line!(self, 2, "<tendon tendon1=\"direction of {name}\" polycoef=\"0 0 0 0 0\"/>");
         }
         for k in geared {
@@ -379,11 +383,11 @@ impl<'a> Model<'a> {
 }
 
 /// Returns the relative angles with limits: name, sum of pin angles, and limits, rad.
-fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
+fn limited(machine: &Machine) -> Vec<(String, PinAngleSum, [f64; 2])> {
     let angles = machine.angles().iter().filter(|a| a.limits.start().is_finite() && a.limits.end().is_finite());
     angles
         .filter_map(|a| {
-            let turn = Turn::of_drives(machine, Some(a.from), a.to)?;
+            let turn = PinAngleSum::of_drives(machine, Some(a.from), a.to)?;
             Some((format!("angle_{}", quoted(&a.name)), turn, [a.limits.start() - a.offset, a.limits.end() - a.offset]))
         })
         .collect()
@@ -391,7 +395,7 @@ fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
 
 /// Returns the links that need an equality to stay parallel to the first link of their drive, with the angle between
 /// the two. Empty if the loops keep all links parallel.
-fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
+fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     let parts = machine.resolved_links();
     if parts.len() == machine.drives() + 2 * machine.loops().len() {
         return Vec::new();
@@ -399,7 +403,7 @@ fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
     let first = |k: usize| parts.iter().position(|part| part.drive == k);
     let of = |j: usize| {
         let first = first(parts[j].drive).filter(|first| *first != j)?;
-        Some((j, Turn::between(machine, Some(first), j)))
+        Some((j, PinAngleSum::between(machine, Some(first), j)))
     };
     (0..parts.len()).filter_map(of).collect()
 }

@@ -1,13 +1,13 @@
-//! [`Parts`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
+//! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
-use super::cut::{Cut, CutError, SAME};
+use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
 use crate::mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
 use crate::settings::number::fixed;
 use crate::settings::text::sheet_cell;
 
 /// Parts list of a machine, by kinds of parts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parts {
+pub struct PartsList {
     /// The machine's name.
     pub machine: String,
     /// A table for each kind of part that it has, and the totals.
@@ -24,12 +24,12 @@ pub struct PartTable {
     /// Title of each column, with its unit.
     pub head: Vec<&'static str>,
     /// A row for each part.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<PartCell>>,
 }
 
 /// A cell of the table of a part.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
+pub enum PartCell {
     /// A text.
     Words(String),
     /// A number, with its decimals in Markdown.
@@ -38,7 +38,7 @@ pub enum Cell {
     None,
 }
 
-impl Parts {
+impl PartsList {
     /// Makes the parts list of a machine; `cut` gives density and thickness of discs.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl Parts {
             for row in &table.rows {
                 let of = |name: &&str| {
                     let cell = table.head.iter().position(|own| own == name).and_then(|i| row.get(i));
-                    cell.map_or(String::new(), Cell::whole)
+                    cell.map_or(String::new(), PartCell::whole)
                 };
                 text += &line(std::iter::once(table.kind.to_owned()).chain(head.iter().map(of)).collect());
             }
@@ -92,9 +92,9 @@ impl Parts {
 
 impl PartTable {
     fn markdown(&self) -> String {
-        let is_number = |c: usize| self.rows.iter().any(|row| matches!(row.get(c), Some(Cell::Number(..))));
+        let is_number = |c: usize| self.rows.iter().any(|row| matches!(row.get(c), Some(PartCell::Number(..))));
         let mut rows: Vec<Vec<String>> = vec![self.head.iter().map(|name| (*name).to_owned()).collect()];
-        rows.extend(self.rows.iter().map(|row| row.iter().map(Cell::read).collect()));
+        rows.extend(self.rows.iter().map(|row| row.iter().map(PartCell::read).collect()));
         let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).fold(3, usize::max);
         let widths: Vec<usize> = (0..self.head.len()).map(width).collect();
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
@@ -115,7 +115,7 @@ impl PartTable {
     }
 }
 
-impl Cell {
+impl PartCell {
     fn words(text: impl Into<String>) -> Self {
         Self::Words(text.into())
     }
@@ -162,14 +162,14 @@ fn links(machine: &Machine) -> PartTable {
     let row = |(j, link): (usize, &Link)| {
         let pinned = parts[j].parent.map_or("base".into(), |p| on(machine, p, parts[j].at));
         vec![
-            Cell::words(&link.name),
-            Cell::words(&link.drive),
-            Cell::Number(parts[j].length, 4),
-            Cell::Number(link.mass, 3),
-            Cell::Number(link.com, 4),
-            Cell::Number(link.com_normal, 4),
-            Cell::Number(link.inertia, 6),
-            Cell::words(pinned),
+            PartCell::words(&link.name),
+            PartCell::words(&link.drive),
+            PartCell::Number(parts[j].length, 4),
+            PartCell::Number(link.mass, 3),
+            PartCell::Number(link.com, 4),
+            PartCell::Number(link.com_normal, 4),
+            PartCell::Number(link.inertia, 6),
+            PartCell::words(pinned),
         ]
     };
     PartTable {
@@ -193,14 +193,14 @@ fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
     let row = |(i, weight): (usize, &Counterweight)| {
         let thickness = cut.thickness_of(weight.mass, weight.radius);
         vec![
-            Cell::words((i + 1).to_string()),
-            Cell::words(&weight.link),
-            Cell::Number(weight.mass, 3),
-            Cell::Number(weight.at, 4),
-            Cell::Number(weight.radius, 4),
-            Cell::some(thickness, 4),
-            Cell::some(thickness.map(|_| cut.density), 0),
-            Cell::some(thickness.map(|thickness| cut.weighs(weight.radius, thickness)), 3),
+            PartCell::words((i + 1).to_string()),
+            PartCell::words(&weight.link),
+            PartCell::Number(weight.mass, 3),
+            PartCell::Number(weight.at, 4),
+            PartCell::Number(weight.radius, 4),
+            PartCell::some(thickness, 4),
+            PartCell::some(thickness.map(|_| cut.density), 0),
+            PartCell::some(thickness.map(|thickness| cut.weighs(weight.radius, thickness)), 3),
         ]
     };
     PartTable {
@@ -228,11 +228,11 @@ fn payload(machine: &Machine) -> Option<PartTable> {
         title: "Payload",
         head: vec!["on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
         rows: vec![vec![
-            Cell::words(&machine.links()[machine.end_link()].name),
-            Cell::Number(payload.mass, 3),
-            Cell::Number(along, 4),
-            Cell::Number(left, 4),
-            Cell::Number(payload.inertia, 6),
+            PartCell::words(&machine.links()[machine.end_link()].name),
+            PartCell::Number(payload.mass, 3),
+            PartCell::Number(along, 4),
+            PartCell::Number(left, 4),
+            PartCell::Number(payload.inertia, 6),
         ]],
     })
 }
@@ -241,12 +241,12 @@ fn motors(machine: &Machine) -> PartTable {
     let row = |drive: &Drive| {
         let stator = drive.on.as_ref().map_or("base".into(), |on| format!("links of drive {on}"));
         vec![
-            Cell::words(&drive.name),
-            Cell::words(stator),
-            Cell::some(drive.rotor.map(|rotor| rotor.ratio), 3),
-            Cell::some(drive.rotor.map(|rotor| rotor.inertia), 9),
-            Cell::some(drive.torque_limit, 2),
-            Cell::some(drive.speed_limit, 2),
+            PartCell::words(&drive.name),
+            PartCell::words(stator),
+            PartCell::some(drive.rotor.map(|rotor| rotor.ratio), 3),
+            PartCell::some(drive.rotor.map(|rotor| rotor.inertia), 9),
+            PartCell::some(drive.torque_limit, 2),
+            PartCell::some(drive.speed_limit, 2),
         ]
     };
     PartTable {
@@ -266,7 +266,7 @@ fn on(machine: &Machine, j: usize, at: f64) -> String {
 fn pins(machine: &Machine) -> PartTable {
     let mut pins: Vec<(Chain, Vec<String>)> = Vec::new();
     let mut join = |point: Chain, words: String| {
-        let is_there = |pin: &Chain| pin.iter().zip(&point).all(|(a, b)| (a - b).abs() <= SAME);
+        let is_there = |pin: &Chain| pin.iter().zip(&point).all(|(a, b)| (a - b).abs() <= SAME_PIN_DISTANCE);
         match pins.iter_mut().find(|(pin, _)| is_there(pin)) {
             Some((_, joined)) if joined.contains(&words) => {}
             Some((_, joined)) => joined.push(words),
@@ -284,7 +284,7 @@ fn pins(machine: &Machine) -> PartTable {
         join(parts[closing.b].point(closing.at_b), on(machine, closing.b, closing.at_b));
     }
     let row = |(i, (_, joined)): (usize, (Chain, Vec<String>))| {
-        vec![Cell::words((i + 1).to_string()), Cell::words(joined.join(" · "))]
+        vec![PartCell::words((i + 1).to_string()), PartCell::words(joined.join(" · "))]
     };
     PartTable {
         kind: "pin",
@@ -299,8 +299,8 @@ fn totals(machine: &Machine) -> PartTable {
     let links = spec.links.iter().map(|link| link.mass).sum::<f64>();
     let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>();
     let row = |name: &str, count: Option<usize>, mass: f64| {
-        let count = count.map_or(Cell::None, |count| Cell::Number(count as f64, 0));
-        vec![Cell::words(name), count, Cell::Number(mass, 3)]
+        let count = count.map_or(PartCell::None, |count| PartCell::Number(count as f64, 0));
+        vec![PartCell::words(name), count, PartCell::Number(mass, 3)]
     };
     PartTable {
         kind: "total",

@@ -17,7 +17,7 @@ use crate::mechanics::machine::Machine;
 
 /// A part of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
+pub enum TreePart {
     Base,
     /// A link of the machine, by its index.
     Link(usize),
@@ -44,17 +44,17 @@ pub enum Turns {
 
 /// A joint between two parts, at position `at` along the parent's x axis, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
-    pub parent: Part,
+pub struct TreeJoint {
+    pub parent: TreePart,
     pub at: f64,
-    pub child: Part,
+    pub child: TreePart,
     pub turns: Turns,
 }
 
 /// All joints: those of motors first, in the order of the drives.
 pub struct Tree<'a> {
     machine: &'a Machine,
-    pub joints: Vec<Joint>,
+    pub joints: Vec<TreeJoint>,
 }
 
 impl<'a> Tree<'a> {
@@ -75,23 +75,23 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the name of a part.
-    pub fn name(&self, part: Part) -> String {
+    pub fn name(&self, part: TreePart) -> String {
         let spec = self.machine.spec();
         let link = |j: usize| quoted(&self.machine.links()[j].name);
         let drive = |k: usize| quoted(&spec.drives[k].name);
         match part {
-            Part::Base => "base".into(),
-            Part::Link(j) => format!("link_{}", link(j)),
-            Part::Shaft(k) => format!("shaft_{}", drive(k)),
-            Part::Rotor(k) => format!("rotor_{}", drive(k)),
-            Part::Between(j, number) => format!("pin_{number}_of_link_{}", link(j)),
-            Part::End => "end_effector".into(),
-            Part::Payload => "payload".into(),
+            TreePart::Base => "base".into(),
+            TreePart::Link(j) => format!("link_{}", link(j)),
+            TreePart::Shaft(k) => format!("shaft_{}", drive(k)),
+            TreePart::Rotor(k) => format!("rotor_{}", drive(k)),
+            TreePart::Between(j, number) => format!("pin_{number}_of_link_{}", link(j)),
+            TreePart::End => "end_effector".into(),
+            TreePart::Payload => "payload".into(),
         }
     }
 
     /// Returns the name of a joint.
-    pub fn joint_name(&self, joint: &Joint) -> String {
+    pub fn joint_name(&self, joint: &TreeJoint) -> String {
         match joint.turns {
             Turns::Motor(k) => format!("drive_{}", quoted(&self.machine.spec().drives[k].name)),
             _ => format!("joint_{}", self.name(joint.child)),
@@ -99,7 +99,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the name of the joint that carries a part.
-    pub fn holder(&self, part: Part) -> String {
+    pub fn holder(&self, part: TreePart) -> String {
         let joint = self.joints.iter().find(|joint| joint.child == part);
         joint.map_or_else(|| format!("joint_{}", self.name(part)), |joint| self.joint_name(joint))
     }
@@ -107,21 +107,21 @@ impl<'a> Tree<'a> {
     /// Returns whether each joint comes after the joint that it mimics, from the root to the tips. This must hold in
     /// the order of the file and in that of the joints' names, by which some programs sort them.
     fn is_readable(&self) -> bool {
-        let mut by_name: Vec<(String, &Joint)> =
+        let mut by_name: Vec<(String, &TreeJoint)> =
             self.joints.iter().map(|joint| (self.joint_name(joint), joint)).collect();
         by_name.sort_by(|(a, _), (b, _)| a.cmp(b));
-        let by_name: Vec<&Joint> = by_name.into_iter().map(|(_, joint)| joint).collect();
+        let by_name: Vec<&TreeJoint> = by_name.into_iter().map(|(_, joint)| joint).collect();
         is_ordered(&self.joints.iter().collect::<Vec<_>>()) && is_ordered(&by_name)
     }
 }
 
 /// Returns whether each joint comes after the joint that it mimics, depth first.
-fn is_ordered(joints: &[&Joint]) -> bool {
-    let mut below: BTreeMap<Part, Vec<&Joint>> = BTreeMap::new();
+fn is_ordered(joints: &[&TreeJoint]) -> bool {
+    let mut below: BTreeMap<TreePart, Vec<&TreeJoint>> = BTreeMap::new();
     for joint in joints.iter().rev() {
         below.entry(joint.parent).or_default().push(joint);
     }
-    let (mut open, mut seen) = (below.remove(&Part::Base).unwrap_or_default(), Vec::new());
+    let (mut open, mut seen) = (below.remove(&TreePart::Base).unwrap_or_default(), Vec::new());
     while let Some(joint) = open.pop() {
         match joint.turns {
             Turns::Motor(k) => seen.push(k),
@@ -134,29 +134,29 @@ fn is_ordered(joints: &[&Joint]) -> bool {
 }
 
 /// Returns the joints of a machine; `turned` holds the link that each motor turns, `None` for a shaft.
-fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
+fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<TreeJoint> {
     let parts = machine.resolved_links();
     let motors = machine.motors();
     let root = |j: usize| match parts[j].parent {
-        None => (Part::Base, 0.0),
-        Some(parent) => (Part::Link(parent), parts[parent].sign * parts[j].at),
+        None => (TreePart::Base, 0.0),
+        Some(parent) => (TreePart::Link(parent), parts[parent].sign * parts[j].at),
     };
-    let driven = |k: usize| turned[k].map_or(Part::Shaft(k), Part::Link);
+    let driven = |k: usize| turned[k].map_or(TreePart::Shaft(k), TreePart::Link);
     // A shaft sits at the root of the part that turns with the drive carrying its motor.
     let seat = |k: usize| match (turned[k], motors.on(k)) {
         (Some(j), _) => root(j),
         (None, Some(on)) => (driven(on), 0.0),
-        (None, None) => (Part::Base, 0.0),
+        (None, None) => (TreePart::Base, 0.0),
     };
     let mut joints = Vec::new();
     for k in 0..machine.drives() {
         let (parent, at) = seat(k);
-        joints.push(Joint { parent, at, child: driven(k), turns: Turns::Motor(k) });
+        joints.push(TreeJoint { parent, at, child: driven(k), turns: Turns::Motor(k) });
     }
     for (k, drive) in machine.spec().drives.iter().enumerate() {
         if let Some(rotor) = drive.rotor {
             let (parent, at) = seat(k);
-            joints.push(Joint { parent, at, child: Part::Rotor(k), turns: Turns::Follows(k, rotor.ratio) });
+            joints.push(TreeJoint { parent, at, child: TreePart::Rotor(k), turns: Turns::Follows(k, rotor.ratio) });
         }
     }
     for j in (0..parts.len()).filter(|j| !turned.contains(&Some(*j))) {
@@ -167,17 +167,17 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
             None => (Turns::Not, &[][..]),
         };
         for (number, (k, sign)) in first.iter().enumerate() {
-            let child = Part::Between(j, number + 1);
-            joints.push(Joint { parent, at, child, turns: Turns::Follows(*k, *sign) });
+            let child = TreePart::Between(j, number + 1);
+            joints.push(TreeJoint { parent, at, child, turns: Turns::Follows(*k, *sign) });
             (parent, at) = (child, 0.0);
         }
-        joints.push(Joint { parent, at, child: Part::Link(j), turns: last });
+        joints.push(TreeJoint { parent, at, child: TreePart::Link(j), turns: last });
     }
     let (j, payload) = (machine.end_link(), machine.spec().payload);
     let at = machine.end_effector()[parts[j].drive] - parts[j].root[parts[j].drive];
-    joints.push(Joint { parent: Part::Link(j), at, child: Part::End, turns: Turns::Not });
+    joints.push(TreeJoint { parent: TreePart::Link(j), at, child: TreePart::End, turns: Turns::Not });
     if payload.mass > 0.0 || payload.inertia > 0.0 {
-        joints.push(Joint { parent: Part::End, at: 0.0, child: Part::Payload, turns: Turns::Not });
+        joints.push(TreeJoint { parent: TreePart::End, at: 0.0, child: TreePart::Payload, turns: Turns::Not });
     }
     joints
 }

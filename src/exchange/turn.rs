@@ -1,16 +1,16 @@
-//! [`Turn`]: an angle between links as a sum of pin angles.
+//! [`PinAngleSum`]: an angle between links as a sum of pin angles.
 
 use crate::mechanics::machine::Machine;
 
 /// A sum of pin angles with signs. The angle of the pin at a link's root is that of its drive relative to its parent's
 /// drive, or to the x axis of the base.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turn {
+pub struct PinAngleSum {
     /// Indices of the links whose root pins these are, each with sign 1 or −1.
     pub pins: Vec<(usize, f64)>,
 }
 
-impl Turn {
+impl PinAngleSum {
     /// Returns the angle from the drive of link `from` to that of link `to`; `None`: from the x axis of the base.
     pub fn between(machine: &Machine, from: Option<usize>, to: usize) -> Self {
         let (down, up) = (pins(machine, Some(to)), pins(machine, from));

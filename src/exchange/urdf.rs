@@ -17,9 +17,9 @@
 //! `<stillbase>`, which other programs ignore and [`import`](super::import) reads. Friction, springs and the base's own
 //! motion belong to a scenario. Inertias about axes in the plane do not affect a plane motion and are invented.
 
-use super::look::{COLOURS, RADIUS};
-use super::tree::{Joint, Part, Tree, Turns};
-use super::xml::{Lines, quoted, remark};
+use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
+use super::tree::{Tree, TreeJoint, TreePart, Turns};
+use super::xml::{XmlWriter, quoted, remark};
 use crate::mechanics::machine::{Machine, Payload, RelativeAngle};
 
 /// Mass of auxiliary links as a fraction of the machine's mass: some programs read a link without mass as one of 1 kg.
@@ -47,7 +47,7 @@ struct Model<'a> {
     tree: Tree<'a>,
     /// Mass, kg, and inertia, kg m², of an auxiliary link.
     least: f64,
-    lines: Lines,
+    lines: XmlWriter,
 }
 
 /// A rigid body in the frame of its link.
@@ -66,7 +66,7 @@ impl<'a> Model<'a> {
             machine,
             tree: Tree::of(machine),
             least: AUXILIARY_MASS_FRACTION * machine.mass(),
-            lines: Lines::default(),
+            lines: XmlWriter::default(),
         }
     }
 
@@ -76,7 +76,7 @@ impl<'a> Model<'a> {
         self.lines.add(0, format_args!("<robot name=\"{name}\">"));
         self.remark("Axes of all joints are parallel to z of base. Only the joints drive_… move by themselves.");
         self.remark("Links pin_… and shaft_… have no mass to speak of: they add up angles, one joint a motor.");
-        for (k, colour) in COLOURS.iter().enumerate().take(self.machine.drives()) {
+        for (k, colour) in DRIVE_COLOURS.iter().enumerate().take(self.machine.drives()) {
             let drive = quoted(&self.machine.spec().drives[k].name);
             self.lines.add(1, format_args!("<material name=\"drive_{drive}\"><color rgba=\"{colour}\"/></material>"));
         }
@@ -123,7 +123,7 @@ impl<'a> Model<'a> {
             }
         }
         for pin in machine.loops() {
-            let name = |j: usize| self.tree.name(Part::Link(j));
+            let name = |j: usize| self.tree.name(TreePart::Link(j));
             let at = |j: usize, at: f64| machine.resolved_links()[j].sign * at;
             let (a, b) = (name(pin.a), name(pin.b));
             let [at_a, at_b] = [at(pin.a, pin.at_a), at(pin.b, pin.at_b)];
@@ -151,7 +151,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    fn joint(&mut self, joint: &Joint) {
+    fn joint(&mut self, joint: &TreeJoint) {
         let (name, parent, child) =
             (self.tree.joint_name(joint), self.tree.name(joint.parent), self.tree.name(joint.child));
         let (kind, more) = match joint.turns {
@@ -190,30 +190,30 @@ impl<'a> Model<'a> {
         (kind, format!("<limit{range} effort=\"{effort}\" velocity=\"{velocity}\"/>"))
     }
 
-    fn part(&mut self, part: Part) {
+    fn part(&mut self, part: TreePart) {
         let machine = self.machine;
         let body = match part {
-            Part::Link(j) => {
+            TreePart::Link(j) => {
                 let (link, sign) = (&machine.links()[j], machine.resolved_links()[j].sign);
                 let at = [sign * link.com, sign * link.com_normal, link.axial];
                 Body { at, mass: link.mass, inertia: link.inertia }
             }
             // Its mass belongs to the link that carries it.
-            Part::Rotor(k) => {
+            TreePart::Rotor(k) => {
                 let inertia = machine.spec().drives[k].rotor.map_or(self.least, |rotor| rotor.inertia);
                 Body { inertia, ..self.auxiliary() }
             }
-            Part::Payload => {
+            TreePart::Payload => {
                 let (payload, sign) = (machine.spec().payload, machine.resolved_links()[machine.end_link()].sign);
                 let [along, left] = payload.offset.map(|x| sign * x);
                 Body { at: [along, left, payload.axial], ..Body::from(payload) }
             }
-            Part::Base | Part::Shaft(_) | Part::Between(..) | Part::End => self.auxiliary(),
+            TreePart::Base | TreePart::Shaft(_) | TreePart::Between(..) | TreePart::End => self.auxiliary(),
         };
         let name = self.tree.name(part);
         self.lines.add(1, format_args!("<link name=\"{name}\">"));
         self.inertial(&body);
-        if let Part::Link(j) = part {
+        if let TreePart::Link(j) = part {
             self.shape(j);
         }
         self.lines.add(1, format_args!("</link>"));
@@ -241,11 +241,12 @@ impl<'a> Model<'a> {
         let machine = self.machine;
         let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
         let ends = part.pins.iter().fold([0.0_f64, part.length], |[least, most], at| [least.min(*at), most.max(*at)]);
-        let (middle, length) = (part.sign * 0.5 * (ends[0] + ends[1]), ends[1] - ends[0] + 2.0 * RADIUS);
-        let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * RADIUS, 0.5 * RADIUS);
+        let (middle, length) = (part.sign * 0.5 * (ends[0] + ends[1]), ends[1] - ends[0] + 2.0 * DRAWN_BAR_RADIUS);
+        let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
         self.visual(part.drive, middle, &bar);
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let disc = format!("<cylinder radius=\"{}\" length=\"{RADIUS}\"/>", weight.radius.max(RADIUS));
+            let disc =
+                format!("<cylinder radius=\"{}\" length=\"{DRAWN_BAR_RADIUS}\"/>", weight.radius.max(DRAWN_BAR_RADIUS));
             self.visual(part.drive, part.sign * weight.at, &disc);
         }
     }

@@ -4,11 +4,11 @@ use std::fmt::{Arguments, Write as _};
 
 /// A text that grows line by line.
 #[derive(Debug, Default)]
-pub struct Lines {
+pub struct XmlWriter {
     out: String,
 }
 
-impl Lines {
+impl XmlWriter {
     /// Adds a line, indented by `depth` steps.
     pub fn add(&mut self, depth: usize, line: Arguments<'_>) {
         // Writing to a `String` never fails.

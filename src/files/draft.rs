@@ -1,4 +1,4 @@
-//! [`Draft`]: a temporary file in the folder of the file that it will become, and its removal if the program ends.
+//! [`TemporaryFile`]: a temporary file in the folder of the file that it will become, and its removal if the program ends.
 //!
 //! The crate `tempfile` makes temporary files too, but does not do three things that this module does. Temporary files
 //! of killed programs are found by their names and released locks, and removed. A signal handler can remove all drafts
@@ -11,7 +11,7 @@ use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::fault::Step;
+use super::fault::WriteStep;
 
 pub(super) fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -26,16 +26,16 @@ pub(super) fn making() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 
 /// Guard after [`abandon`]: while it lives, no draft can begin or take its final name.
 #[derive(Debug)]
-pub struct Abandoned(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
+pub struct WriteBlock(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
 
 /// Removes all temporary files, before the program ends.
-pub fn abandon() -> Abandoned {
+pub fn abandon() -> WriteBlock {
     let parts = making();
     for part in parts.iter() {
         // Errors cannot be reported any more.
         let _ = fs::remove_file(part);
     }
-    Abandoned(parts)
+    WriteBlock(parts)
 }
 
 /// Ending of the names of temporary files.
@@ -71,19 +71,19 @@ fn sweep(folder: &Path) {
 
 /// A temporary file in the folder of the file that it will become.
 #[derive(Debug)]
-pub(super) struct Draft {
+pub(super) struct TemporaryFile {
     pub part: PathBuf,
     pub file: PathBuf,
 }
 
-impl Draft {
+impl TemporaryFile {
     /// Creates a locked temporary file for `file`.
     pub fn create(file: PathBuf) -> io::Result<(Self, File)> {
         sweep(folder_of(&file));
         let mut parts = making();
         for attempt in 0..1000 {
             let part = part_of(&file, attempt);
-            super::fault::at(Step::Fallible)?;
+            super::fault::fail_if_due(WriteStep::Fallible)?;
             let out = match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
                 out => out?,
@@ -99,7 +99,7 @@ impl Draft {
     }
 }
 
-impl Drop for Draft {
+impl Drop for TemporaryFile {
     fn drop(&mut self) {
         let mut parts = making();
         // The file no longer exists if it has taken its final name. If it cannot be removed, a later sweep tries again.
@@ -110,11 +110,11 @@ impl Drop for Draft {
 
 /// A file whose writing can fail by an injected fault.
 #[derive(Debug)]
-pub(super) struct Checked(pub File);
+pub(super) struct FallibleFile(pub File);
 
-impl Write for Checked {
+impl Write for FallibleFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if super::fault::is_due(Step::Fallible) {
+        if super::fault::is_due(WriteStep::Fallible) {
             self.0.write_all(&bytes[..bytes.len() / 2])?;
             super::fault::strike()?;
         }
@@ -125,7 +125,7 @@ impl Write for Checked {
     }
 }
 
-impl Seek for Checked {
+impl Seek for FallibleFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.0.seek(to)
     }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 
 /// A step of writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum WriteStep {
     /// Creating, writing, syncing or renaming: each can fail.
     Fallible,
     /// Cleaning up, where a failure does no harm: an injected fault can only end the program there.
@@ -23,7 +23,7 @@ static ENDS_PROGRAM: AtomicBool = AtomicBool::new(false);
 
 /// Sets the fault: `fail:3` fails at the third step, `end:3` ends the program there.
 #[cfg(debug_assertions)]
-pub fn arm(wanted: &str) {
+pub fn arm_fault(wanted: &str) {
     if let Some((how, n)) = wanted.split_once(':') {
         ENDS_PROGRAM.store(how == "end", Relaxed);
         STEPS_TO_FAULT.store(n.parse().unwrap_or(0), Relaxed);
@@ -32,8 +32,8 @@ pub fn arm(wanted: &str) {
 
 /// Counts a step and returns whether the fault is due at it; if so, the caller calls [`strike`].
 #[cfg(debug_assertions)]
-pub(super) fn is_due(step: Step) -> bool {
-    (step == Step::Fallible || ENDS_PROGRAM.load(Relaxed)) && STEPS_TO_FAULT.fetch_sub(1, Relaxed) == 1
+pub(super) fn is_due(step: WriteStep) -> bool {
+    (step == WriteStep::Fallible || ENDS_PROGRAM.load(Relaxed)) && STEPS_TO_FAULT.fetch_sub(1, Relaxed) == 1
 }
 
 /// Executes the fault.
@@ -47,7 +47,7 @@ pub(super) fn strike() -> io::Result<()> {
 }
 
 #[cfg(not(debug_assertions))]
-pub(super) fn is_due(_: Step) -> bool {
+pub(super) fn is_due(_: WriteStep) -> bool {
     false
 }
 
@@ -57,6 +57,6 @@ pub(super) fn strike() -> io::Result<()> {
 }
 
 /// Counts a step and executes the fault if it is due.
-pub(super) fn at(step: Step) -> io::Result<()> {
+pub(super) fn fail_if_due(step: WriteStep) -> io::Result<()> {
     if is_due(step) { strike() } else { Ok(()) }
 }

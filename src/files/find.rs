@@ -4,11 +4,11 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::text::read;
-use crate::exchange::import::{Imported, import};
+use crate::exchange::import::{ImportedMachine, import};
 use crate::mechanics::machine::{self, FileError, Machine, MachineError};
-use crate::session::around;
-use crate::session::scenario::{Content, Scenario, ScenarioError, TaskKind, content};
-use crate::settings::number::Short;
+use crate::session::gentle_motion;
+use crate::session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use crate::settings::number::ShortNumber;
 use crate::settings::range::shortened;
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
@@ -31,7 +31,7 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
         Ok(text) => {
             let file = file.display().to_string();
             machine::parse(&text, &file).map_err(|why| match content(&text) {
-                Some(Content::Scenario) => other(file),
+                Some(FileContent::Scenario) => other(file),
                 _ => why,
             })
         }
@@ -44,7 +44,7 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
 
 /// A scenario, with a note on its origin.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct FoundScenario {
     /// The scenario.
     pub scenario: Scenario,
     /// Note that it was made for a machine, if so.
@@ -56,9 +56,9 @@ pub struct Found {
 ///
 /// # Errors
 /// If it is neither, or if the file is neither a scenario nor a machine.
-pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
+pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
-        return Ok(Found { scenario, made: None });
+        return Ok(FoundScenario { scenario, made: None });
     }
     let file = Path::new(name);
     let said = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
@@ -77,21 +77,21 @@ pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
     };
     // A model of another program: TOML cannot begin with this character.
     if text.trim_start().starts_with('<') {
-        let Imported { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
-        let Found { scenario, made } = made(name, &machine)?;
+        let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
+        let FoundScenario { scenario, made } = made(name, &machine)?;
         let made = made.into_iter().chain(notes).collect::<Vec<_>>().join("; ");
-        return Ok(Found { scenario, made: Some(made) });
+        return Ok(FoundScenario { scenario, made: Some(made) });
     }
-    if content(&text) == Some(Content::Machine) {
+    if content(&text) == Some(FileContent::Machine) {
         return made(name, &machine::parse(&text, &shortened(name, 300))?);
     }
     let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
-    Ok(Found { scenario, made: None })
+    Ok(FoundScenario { scenario, made: None })
 }
 
 /// Makes a scenario for a machine, whose name or file is `name`.
-fn made(name: &str, machine: &Machine) -> Result<Found, ScenarioError> {
-    let scenario = around(machine)?;
+fn made(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
+    let scenario = gentle_motion(machine)?;
     let task = &scenario.task;
     let made = format!(
         "{} is a machine, so a task was made for it: {} from {:.3}, {:.3} to {:.3}, {:.3} m in {} s",
@@ -101,7 +101,7 @@ fn made(name: &str, machine: &Machine) -> Result<Found, ScenarioError> {
         task.from[1],
         task.to[0],
         task.to[1],
-        Short(task.time)
+        ShortNumber(task.time)
     );
-    Ok(Found { scenario, made: Some(made) })
+    Ok(FoundScenario { scenario, made: Some(made) })
 }

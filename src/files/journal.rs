@@ -26,7 +26,7 @@ pub struct Journal {
 
 /// A journal of a program that did not end normally.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct LeftoverJournal {
     /// File of the session.
     pub file: PathBuf,
     /// Time of its last change.
@@ -65,7 +65,7 @@ impl Journal {
 
     /// Removes it, so that no recovery is offered at the next start.
     pub fn end(self) {
-        forget(&self.file);
+        remove_journal(&self.file);
         let (name, lock) = self.lock;
         // Removed while still locked, so that no other program locks a file that is about to be removed.
         let _ = fs::remove_file(name);
@@ -82,21 +82,21 @@ pub fn write(file: &Path, text: &str) -> Result<(), WriteError> {
 }
 
 /// Returns the journals of programs that did not end normally, newest first.
-pub fn left(folder: &Path) -> Vec<Left> {
+pub fn leftover_journals(folder: &Path) -> Vec<LeftoverJournal> {
     let of = |number: usize| {
         let [file, name] = names(folder, number);
         let about = file.symlink_metadata().ok().filter(fs::Metadata::is_file)?;
         // If the lock is held, its program still runs.
         locked(&name)?;
-        Some(Left { file, when: about.modified().ok()? })
+        Some(LeftoverJournal { file, when: about.modified().ok()? })
     };
-    let mut all: Vec<Left> = (0..MAX_JOURNALS).filter_map(of).collect();
+    let mut all: Vec<LeftoverJournal> = (0..MAX_JOURNALS).filter_map(of).collect();
     all.sort_by_key(|left| std::cmp::Reverse(left.when));
     all
 }
 
 /// Removes a journal.
-pub fn forget(file: &Path) {
+pub fn remove_journal(file: &Path) {
     // A journal that cannot be removed is offered again, and nothing is lost.
     let _ = fs::remove_file(file);
 }

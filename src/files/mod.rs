@@ -16,11 +16,11 @@ pub mod shards;
 pub mod table;
 pub mod text;
 
-pub use draft::{Abandoned, abandon};
-pub use find::{Found, machine, scenario};
+pub use draft::{WriteBlock, abandon};
+pub use find::{FoundScenario, machine, scenario};
 pub use new_file::{NewFile, WriteError, check_new, finish_all, free_name, made, write_new};
 
 /// Returns the absolute path of an existing file.
-pub fn whole(file: &std::path::Path) -> Option<std::path::PathBuf> {
+pub fn absolute_path(file: &std::path::Path) -> Option<std::path::PathBuf> {
     file.canonicalize().ok()
 }

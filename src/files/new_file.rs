@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::draft::{Checked, Draft, PART_ENDING, folder_of, making};
-use super::fault::Step;
+use super::draft::{FallibleFile, PART_ENDING, TemporaryFile, folder_of, making};
+use super::fault::WriteStep;
 
 /// Why a file was not written.
 #[derive(Debug, Error)]
@@ -76,8 +76,8 @@ pub struct NewFile {
     force: bool,
     /// Whether the file that it replaces has further hard links, which are to have the new content too.
     has_other_names: bool,
-    out: BufWriter<Checked>,
-    draft: Draft,
+    out: BufWriter<FallibleFile>,
+    draft: TemporaryFile,
 }
 
 /// The file that a new file replaces.
@@ -120,12 +120,12 @@ impl NewFile {
         let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
         let failed = |source| WriteError::Failed { file: file.into(), source };
         let before = Before::of(&target);
-        let (draft, out) = Draft::create(target).map_err(failed)?;
+        let (draft, out) = TemporaryFile::create(target).map_err(failed)?;
         if let Some(before) = &before {
             before.lend_access(&out).map_err(failed)?;
         }
         let has_other_names = before.is_some_and(|before| before.has_other_names);
-        Ok(Self { requested: file.into(), force, has_other_names, out: BufWriter::new(Checked(out)), draft })
+        Ok(Self { requested: file.into(), force, has_other_names, out: BufWriter::new(FallibleFile(out)), draft })
     }
 
     /// Returns the requested path.
@@ -174,14 +174,14 @@ impl NewFile {
         let synced = self
             .out
             .flush()
-            .and_then(|()| super::fault::at(Step::Fallible))
+            .and_then(|()| super::fault::fail_if_due(WriteStep::Fallible))
             .and_then(|()| self.out.get_ref().0.sync_all());
         synced.map_err(|source| self.failed(source))
     }
 
     /// Gives the file its final name. If `keep`, a file that it replaces is kept under another name.
     fn take_name(&self, keep: bool) -> Result<Taken, WriteError> {
-        let Draft { part, file } = &self.draft;
+        let TemporaryFile { part, file } = &self.draft;
         check_new(&self.requested, self.force)?;
         let in_place = self.has_other_names;
         let before = if self.force && (keep || in_place) { aside(part, file, in_place) } else { None };
@@ -191,7 +191,7 @@ impl NewFile {
             (true, true, Some(before)) => copy_into(part, file).inspect_err(|_| _ = copy_into(before, file)),
             (true, true, None) => Err(io::Error::other("no room for a copy of what it replaces")),
         };
-        match super::fault::at(Step::Fallible).and_then(named) {
+        match super::fault::fail_if_due(WriteStep::Fallible).and_then(named) {
             Ok(()) => Ok(Taken { file: file.clone(), before, in_place }),
             Err(error) => {
                 before.map(fs::remove_file);
@@ -208,7 +208,7 @@ impl NewFile {
 fn link(part: &Path, file: &Path) -> io::Result<()> {
     match fs::hard_link(part, file) {
         Ok(()) => {
-            if super::fault::at(Step::Tidy).is_ok() {
+            if super::fault::fail_if_due(WriteStep::Tidy).is_ok() {
                 // Otherwise it is removed with the draft.
                 let _ = fs::remove_file(part);
             }
@@ -227,7 +227,7 @@ fn link(part: &Path, file: &Path) -> io::Result<()> {
 /// atomic: if the program ends in between, both versions remain under temporary names until the next file is written.
 fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
     let (mut from, mut to) = (File::open(from)?, OpenOptions::new().write(true).truncate(true).open(to)?);
-    super::fault::at(Step::Tidy)?;
+    super::fault::fail_if_due(WriteStep::Tidy)?;
     io::copy(&mut from, &mut to)?;
     to.sync_all()
 }
@@ -295,7 +295,7 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
     }
     drop(parts);
     for file in &files {
-        let synced = super::fault::at(Step::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
+        let synced = super::fault::fail_if_due(WriteStep::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
         synced.map_err(|source| WriteError::Unsynced { file: file.requested.clone(), source })?;
     }
     Ok(())

@@ -4,22 +4,22 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use crate::settings::text::MOST_BYTES;
+use crate::settings::text::MAX_TEXT_BYTES;
 
-/// Reads a plain text file of at most [`MOST_BYTES`].
+/// Reads a plain text file of at most [`MAX_TEXT_BYTES`].
 ///
 /// # Errors
 /// If it is not such a file, or cannot be read.
 pub fn read(file: &Path) -> io::Result<String> {
     // Opening a pipe would block until its other end is opened.
-    check(&fs::metadata(file)?, MOST_BYTES)?;
+    check(&fs::metadata(file)?, MAX_TEXT_BYTES)?;
     let opened = File::open(file)?;
-    check(&opened.metadata()?, MOST_BYTES)?;
+    check(&opened.metadata()?, MAX_TEXT_BYTES)?;
     let mut text = String::new();
     // The file may grow, and some files report no length.
-    opened.take(MOST_BYTES + 1).read_to_string(&mut text)?;
+    opened.take(MAX_TEXT_BYTES + 1).read_to_string(&mut text)?;
     let length = text.len() as u64;
-    if length > MOST_BYTES { Err(too_long(length)) } else { Ok(text) }
+    if length > MAX_TEXT_BYTES { Err(too_long(length)) } else { Ok(text) }
 }
 
 /// Checks that a file is a plain file of at most `most` bytes.
@@ -36,5 +36,5 @@ pub fn check(file: &Metadata, most: u64) -> io::Result<()> {
 }
 
 fn too_long(length: u64) -> io::Error {
-    io::Error::new(ErrorKind::FileTooLarge, format!("{length} bytes or more, where {MOST_BYTES} are the most"))
+    io::Error::new(ErrorKind::FileTooLarge, format!("{length} bytes or more, where {MAX_TEXT_BYTES} are the most"))
 }

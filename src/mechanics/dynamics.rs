@@ -15,7 +15,7 @@
 //! (4) with the sign of gravity corrected: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
 
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, Wrench, cross, dot};
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, Wrench, cross, dot};
 
 /// Calls a function with the number of drives as a constant, so that its loops unroll.
 macro_rules! by_drives {
@@ -85,7 +85,7 @@ impl MassMatrix {
     }
 
     fn trimmed<const N: usize>(&self) -> Square<N> {
-        std::array::from_fn(|k| *first(&self.h[k]))
+        std::array::from_fn(|k| *leading_entries(&self.h[k]))
     }
 }
 
@@ -95,21 +95,21 @@ pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
 /// Returns the first N elements of a padded array.
 #[inline]
-pub(crate) fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
+pub(crate) fn leading_entries<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
     const { assert!(N <= MAX_DRIVES) }
     &padded.as_chunks().0[0]
 }
 
 fn times_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
-    times(&h.trimmed::<N>(), first(x.padded())).into()
+    matrix_times(&h.trimmed::<N>(), leading_entries(x.padded())).into()
 }
 
 fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
-    solve(&h.trimmed::<N>(), *first(x.padded())).into()
+    solve(&h.trimmed::<N>(), *leading_entries(x.padded())).into()
 }
 
 #[inline(always)]
-pub(crate) fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
+pub(crate) fn matrix_times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
 
@@ -155,12 +155,12 @@ fn solve<const N: usize>(h: &Square<N>, x: [f64; N]) -> [f64; N] {
 
 /// Computes the mass matrix H, kg m², and the velocity terms V, N m, (4).
 #[inline]
-pub fn mass_matrix(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
+pub fn mass_matrix(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive) -> (MassMatrix, PerDrive) {
     by_drives!(inertia.drives, mass_matrix_of(inertia, e, qd))
 }
 
-fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
-    let (small, v) = assemble::<N>(inertia, first(e), first(qd.padded()));
+fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive) -> (MassMatrix, PerDrive) {
+    let (small, v) = assemble::<N>(inertia, leading_entries(e), leading_entries(qd.padded()));
     let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
     h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
     (MassMatrix { n: N, h, taken_up: inertia.taken_up }, v.into())
@@ -186,13 +186,13 @@ pub(crate) fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &
 
 /// Returns the torque that holds the machine at rest, −γᵀ g − Jᵀ F, N m.
 #[inline]
-pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+pub fn holding_torque(inertia: &Inertia, e: &UnitVectors, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, holding_torque_of(inertia, e, around))
 }
 
 #[inline]
-fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
-    hold::<N>(inertia, first(e), around).into()
+fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, around: &Surroundings) -> PerDrive {
+    hold::<N>(inertia, leading_entries(e), around).into()
 }
 
 #[inline(always)]
@@ -205,19 +205,20 @@ fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surrounding
 
 /// Returns the generalised torques for given accelerations, (4), N m: those of the motors if all sit on the base.
 #[inline]
-pub fn inverse(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
+pub fn inverse(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
 }
 
 #[inline]
 fn inverse_of<const N: usize>(
     inertia: &Inertia,
-    e: &Units,
+    e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    torques(inertia, first::<N, _>(e), first(qd.padded()), first(qdd.padded()), around).into()
+    torques(inertia, leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries(qdd.padded()), around)
+        .into()
 }
 
 /// Returns the torques of [`inverse`] at the machine's own size.
@@ -230,25 +231,32 @@ pub(crate) fn torques<const N: usize>(
     around: &Surroundings,
 ) -> [f64; N] {
     let (h, v) = assemble(inertia, e, qd);
-    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
+    let (inertial, holding) = (matrix_times(&h, qdd), hold(inertia, e, around));
     std::array::from_fn(|k| inertial[k] + v[k] + holding[k])
 }
 
 /// Returns the accelerations, rad/s², for given torques, N m.
 #[inline]
-pub fn forward(inertia: &Inertia, e: &Units, qd: &PerDrive, torque: &PerDrive, around: &Surroundings) -> PerDrive {
+pub fn forward(
+    inertia: &Inertia,
+    e: &UnitVectors,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> PerDrive {
     by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
 }
 
 #[inline]
 fn forward_of<const N: usize>(
     inertia: &Inertia,
-    e: &Units,
+    e: &UnitVectors,
     qd: &PerDrive,
     torque: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
+    let (e, qd, torque) =
+        (leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries::<N, _>(torque.padded()));
     let (h, v) = assemble(inertia, e, qd);
     let holding = hold(inertia, e, around);
     solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k])).into()
@@ -272,7 +280,13 @@ impl BaseWrench {
 
 /// Returns the base wrench, f_B, N, and n_B about B, N m, (1) and (5).
 #[inline]
-pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
+pub fn base_wrench(
+    inertia: &Inertia,
+    e: &UnitVectors,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> BaseWrench {
     inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
 
@@ -316,7 +330,7 @@ pub(crate) fn wrench_with<const N: usize>(
 #[inline]
 pub fn inverse_with_wrench(
     inertia: &Inertia,
-    e: &Units,
+    e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
     around: &Surroundings,
@@ -327,14 +341,14 @@ pub fn inverse_with_wrench(
 #[inline(always)]
 fn inverse_with_wrench_of<const N: usize>(
     inertia: &Inertia,
-    e: &Units,
+    e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> (PerDrive, BaseWrench) {
-    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    let (e, qd, qdd) = (leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries(qdd.padded()));
     let (h, v) = assemble(inertia, e, qd);
-    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
+    let (inertial, holding) = (matrix_times(&h, qdd), hold(inertia, e, around));
     let rate = angular_rate(inertia, &inertial, &v, qdd);
     let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
     (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
@@ -343,41 +357,42 @@ fn inverse_with_wrench_of<const N: usize>(
 /// Returns Σ_j m_j |r̈_cj|, N: the sum of the magnitudes of the links' inertial forces, which do not cancel in it.
 /// `moments` holds m_j a_jk, kg m, of all drives of a link side by side.
 #[inline]
-pub fn inertial_pull(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+pub fn inertial_pull(moments: &[Vector], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> f64 {
     by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))
 }
 
 #[inline]
-fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
-    let (e, qd, qdd) = (first::<N, _>(e), first::<N, _>(qd.padded()), first::<N, _>(qdd.padded()));
+fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    let (e, qd, qdd) =
+        (leading_entries::<N, _>(e), leading_entries::<N, _>(qd.padded()), leading_entries::<N, _>(qdd.padded()));
     let turn: [_; N] = std::array::from_fn(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);
     let pull = |moment: &[Vector; N]| (0..N).map(|k| moment[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt();
     moments.as_chunks().0.iter().map(pull).sum()
 }
 
 /// Σ_k g_k e_k = M r_CM, kg m.
-pub fn first_moment(inertia: &Inertia, e: &Units) -> Vector {
+pub fn first_moment(inertia: &Inertia, e: &UnitVectors) -> Vector {
     (0..inertia.drives).map(|k| inertia.g[k] * e[k]).sum()
 }
 
 /// Centre of mass r_CM from B, m, (2).
-pub fn centre_of_mass(inertia: &Inertia, e: &Units) -> Vector {
+pub fn centre_of_mass(inertia: &Inertia, e: &UnitVectors) -> Vector {
     first_moment(inertia, e) / inertia.mass
 }
 
 /// Linear momentum Σ_k γ_k q̇_k, kg m/s, (3).
-pub fn linear_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> Vector {
+pub fn linear_momentum(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive) -> Vector {
     (0..inertia.drives).map(|k| inertia.g[k] * e[k] * Vector::new(0.0, qd[k])).sum()
 }
 
 /// Angular momentum about B, D q̇, kg m²/s, (6).
-pub fn angular_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> f64 {
+pub fn angular_momentum(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive) -> f64 {
     let (h, _) = mass_matrix(inertia, e, qd);
     h.times(qd).iter().zip(qd.iter().zip(h.taken_up)).map(|(p, (qd, taken_up))| p + taken_up * qd).sum()
 }
 
 /// Kinetic energy ½ q̇ᵀ H q̇ and potential energy −M g · r_CM, J.
-pub fn energy(inertia: &Inertia, e: &Units, qd: &PerDrive, gravity: Vector) -> (f64, f64) {
+pub fn energy(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive, gravity: Vector) -> (f64, f64) {
     let (h, _) = mass_matrix(inertia, e, qd);
     (0.5 * h.times(qd).dot(qd), -dot(gravity, first_moment(inertia, e)))
 }

@@ -9,33 +9,33 @@
 use nalgebra::{Complex, Matrix3, Vector3};
 
 use crate::mechanics::machine::{Chain, place_of};
-use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
+use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
 
 const I: Vector = Complex::new(0.0, 1.0);
 
 /// Returns the position p of the end effector, m, (14).
-pub fn end_effector(tip: &Chain, e: &Units) -> Vector {
+pub fn end_effector(tip: &Chain, e: &UnitVectors) -> Vector {
     place_of(tip, e)
 }
 
 /// Returns column k of the Jacobian with respect to absolute drive angles, m.
-pub fn column(tip: &Chain, e: &Units, k: usize) -> Vector {
+pub fn column(tip: &Chain, e: &UnitVectors, k: usize) -> Vector {
     I * e[k] * tip[k]
 }
 
 /// Returns the velocity of the end effector, ṗ = J q̇, m/s.
-pub fn velocity(tip: &Chain, e: &Units, qd: &PerDrive) -> Vector {
+pub fn velocity(tip: &Chain, e: &UnitVectors, qd: &PerDrive) -> Vector {
     I * qd.iter().zip(tip.iter().zip(e)).map(|(qd, (w, e))| e * (w * qd)).sum::<Vector>()
 }
 
 /// Returns the acceleration of the end effector, p̈ = J q̈ + J̇ q̇, m/s².
-pub fn acceleration(tip: &Chain, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+pub fn acceleration(tip: &Chain, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> Vector {
     (0..qd.len()).map(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k] * tip[k]).sum()
 }
 
 /// Returns the minimum-norm solution q̇ = J⁺ v = Jᵀ (J Jᵀ)⁻¹ v, rad/s, and its exact time derivative for v̇, with J̇ in
 /// both factors. `None` where J is rank deficient.
-pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> Option<(PerDrive, PerDrive)> {
+pub fn minimum_norm(tip: &Chain, e: &UnitVectors, n: usize, v: Vector, vd: Vector) -> Option<(PerDrive, PerDrive)> {
     let j = |k: usize| column(tip, e, k);
     let gram = |a: &dyn Fn(usize) -> Vector, b: &dyn Fn(usize) -> Vector| {
         (0..n).fold([0.0; 4], |g, k| {
@@ -67,7 +67,7 @@ pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> 
 pub fn minimum_norm_held(
     tip: &Chain,
     lambda: &PerDrive,
-    e: &Units,
+    e: &UnitVectors,
     v: Vector,
     vd: Vector,
 ) -> Option<(PerDrive, PerDrive)> {
@@ -81,7 +81,7 @@ pub fn minimum_norm_with(
     tip: &Chain,
     (extra, rate): (&PerDrive, f64),
     extra_rate: impl Fn(&PerDrive) -> PerDrive,
-    e: &Units,
+    e: &UnitVectors,
     v: Vector,
     vd: Vector,
 ) -> Option<(PerDrive, PerDrive)> {
@@ -125,6 +125,6 @@ pub fn two_link_rates(ck: f64, cl: f64, ek: Vector, el: Vector, v: Vector) -> Op
 
 /// Returns the worst force transmission of the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change
 /// point.
-pub fn least_transmission(e: &Units, n: usize) -> f64 {
+pub fn least_transmission(e: &UnitVectors, n: usize) -> f64 {
     crate::mechanics::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::gui::{GuiRenderer, Sheet};
+use super::gui::{GuiRenderer, RenderTarget};
 use super::paint::{self, words};
 use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
@@ -83,7 +83,7 @@ impl Canvas {
         let shapes = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let behind = self.ctx.global_style().visuals.panel_fill;
-        let sheet = Sheet { view: &view, size_px: self.size_px, pixels_per_point: scale, behind };
+        let sheet = RenderTarget { view: &view, size_px: self.size_px, pixels_per_point: scale, behind };
         self.gui.draw(&sheet, &mut output.textures_delta, &shapes);
     }
 }

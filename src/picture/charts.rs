@@ -12,9 +12,9 @@ pub mod thin;
 use super::numbers::round_up;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
-use crate::planning::pose_space::held;
+use crate::planning::pose_space::constant_inertia;
 use crate::session::scenario::Scenario;
-use crate::simulation::frame::{Peaks, REACTIONLESS};
+use crate::simulation::frame::{Peaks, REACTIONLESS_SHARE};
 use crate::simulation::signals::Signal;
 
 /// A plot of signals over time.
@@ -33,14 +33,14 @@ pub struct Chart {
     /// Factor from SI values to the unit of the window.
     pub times: f64,
     /// Where the chart is shown.
-    pub place: Place,
+    pub place: ChartPlace,
     /// Whether a recording overlays all its cases in this chart.
     pub compared: bool,
 }
 
 /// Where a chart is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum ChartPlace {
     /// Beside the scene, in the window and in recordings.
     Beside,
     /// In the window if pin forces are switched on; in recordings, on the page of internal signals.
@@ -50,41 +50,41 @@ pub enum Place {
 }
 
 /// A chart without signals; the base of all others.
-pub const PLAIN: Chart = Chart {
+pub const EMPTY_CHART: Chart = Chart {
     title: "",
     unit: "",
     signals: &[],
     least: 0.1,
     centred: true,
     times: 1.0,
-    place: Place::Beside,
+    place: ChartPlace::Beside,
     compared: false,
 };
 
-const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..PLAIN };
+const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..EMPTY_CHART };
 const MOMENT: Chart =
-    Chart { title: "Base moment", unit: "N m", signals: &["moment/total"], least: 0.5, compared: true, ..PLAIN };
+    Chart { title: "Base moment", unit: "N m", signals: &["moment/total"], least: 0.5, compared: true, ..EMPTY_CHART };
 /// Moment that the machine transmits, and the moment that reaches the base after its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 const FORCE: Chart =
-    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], least: 0.5, ..PLAIN };
+    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], least: 0.5, ..EMPTY_CHART };
 const BASE: Chart =
-    Chart { title: "Base", unit: "mm, mrad", signals: &["base", "attitude"], least: 0.01, times: 1e3, ..PLAIN };
-const FRICTION: Chart = Chart { title: "Friction", unit: "N m", signals: &["friction"], least: 0.01, ..PLAIN };
+    Chart { title: "Base", unit: "mm, mrad", signals: &["base", "attitude"], least: 0.01, times: 1e3, ..EMPTY_CHART };
+const FRICTION: Chart = Chart { title: "Friction", unit: "N m", signals: &["friction"], least: 0.01, ..EMPTY_CHART };
 const PINS: Chart = Chart {
     title: "Pin forces",
     unit: "N",
     signals: &["pin/worst"],
     least: 1.0,
     centred: false,
-    place: Place::Pins,
-    ..PLAIN
+    place: ChartPlace::Pins,
+    ..EMPTY_CHART
 };
 const ANGLES: Chart =
-    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], least: 0.5, centred: false, ..PLAIN };
+    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], least: 0.5, centred: false, ..EMPTY_CHART };
 const POSE: Chart =
-    Chart { title: "Pose constant", unit: "rad", signals: &["pose/b"], centred: false, compared: true, ..PLAIN };
-const INSIDE: Chart = Chart { place: Place::Inside, centred: false, ..PLAIN };
+    Chart { title: "Pose constant", unit: "rad", signals: &["pose/b"], centred: false, compared: true, ..EMPTY_CHART };
+const INSIDE: Chart = Chart { place: ChartPlace::Inside, centred: false, ..EMPTY_CHART };
 const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], least: 1.0, ..INSIDE };
 const TILT: Chart = Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], centred: true, ..INSIDE };
 const TRANSMISSION: Chart =
@@ -101,7 +101,7 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     list.extend(Some(FRICTION).filter(|_| rubs));
     list.extend([PINS, ANGLES]);
     // There is no pose constant b if no drive turns the base, or if λ depends strongly on the pose.
-    list.extend(Some(POSE).filter(|_| held(&scenario.machine).is_ok()));
+    list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
 }
@@ -110,9 +110,9 @@ impl Chart {
     /// Whether the window shows the chart; `pins`: pin forces are switched on.
     pub fn in_window(&self, pins: bool) -> bool {
         match self.place {
-            Place::Beside => true,
-            Place::Pins => pins,
-            Place::Inside => false,
+            ChartPlace::Beside => true,
+            ChartPlace::Pins => pins,
+            ChartPlace::Inside => false,
         }
     }
 
@@ -154,8 +154,8 @@ impl Chart {
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };
-    let turns = peaks.moment > REACTIONLESS * peaks.torque_sum;
-    let pulls = peaks.force > REACTIONLESS * peaks.inertial_pull;
+    let turns = peaks.moment > REACTIONLESS_SHARE * peaks.torque_sum;
+    let pulls = peaks.force > REACTIONLESS_SHARE * peaks.inertial_pull;
     match (signal.drive, signal.group(), signal.path.as_str()) {
         (Some(k), "reference", _) => paler(palette.drive(k)),
         (Some(k), ..) => palette.drive(k),

@@ -6,8 +6,8 @@ use std::ops::Range;
 use egui::epaint::{ClippedPrimitive, ImageData, ImageDelta, PaintCallbackInfo, Primitive, Vertex};
 use egui::{Color32, Rect, TextureFilter, TextureId, TextureOptions, TextureWrapMode, TexturesDelta};
 
-use super::paint::{Paint, Renderers};
-use super::render::Twin;
+use super::paint::{PaintedScene, Renderers};
+use super::render::SharedLayout;
 use super::render::shader::{Shader, embedded, twin};
 
 twin! {
@@ -18,11 +18,11 @@ twin! {
 }
 
 /// Memory layouts of the structs of this file that Rust and WGSL share.
-pub const TWINS: [Twin; 1] = [Screen::TWIN];
+pub const TWINS: [SharedLayout; 1] = [Screen::TWIN];
 
 /// The surface that the interface is drawn on.
 #[derive(Clone, Copy, Debug)]
-pub struct Sheet<'a> {
+pub struct RenderTarget<'a> {
     /// View of the target texture, in the format of the renderer.
     pub view: &'a wgpu::TextureView,
     /// Width and height, physical pixels.
@@ -149,7 +149,7 @@ impl GuiRenderer {
     }
 
     /// Applies the changes of egui's textures, draws its shapes on the whole surface, and submits the commands.
-    pub fn draw(&mut self, sheet: &Sheet, textures: &mut TexturesDelta, shapes: &[ClippedPrimitive]) {
+    pub fn draw(&mut self, sheet: &RenderTarget, textures: &mut TexturesDelta, shapes: &[ClippedPrimitive]) {
         self.shader.reload(&self.device);
         for (id, deltas) in textures.set.drain() {
             deltas.iter().for_each(|delta| self.update(id, delta));
@@ -299,7 +299,7 @@ impl GuiRenderer {
 }
 
 /// Returns the scene that a shape stands for, if any.
-fn scene(shape: &ClippedPrimitive) -> Option<&Paint> {
+fn scene(shape: &ClippedPrimitive) -> Option<&PaintedScene> {
     match &shape.primitive {
         Primitive::Callback(callback) => callback.callback.downcast_ref(),
         Primitive::Mesh(_) => None,
@@ -307,7 +307,7 @@ fn scene(shape: &ClippedPrimitive) -> Option<&Paint> {
 }
 
 /// Returns the pixels of a surface that a rectangle in points covers: left, top, width, height; `None` if it is empty.
-fn pixels(rect: Rect, sheet: &Sheet) -> Option<[u32; 4]> {
+fn pixels(rect: Rect, sheet: &RenderTarget) -> Option<[u32; 4]> {
     let [width, height] = sheet.size_px;
     let at = |x: f32, most: u32| (x * sheet.pixels_per_point).round().clamp(0.0, most as f32) as u32;
     let (left, right) = (at(rect.min.x, width), at(rect.max.x, width));

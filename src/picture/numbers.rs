@@ -36,7 +36,7 @@ pub fn degrees(angle: f64) -> String {
 
 /// Returns the multiples of a round step from `low` to `high`, and the step; the step divides the interval into at most
 /// `count` parts.
-pub fn spaced(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
+pub fn round_ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
     let width = high - low;
     if !(width.is_finite() && width > 0.0 && low.abs().max(high.abs()) < 1e12 * width) {
         return (Vec::new(), 1.0);

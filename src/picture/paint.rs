@@ -49,14 +49,14 @@ pub fn install_fonts(ctx: &egui::Context) {
 }
 
 /// A viewport and the camera in it.
-pub struct Spot {
+pub struct SceneViewport {
     /// Rectangle on the screen, points.
     pub rect: Rect,
     /// Camera of the viewport.
     pub camera: Camera,
 }
 
-impl Spot {
+impl SceneViewport {
     /// Converts a point of the screen to a pointer in the scene.
     pub fn pointer(&self, pos: Pos2) -> Pointer {
         let at = pos - self.rect.min;
@@ -94,7 +94,7 @@ impl Renderers {
     }
 
     /// Draws the requested scene unless it was drawn last. Renderers are created on first use.
-    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, request: &Paint) {
+    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, request: &PaintedScene) {
         while self.all.len() <= request.number {
             self.all.push(Place::default());
         }
@@ -120,7 +120,7 @@ impl Renderers {
     }
 
     /// Copies the last picture of the requested scene into the viewport of a pass.
-    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, request: &Paint) {
+    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, request: &PaintedScene) {
         let Some(Place { fine, draft, last: Some((.., quality)) }) = self.all.get(request.number) else { return };
         let renderer = match quality {
             Quality::Fine => fine.as_ref(),
@@ -133,7 +133,7 @@ impl Renderers {
 }
 
 /// Request to draw a scene; a paint callback among egui's shapes.
-pub(super) struct Paint {
+pub(super) struct PaintedScene {
     number: usize,
     scene: Arc<Scene>,
     view: View,
@@ -188,6 +188,6 @@ pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Ca
         pixels_per_point: pixels,
     };
     let (scene, quality) = settle(ui.ctx(), number, scene, &view);
-    let paint = Paint { number, scene, view, quality };
+    let paint = PaintedScene { number, scene, view, quality };
     ui.painter().add(PaintCallback { rect, callback: Arc::new(paint) });
 }

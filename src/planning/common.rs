@@ -18,7 +18,7 @@ use crate::mechanics::planar::{Vector, unit};
 use crate::planning::golden::golden;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{BSet, Decimal, NoReach};
-use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
+use crate::planning::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
 
 /// Equal steps between the least and the greatest distance r' in the coarse search.
 const RADIAL_STEPS: usize = 96;
@@ -41,7 +41,7 @@ fn widened(space: &PoseSpace, mut set: BSet) -> BSet {
 }
 
 /// Returns the b at which all points, m, can be reached; `None` if there are none.
-pub fn common(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
+pub fn common_b_set(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
     if let [point] = points {
         return space.reach(*point).ok();
     }
@@ -50,8 +50,8 @@ pub fn common(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
 }
 
 /// Returns the midpoint of the widest interval of b at which all points, m, can be reached, rad.
-pub fn middle(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
-    let ranges = common(space, points)?.intervals.into_iter();
+pub fn middle_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
+    let ranges = common_b_set(space, points)?.intervals.into_iter();
     let widest = ranges.max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])))?;
     Some(0.5 * (widest[0] + widest[1]))
 }
@@ -59,11 +59,11 @@ pub fn middle(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
 /// Returns the b, rad, at which to start a motion through points, m: the midpoint that all share, or else that of the
 /// first point alone.
 pub fn starting_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
-    middle(space, points).or_else(|| middle(space, points.get(..1)?))
+    middle_b(space, points).or_else(|| middle_b(space, points.get(..1)?))
 }
 
 /// Returns why points, m, have no b in common; `None` if they share one, or if some point cannot be reached at any b.
-pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
+pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommonB> {
     let sets: Vec<BSet> = points.iter().map(|p| set_of(space, *p).ok()).collect::<Option<_>>()?;
     if !BSet::overlap(&sets).is_empty() {
         return None;
@@ -76,7 +76,7 @@ pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
     };
     let mends = (0..points.len()).filter_map(|i| least_move(space, points[i], i, &others(i)));
     let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-    Some(NoCommon { pair, mend: least.and_then(|mend| made_robust(space, points, &others(mend.point), mend)) })
+    Some(NoCommonB { pair, mend: least.and_then(|mend| made_robust(space, points, &others(mend.point), mend)) })
 }
 
 /// Returns the index of a point that cannot be reached at b, and why; `None` if all can. A point that cannot be reached
@@ -84,17 +84,17 @@ pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommon> {
 pub fn unreached(space: &PoseSpace, points: &[Vector], b: f64) -> Option<(usize, Unreachable)> {
     let i = points.iter().position(|p| !space.reaches(*p, b))?;
     let i = points.iter().position(|p| space.reach(*p).is_err()).unwrap_or(i);
-    Some((i, why_not(space, points, i, b)))
+    Some((i, unreachable_reason(space, points, i, b)))
 }
 
 /// Explains why point `i` cannot be reached at b, and which b would be feasible for all points.
-pub fn why_not(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreachable {
+pub fn unreachable_reason(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreachable {
     let (x, y) = (points[i].re, points[i].im);
     let own = match set_of(space, points[i]) {
         Ok(own) => own,
         Err(reason) => return Unreachable::Anywhere { x, y, reason },
     };
-    match (common(space, points), no_common(space, points)) {
+    match (common_b_set(space, points), no_common(space, points)) {
         (Some(common), _) => {
             let serves = |b: f64| points.iter().all(|p| space.reaches(*p, b));
             let nearest = common.nearest(b);
@@ -122,7 +122,7 @@ fn shift(set: &BSet, onto: &BSet) -> Option<f64> {
 }
 
 /// Finds the place nearest to p, m, that can be reached at some b of a set.
-fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
+fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Option<PointCorrection> {
     if others.is_empty() {
         return None;
     }
@@ -190,12 +190,12 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
             (at, others.nearest(set_of(space, at).ok()?.intervals.first()?[0])?)
         }
     };
-    Some(Mend { point, to: at, distance: (at - p).norm(), b, shown: None })
+    Some(PointCorrection { point, to: at, distance: (at - p).norm(), b, shown: None })
 }
 
 /// Makes a move robust against rounding: lengthens it slightly if its end is infeasible, and finds decimals to print.
 /// Returns `None` if no pose was found there.
-fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
+fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointCorrection) -> Option<PointCorrection> {
     let from = points[mend.point];
     let shared = |to: Vector| {
         let set = BSet::overlap(&[others.clone(), set_of(space, to).ok()?]).near(mend.b);
@@ -230,12 +230,14 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: Mend) 
             // If the common interval of b is short, its midpoint allows fewer decimals than its ends.
             let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
             let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
-            Some(ShownMend { to, b, far, does: true })
+            Some(RoundedCorrection { to, b, far, does: true })
         })
     });
     match (exact, shown) {
-        (Some((to, b)), shown) => Some(Mend { to, distance: (to - from).norm(), b, shown, ..mend }),
-        (None, Some(own)) => Some(Mend { to: own.point(), distance: own.far, b: own.b.value(), shown, ..mend }),
+        (Some((to, b)), shown) => Some(PointCorrection { to, distance: (to - from).norm(), b, shown, ..mend }),
+        (None, Some(own)) => {
+            Some(PointCorrection { to: own.point(), distance: own.far, b: own.b.value(), shown, ..mend })
+        }
         (None, None) => None,
     }
 }

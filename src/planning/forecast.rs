@@ -4,8 +4,8 @@ use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::Motion;
-use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
-use crate::query::Watch;
+use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use crate::query::ProgressCallback;
 
 /// Peaks and integrals over a motion, from the inverse dynamics of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,13 +53,13 @@ const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
     /// Returns the forecast of a motion of a model, with a number of samples that depends on the path.
-    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
+    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits) -> Self {
         let instants = (SAMPLES_PER_PART * motion.path.parts()).clamp(MIN_SAMPLES, MAX_SAMPLES);
         Self::at(motion, model, around, limits, instants)
     }
 
     /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
-    pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, instants: usize) -> Self {
+    pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, instants: usize) -> Self {
         Self::at_while(motion, (model, around, limits), instants, &mut |_| true)
     }
 
@@ -67,9 +67,9 @@ impl Forecast {
     /// stops and the result is to be discarded.
     pub fn at_while(
         motion: &Motion,
-        (model, around, limits): (&Inertia, &Surroundings, &Limits),
+        (model, around, limits): (&Inertia, &Surroundings, &DriveLimits),
         instants: usize,
-        goes_on: Watch<'_>,
+        goes_on: ProgressCallback<'_>,
     ) -> Self {
         let (time, lambda) = (motion.duration(), model.lambda());
         let n = model.drives();

@@ -6,17 +6,17 @@ use thiserror::Error;
 
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
-use crate::planning::common::common;
+use crate::planning::common::common_b_set;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace, is_reactionless};
 use crate::planning::reactionless::BSet;
-use crate::query::{Quick, Same};
+use crate::query::{ByIdentity, QuickQuery};
 
-pub use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
+pub use crate::planning::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
 
 /// Query for the pose space of a machine, or the reason why it has none.
-pub struct SpaceOf;
+pub struct PoseSpaceQuery;
 
-impl Quick for SpaceOf {
+impl QuickQuery for PoseSpaceQuery {
     type Input = Machine;
     type Answer = Result<Arc<PoseSpace>, NoPoseSpace>;
 
@@ -26,24 +26,24 @@ impl Quick for SpaceOf {
 }
 
 /// Query for the b at which several points, m, can be reached: all of them together, and each alone.
-pub struct BOfPoints;
+pub struct CommonB;
 
-/// Answer of [`BOfPoints`].
+/// Answer of [`CommonB`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Serving {
+pub struct CommonBSets {
     /// The b of each point; `None` if it cannot be reached.
     pub each: Vec<Option<BSet>>,
     /// The b that all points share; `None` if there are none.
     pub all: Option<BSet>,
 }
 
-impl Quick for BOfPoints {
+impl QuickQuery for CommonB {
     /// A pose space, and the points, m.
-    type Input = (Same<PoseSpace>, Vec<Vector>);
-    type Answer = Serving;
+    type Input = (ByIdentity<PoseSpace>, Vec<Vector>);
+    type Answer = CommonBSets;
 
-    fn answer((Same(space), points): &Self::Input) -> Serving {
-        Serving { each: points.iter().map(|p| space.reach(*p).ok()).collect(), all: common(space, points) }
+    fn answer((ByIdentity(space), points): &Self::Input) -> CommonBSets {
+        CommonBSets { each: points.iter().map(|p| space.reach(*p).ok()).collect(), all: common_b_set(space, points) }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::planning::unreachable::Unreachable;
 
 /// A pose in coordinates (a, b) and in drive angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Posed {
+pub struct PoseAngles {
     /// Relative angles, rad.
     pub a: PerDrive,
     /// Pose constant, rad.
@@ -17,7 +17,7 @@ pub struct Posed {
     pub q: DriveAngles,
 }
 
-impl Posed {
+impl PoseAngles {
     /// Returns the pose of drive angles, rad.
     pub fn of(space: &PoseSpace, q: DriveAngles) -> Self {
         let (a, b) = space.project(&q);
@@ -48,7 +48,7 @@ fn across(x: &PerDrive, y: &PerDrive) -> f64 {
 ///
 /// # Errors
 /// The index of the point that cannot be reached (counted from 0), and which b would be feasible.
-pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>, (usize, Unreachable)> {
+pub fn poses_of_points(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<PoseAngles>, (usize, Unreachable)> {
     if let Some(why) = common::unreached(space, points, b) {
         return Err(why);
     }
@@ -56,9 +56,12 @@ pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>,
         let mut near = space.middle();
         let mut served = Vec::with_capacity(points.len());
         for (i, p) in points.iter().enumerate() {
-            let q =
-                space.poses(*p, b, &near).first().copied().ok_or_else(|| (i, common::why_not(space, points, i, b)))?;
-            served.push(Posed::of(space, q));
+            let q = space
+                .poses(*p, b, &near)
+                .first()
+                .copied()
+                .ok_or_else(|| (i, common::unreachable_reason(space, points, i, b)))?;
+            served.push(PoseAngles::of(space, q));
             near = served[i].a;
         }
         return Ok(served);
@@ -79,24 +82,24 @@ pub fn serve(space: &PoseSpace, points: &[Vector], b: f64) -> Result<Vec<Posed>,
     };
     let on_one_sheet = first.iter().find_map(|start| chain(start, true));
     let served = on_one_sheet.or_else(|| first.iter().find_map(|start| chain(start, false))).unwrap_or_default();
-    Ok(served.into_iter().map(|a| Posed::lifted(space, a, b)).collect())
+    Ok(served.into_iter().map(|a| PoseAngles::lifted(space, a, b)).collect())
 }
 
 /// Returns the nearest pair of poses of two points, m, each point at its own b, rad.
-pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Option<[Posed; 2]> {
-    let pairs: Vec<([Posed; 2], f64)> = match space.planes() {
+pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Option<[PoseAngles; 2]> {
+    let pairs: Vec<([PoseAngles; 2], f64)> = match space.planes() {
         Ok(_) => {
             let [starts, ends] = [0, 1].map(|i| space.sheets(points[i], b[i]));
             let pair = |x: PerDrive, y: PerDrive| {
-                ([Posed::lifted(space, x, b[0]), Posed::lifted(space, y, b[1])], across(&x, &y))
+                ([PoseAngles::lifted(space, x, b[0]), PoseAngles::lifted(space, y, b[1])], across(&x, &y))
             };
             starts.iter().flat_map(|x| ends.iter().map(move |y| pair(*x, *y))).collect()
         }
         Err(_) => {
-            let starts = space.poses(points[0], b[0], &space.middle()).into_iter().map(|q| Posed::of(space, q));
-            let nearest = |x: Posed| {
-                let far = |y: &Posed| y.a.minus(&x.a).max_abs();
-                let ends = space.poses(points[1], b[1], &x.a).into_iter().map(|q| Posed::of(space, q));
+            let starts = space.poses(points[0], b[0], &space.middle()).into_iter().map(|q| PoseAngles::of(space, q));
+            let nearest = |x: PoseAngles| {
+                let far = |y: &PoseAngles| y.a.minus(&x.a).max_abs();
+                let ends = space.poses(points[1], b[1], &x.a).into_iter().map(|q| PoseAngles::of(space, q));
                 ends.min_by(|y, z| far(y).total_cmp(&far(z))).map(|y| ([x, y], far(&y)))
             };
             starts.filter_map(nearest).collect()
@@ -107,7 +110,7 @@ pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Opt
 
 /// Returns where points, m, go when b changes from `old` to `new`, rad. They stay if all can be reached at `new`, else
 /// they turn with the workspace: with planes from the nearest b that all share, otherwise from `old`.
-pub fn carried(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
+pub fn carried_points(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
     if points.iter().all(|p| space.reaches(*p, new)) {
         return points.to_vec();
     }
@@ -116,11 +119,12 @@ pub fn carried(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Ve
         return points.iter().map(|p| turn * p).collect();
     }
     let turned = || {
-        let shared = common::common(space, points)?;
+        let shared = common::common_b_set(space, points)?;
         // Second try slightly inside the interval, where rounding does not make the pose infeasible.
         let nearest = shared.nearest(new)?;
-        let served =
-            serve(space, points, nearest).or_else(|_| serve(space, points, shared.inwards(nearest, 1e-9))).ok()?;
+        let served = poses_of_points(space, points, nearest)
+            .or_else(|_| poses_of_points(space, points, shared.inwards(nearest, 1e-9)))
+            .ok()?;
         Some(served.iter().map(|pose| space.forward(&pose.a, new)).collect())
     };
     turned().unwrap_or_else(|| points.to_vec())

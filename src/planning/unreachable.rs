@@ -37,19 +37,19 @@ pub enum Unreachable {
     },
     /// Each point can be reached at some b, but all of them at none.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
-    NoCommonPlane(NoCommon),
+    NoCommonPlane(NoCommonB),
 }
 
 /// Why points have no b in common, and a correction. Points are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoCommon {
+pub struct NoCommonB {
     /// The first two points that share no b; `None` if each pair shares one, but not all points at once.
     pub pair: Option<[usize; 2]>,
     /// The shortest move of one point after which all points share a b.
-    pub mend: Option<Mend>,
+    pub mend: Option<PointCorrection>,
 }
 
-impl NoCommon {
+impl NoCommonB {
     /// Describes it in words; `name` gives each point a name.
     pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
         let who = match self.pair {
@@ -57,8 +57,8 @@ impl NoCommon {
             None => "each two points share some b, but no b serves all".into(),
         };
         let remedy = match self.mend {
-            Some(Mend { point, shown: Some(shown), .. }) => {
-                let (point, ShownMend { to: [x, y], b, .. }) = (name(point), shown);
+            Some(PointCorrection { point, shown: Some(shown), .. }) => {
+                let (point, RoundedCorrection { to: [x, y], b, .. }) = (name(point), shown);
                 let distance = shown.distance();
                 if shown.does {
                     format!("moving {point} by {distance} m to ({x}, {y}) m would do, at b = {b} rad")
@@ -75,9 +75,9 @@ impl NoCommon {
     }
 }
 
-/// A [`Mend`] as displayed: rounded to numbers at which all points can still be reached.
+/// A [`PointCorrection`] as displayed: rounded to numbers at which all points can still be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShownMend {
+pub struct RoundedCorrection {
     /// New place of the point, m.
     pub to: [Decimal; 2],
     /// The b that all points then share, rad.
@@ -88,7 +88,7 @@ pub struct ShownMend {
     pub does: bool,
 }
 
-impl ShownMend {
+impl RoundedCorrection {
     /// Returns the new place of the point, m.
     pub fn point(&self) -> Vector {
         Vector::new(self.to[0].value(), self.to[1].value())
@@ -101,7 +101,7 @@ impl ShownMend {
 
 /// A move of one point after which all points have a b in common.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Mend {
+pub struct PointCorrection {
     /// Index of the point, counted from 0; serialised from 1.
     #[serde(serialize_with = "from_one")]
     pub point: usize,
@@ -113,7 +113,7 @@ pub struct Mend {
     pub b: f64,
     /// The move as displayed.
     #[serde(skip)]
-    pub shown: Option<ShownMend>,
+    pub shown: Option<RoundedCorrection>,
 }
 
 fn from_one<S: Serializer>(point: &usize, serializer: S) -> Result<S::Ok, S::Error> {

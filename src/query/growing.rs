@@ -1,15 +1,15 @@
-//! [`Growing`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead of being
+//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead of being
 //! derived again.
 
 use std::any::Any;
 use std::sync::Arc;
 
-use super::sequence::{Mark, Revision, Sequence};
-use super::slot::Kept;
+use super::sequence::{Revision, RevisionMark, Sequence};
+use super::slot::AnySlot;
 
 /// An answer that grows with a sequence. It depends only on its input and on the items taken. Items taken one at a
 /// time, all at once, or again after a truncation give the same answer.
-pub trait Growing: Clone + Send + Sync + 'static {
+pub trait IncrementalQuery: Clone + Send + Sync + 'static {
     /// Item of the sequence.
     type Item: Clone;
     /// Everything else that the answer depends on.
@@ -34,7 +34,7 @@ pub trait Growing: Clone + Send + Sync + 'static {
 }
 
 /// Returns the answer for a whole sequence, computed at once and without a cache entry.
-pub fn grown<G: Growing>(input: &G::Input, items: &Sequence<G::Item>) -> G {
+pub fn answer_sequence<G: IncrementalQuery>(input: &G::Input, items: &Sequence<G::Item>) -> G {
     let mut answer = G::begin(input);
     while let together @ [_, ..] = items.from(answer.count()) {
         let count = answer.count() + together.len();
@@ -49,26 +49,26 @@ pub fn grown<G: Growing>(input: &G::Input, items: &Sequence<G::Item>) -> G {
 /// A snapshot of a growing answer. As an input of other queries, two snapshots are equal as long as the answer has not
 /// changed between them.
 #[derive(Debug)]
-pub struct Grown<G> {
+pub struct IncrementalAnswer<G> {
     version: Arc<()>,
     answer: Option<Arc<G>>,
     /// Whether the answer has taken all items of the sequence.
     pub is_whole: bool,
 }
 
-impl<G> Clone for Grown<G> {
+impl<G> Clone for IncrementalAnswer<G> {
     fn clone(&self) -> Self {
         Self { version: self.version.clone(), answer: self.answer.clone(), is_whole: self.is_whole }
     }
 }
 
-impl<G> PartialEq for Grown<G> {
+impl<G> PartialEq for IncrementalAnswer<G> {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.version, &other.version)
     }
 }
 
-impl<G> Grown<G> {
+impl<G> IncrementalAnswer<G> {
     /// Returns the answer; `None` after [`let_go`](Self::let_go).
     pub fn answer(&self) -> Option<&Arc<G>> {
         self.answer.as_ref()
@@ -82,14 +82,14 @@ impl<G> Grown<G> {
 }
 
 /// A cache entry: an answer with its input, and the revision of the sequence that it has taken.
-pub(super) struct Growth<G: Growing> {
-    of: Mark,
+pub(super) struct IncrementalState<G: IncrementalQuery> {
+    of: RevisionMark,
     input: G::Input,
     version: Arc<()>,
     answer: Arc<G>,
 }
 
-impl<G: Growing> Growth<G> {
+impl<G: IncrementalQuery> IncrementalState<G> {
     pub fn begin(revision: &Revision, input: &G::Input) -> Self {
         let answer = Arc::new(G::begin(input));
         Self { of: revision.mark(), input: input.clone(), version: Arc::default(), answer }
@@ -127,22 +127,22 @@ impl<G: Growing> Growth<G> {
         Arc::make_mut(&mut self.answer)
     }
 
-    pub fn grown(&self, count: usize) -> Grown<G> {
+    pub fn grown(&self, count: usize) -> IncrementalAnswer<G> {
         let is_whole = self.answer.count() == count;
-        Grown { version: self.version.clone(), answer: Some(self.answer.clone()), is_whole }
+        IncrementalAnswer { version: self.version.clone(), answer: Some(self.answer.clone()), is_whole }
     }
 }
 
 /// Cache entries of one kind of growing answer, one for each sequence in use.
-pub(super) struct Growths<G: Growing>(Vec<Growth<G>>);
+pub(super) struct IncrementalAnswers<G: IncrementalQuery>(Vec<IncrementalState<G>>);
 
-impl<G: Growing> Default for Growths<G> {
+impl<G: IncrementalQuery> Default for IncrementalAnswers<G> {
     fn default() -> Self {
         Self(Vec::new())
     }
 }
 
-impl<G: Growing> Kept for Growths<G> {
+impl<G: IncrementalQuery> AnySlot for IncrementalAnswers<G> {
     fn works(&mut self) -> bool {
         false
     }
@@ -156,12 +156,12 @@ impl<G: Growing> Kept for Growths<G> {
     }
 }
 
-impl<G: Growing> Growths<G> {
+impl<G: IncrementalQuery> IncrementalAnswers<G> {
     /// Removes and returns the entry that has most items in common with a revision, so that it grows outside of the
     /// store. Among the others, keeps those in use: entries with no items in common as long as their sequence exists,
     /// entries with some in common as long as a sequence has exactly their revision.
-    pub fn take(&mut self, revision: &Revision) -> Option<Growth<G>> {
-        let kept = |growth: &Growth<G>| revision.kept_of(&growth.of);
+    pub fn take(&mut self, revision: &Revision) -> Option<IncrementalState<G>> {
+        let kept = |growth: &IncrementalState<G>| revision.kept_of(&growth.of);
         let best = (0..self.0.len()).max_by_key(|i| kept(&self.0[*i])).filter(|i| kept(&self.0[*i]) > 0);
         let found = best.map(|i| self.0.swap_remove(i));
         self.0.retain(|growth| match kept(growth) {
@@ -171,7 +171,7 @@ impl<G: Growing> Growths<G> {
         found
     }
 
-    pub fn keep(&mut self, growth: Growth<G>) {
+    pub fn keep(&mut self, growth: IncrementalState<G>) {
         self.0.push(growth);
     }
 }

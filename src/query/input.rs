@@ -1,4 +1,4 @@
-//! Inputs that are shared by reference: [`Shared`] and [`Same`].
+//! Inputs that are shared by reference: [`Shared`] and [`ByIdentity`].
 
 use std::sync::Arc;
 
@@ -20,15 +20,15 @@ impl<T: PartialEq> PartialEq for Shared<T> {
 
 /// A shared input. Two are equal only if they are the same allocation; contents are not compared.
 #[derive(Debug)]
-pub struct Same<T: ?Sized>(pub Arc<T>);
+pub struct ByIdentity<T: ?Sized>(pub Arc<T>);
 
-impl<T: ?Sized> Clone for Same<T> {
+impl<T: ?Sized> Clone for ByIdentity<T> {
     fn clone(&self) -> Self {
         Self(self.0.clone())
     }
 }
 
-impl<T: ?Sized> PartialEq for Same<T> {
+impl<T: ?Sized> PartialEq for ByIdentity<T> {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }

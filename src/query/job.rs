@@ -21,9 +21,9 @@ pub trait Workers {
 }
 
 /// Workers that run all work as [`start_short`](Workers::start_short).
-pub struct Short<'a>(pub &'a dyn Workers);
+pub struct ShortJobs<'a>(pub &'a dyn Workers);
 
-impl Workers for Short<'_> {
+impl Workers for ShortJobs<'_> {
     fn start(&self, work: Work) {
         self.0.start_short(work);
     }
@@ -31,9 +31,9 @@ impl Workers for Short<'_> {
 
 /// Workers without threads: every job is done when it starts, as in a browser and in tests.
 #[derive(Clone, Copy, Debug)]
-pub struct AtOnce;
+pub struct InlineWorkers;
 
-impl Workers for AtOnce {
+impl Workers for InlineWorkers {
     fn start(&self, work: Work) {
         work();
     }
@@ -41,13 +41,13 @@ impl Workers for AtOnce {
 
 /// State shared by a job and its handle.
 #[derive(Debug, Default)]
-struct Shared {
+struct JobState {
     stopped: AtomicBool,
     /// Thousandths of the work that are done.
     done: AtomicU32,
 }
 
-impl Shared {
+impl JobState {
     fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
@@ -55,7 +55,7 @@ impl Shared {
 
 /// The job's end of the shared state: reports progress and reads whether to stop.
 #[derive(Clone, Debug)]
-pub struct Ticket(Arc<Shared>);
+pub struct Ticket(Arc<JobState>);
 
 impl Ticket {
     /// Reports the fraction done, from 0 to 1; returns whether the job is to continue.
@@ -69,7 +69,7 @@ impl Ticket {
 #[derive(Debug)]
 pub struct Job<T> {
     result: Receiver<T>,
-    shared: Arc<Shared>,
+    shared: Arc<JobState>,
 }
 
 impl<T: Send + 'static> Job<T> {
@@ -80,7 +80,7 @@ impl<T: Send + 'static> Job<T> {
         work: impl FnOnce(&Ticket) -> T + Send + 'static,
     ) -> Self {
         let (send, result) = channel();
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(JobState::default());
         let ticket = Ticket(shared.clone());
         workers.start(Box::new(move || {
             let done = work(&ticket);

@@ -22,10 +22,10 @@ mod question;
 mod sequence;
 mod slot;
 
-pub use asked::{Asked, State};
-pub use growing::{Growing, Grown, grown};
-pub use input::{Same, Shared};
-pub use job::{AtOnce, Job, Poll, Short, Ticket, Work, Workers};
-pub use queries::{Asking, Queries};
-pub use question::{Portion, Query, Quick, Watch, Whole, answered, part};
-pub use sequence::{Mark, Revision, Sequence};
+pub use asked::{QueryResult, QueryStatus};
+pub use growing::{IncrementalAnswer, IncrementalQuery, answer_sequence};
+pub use input::{ByIdentity, Shared};
+pub use job::{InlineWorkers, Job, Poll, ShortJobs, Ticket, Work, Workers};
+pub use queries::{Queries, WeakQueries};
+pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now, part};
+pub use sequence::{Revision, RevisionMark, Sequence};

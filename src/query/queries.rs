@@ -6,12 +6,12 @@ use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use super::asked::Asked;
-use super::growing::{Growing, Grown, Growth, Growths};
-use super::job::{AtOnce, Workers};
-use super::question::{Query, answered};
+use super::asked::QueryResult;
+use super::growing::{IncrementalAnswer, IncrementalAnswers, IncrementalQuery, IncrementalState};
+use super::job::{InlineWorkers, Workers};
+use super::question::{Query, answer_now};
 use super::sequence::Sequence;
-use super::slot::{Kept, Slot, Working};
+use super::slot::{AnySlot, RunningWork, Slot};
 
 /// Cache of answers, with the work in progress on new ones. Clones share both.
 #[derive(Clone)]
@@ -19,16 +19,16 @@ pub struct Queries(Arc<Store>);
 
 /// Weak reference to [`Queries`], for an input that is itself cached there: it does not keep the cache alive.
 #[derive(Clone)]
-pub struct Asking(Weak<Store>);
+pub struct WeakQueries(Weak<Store>);
 
-impl Asking {
+impl WeakQueries {
     /// Returns the cache, or an empty one if it no longer exists.
     pub fn queries(&self) -> Queries {
         self.0.upgrade().map_or_else(Queries::default, Queries)
     }
 }
 
-impl fmt::Debug for Asking {
+impl fmt::Debug for WeakQueries {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Asking")
     }
@@ -36,7 +36,7 @@ impl fmt::Debug for Asking {
 
 struct Store {
     /// One slot for each type of query that was requested.
-    slots: Mutex<HashMap<TypeId, Box<dyn Kept>>>,
+    slots: Mutex<HashMap<TypeId, Box<dyn AnySlot>>>,
     execution: Mutex<Execution>,
 }
 
@@ -59,7 +59,7 @@ struct Execution {
 impl Default for Queries {
     /// Returns an empty cache that does background work at once.
     fn default() -> Self {
-        let execution = Execution { workers: Some(Arc::new(AtOnce)), wake: None };
+        let execution = Execution { workers: Some(Arc::new(InlineWorkers)), wake: None };
         STORE_COUNT.fetch_add(1, Ordering::SeqCst);
         Self(Arc::new(Store { slots: Mutex::default(), execution: Mutex::new(execution) }))
     }
@@ -73,8 +73,8 @@ impl fmt::Debug for Queries {
 
 impl Queries {
     /// Returns a weak reference, for an input that makes requests of its own.
-    pub fn asking(&self) -> Asking {
-        Asking(Arc::downgrade(&self.0))
+    pub fn asking(&self) -> WeakQueries {
+        WeakQueries(Arc::downgrade(&self.0))
     }
 
     /// Sets the workers that run background work from now on.
@@ -108,21 +108,21 @@ impl Queries {
         }
         let input = input();
         // The lock is not held meanwhile: the work may make requests of its own.
-        let answer = Arc::new(answered::<Q>(input.clone()));
+        let answer = Arc::new(answer_now::<Q>(input.clone()));
         self.slot::<Q, _>(|slot| slot.keep(input, answer.clone()));
         answer
     }
 
     /// Returns the answer if it is cached. If not, starts or continues background work and returns the last answer
     /// meanwhile.
-    pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> Asked<Q::Answer> {
+    pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> QueryResult<Q::Answer> {
         if let Some(replaced) = self.slot::<Q, _>(|slot| slot.replaced_by(input)) {
             let (workers, wake) = {
                 let execution = self.execution();
                 (execution.workers.clone(), execution.wake.clone())
             };
             // Begun without holding the lock, as work that is done at once may make requests of its own.
-            let work = Working::begin(input.clone(), replaced, workers.as_deref(), wake);
+            let work = RunningWork::begin(input.clone(), replaced, workers.as_deref(), wake);
             self.slot::<Q, _>(|slot| slot.work_on(work));
         } else if let Some(mut work) = self.slot::<Q, _>(|slot| slot.take_portions()) {
             work.go_on();
@@ -154,7 +154,7 @@ impl Queries {
 
     /// Returns the newest answer and its state relative to the last input requested; `None` without an answer and
     /// without work.
-    pub fn newest<Q: Query>(&self) -> Option<Asked<Q::Answer>> {
+    pub fn newest<Q: Query>(&self) -> Option<QueryResult<Q::Answer>> {
         self.slot::<Q, _>(|slot| slot.newest())
     }
 
@@ -183,12 +183,17 @@ impl Queries {
 
     /// Returns the answer that grows with a sequence, after it has taken at most `at_most` new items. The answer grows
     /// in execution while nothing else refers to it; otherwise it is copied.
-    pub fn grow<G: Growing>(&self, input: &G::Input, items: &Sequence<G::Item>, at_most: usize) -> Grown<G> {
-        let known = self.kept(|growths: &mut Growths<G>| growths.take(items.revision()));
-        let mut growth = known.unwrap_or_else(|| Growth::begin(items.revision(), input));
+    pub fn grow<G: IncrementalQuery>(
+        &self,
+        input: &G::Input,
+        items: &Sequence<G::Item>,
+        at_most: usize,
+    ) -> IncrementalAnswer<G> {
+        let known = self.kept(|growths: &mut IncrementalAnswers<G>| growths.take(items.revision()));
+        let mut growth = known.unwrap_or_else(|| IncrementalState::begin(items.revision(), input));
         growth.follow(input, items, at_most);
         let grown = growth.grown(items.len());
-        self.kept(|growths: &mut Growths<G>| growths.keep(growth));
+        self.kept(|growths: &mut IncrementalAnswers<G>| growths.keep(growth));
         grown
     }
 
@@ -211,7 +216,7 @@ impl Queries {
         self.kept(with)
     }
 
-    fn kept<S: Kept + Default, T>(&self, with: impl FnOnce(&mut S) -> T) -> T {
+    fn kept<S: AnySlot + Default, T>(&self, with: impl FnOnce(&mut S) -> T) -> T {
         let mut slots = self.slots();
         let slot = slots.entry(TypeId::of::<S>()).or_insert_with(|| Box::new(S::default()));
         match slot.as_any().downcast_mut() {
@@ -221,7 +226,7 @@ impl Queries {
         }
     }
 
-    fn slots(&self) -> MutexGuard<'_, HashMap<TypeId, Box<dyn Kept>>> {
+    fn slots(&self) -> MutexGuard<'_, HashMap<TypeId, Box<dyn AnySlot>>> {
         // A panic leaves slots consistent: each changes in one step.
         self.0.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }

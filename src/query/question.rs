@@ -16,17 +16,17 @@ pub trait Query: Send + Sized + 'static {
 
     /// Does a portion of the work, a few milliseconds at most if possible. A longer portion calls `goes_on` with the
     /// fraction done, from 0 to 1, and stops if it returns `false`.
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer>;
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer>;
 
-    /// Drops those parts of a cached input that are not compared: see [`Grown::let_go`](super::Grown::let_go).
+    /// Drops those parts of a cached input that are not compared: see [`IncrementalAnswer::let_go`](super::IncrementalAnswer::let_go).
     fn let_go(_: &mut Self::Input) {}
 }
 
 /// Progress callback: takes the fraction done, from 0 to 1; returns whether the work is to continue.
-pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
+pub type ProgressCallback<'a> = &'a mut dyn FnMut(f64) -> bool;
 
 /// Returns a progress callback for a part of the work: maps 0 to 1 to the interval `from` to `to` of the whole.
-pub fn part(goes_on: Watch<'_>, [from, to]: [f64; 2]) -> impl FnMut(f64) -> bool {
+pub fn part(goes_on: ProgressCallback<'_>, [from, to]: [f64; 2]) -> impl FnMut(f64) -> bool {
     move |done| goes_on(from + (to - from) * done)
 }
 
@@ -42,7 +42,7 @@ pub enum Portion<A> {
 }
 
 /// Returns the answer to an input, computed at once and without a cache entry.
-pub fn answered<Q: Query>(input: Q::Input) -> Q::Answer {
+pub fn answer_now<Q: Query>(input: Q::Input) -> Q::Answer {
     let mut work = Q::begin(input);
     loop {
         // The callback always continues, so the work never stops early.
@@ -53,7 +53,7 @@ pub fn answered<Q: Query>(input: Q::Input) -> Q::Answer {
 }
 
 /// A query that is computed in one portion.
-pub trait Quick: 'static {
+pub trait QuickQuery: 'static {
     /// As [`Query::Input`].
     type Input: Clone + PartialEq + Send + 'static;
     /// As [`Query::Answer`].
@@ -67,9 +67,9 @@ pub trait Quick: 'static {
 }
 
 /// Work of a quick query.
-pub struct Whole<Q: Quick>(Q::Input);
+pub struct QuickWork<Q: QuickQuery>(Q::Input);
 
-impl<Q: Quick> Query for Whole<Q> {
+impl<Q: QuickQuery> Query for QuickWork<Q> {
     type Input = Q::Input;
     type Answer = Q::Answer;
 
@@ -79,7 +79,7 @@ impl<Q: Quick> Query for Whole<Q> {
         Self(input)
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Q::Answer> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<Q::Answer> {
         Portion::Done(Q::answer(&self.0))
     }
 

@@ -174,12 +174,12 @@ pub struct Revision {
 
 /// Weak reference to a revision, for comparison with later ones.
 #[derive(Clone, Debug)]
-pub struct Mark {
+pub struct RevisionMark {
     own: Weak<()>,
     alive: Weak<()>,
 }
 
-impl Mark {
+impl RevisionMark {
     /// Returns whether a sequence still has this revision.
     pub fn is_had(&self) -> bool {
         self.alive.strong_count() > 0
@@ -211,13 +211,13 @@ impl Revision {
     }
 
     /// Returns a weak reference, for comparison with later revisions.
-    pub fn mark(&self) -> Mark {
-        Mark { own: Arc::downgrade(&self.own), alive: Arc::downgrade(&self.alive) }
+    pub fn mark(&self) -> RevisionMark {
+        RevisionMark { own: Arc::downgrade(&self.own), alive: Arc::downgrade(&self.alive) }
     }
 
     /// Returns how many first items are unchanged since an earlier revision: `usize::MAX` if it is this revision, 0 if
     /// it is unknown.
-    pub fn kept_of(&self, earlier: &Mark) -> usize {
+    pub fn kept_of(&self, earlier: &RevisionMark) -> usize {
         let is_it = |own: &Arc<()>| std::ptr::eq(Arc::as_ptr(own), earlier.own.as_ptr());
         if is_it(&self.own) {
             return usize::MAX;

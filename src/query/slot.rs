@@ -3,16 +3,16 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use super::asked::{Asked, State};
+use super::asked::{QueryResult, QueryStatus};
 use super::job::{Job, Poll, Workers};
 use super::question::{Portion, Query};
 
 /// Cache slot of one query: the newest answer with its input, and the work under way.
 pub(super) struct Slot<Q: Query> {
     known: Option<(Q::Input, Arc<Q::Answer>)>,
-    working: Option<Working<Q>>,
+    working: Option<RunningWork<Q>>,
     /// Input whose work was stopped or ended without an answer; it is not tried again.
-    given_up: Option<(Q::Input, State)>,
+    given_up: Option<(Q::Input, QueryStatus)>,
 }
 
 impl<Q: Query> Default for Slot<Q> {
@@ -22,7 +22,7 @@ impl<Q: Query> Default for Slot<Q> {
 }
 
 /// A slot of any query, without its type.
-pub(super) trait Kept: Any + Send {
+pub(super) trait AnySlot: Any + Send {
     /// Returns whether work is under way.
     fn works(&mut self) -> bool;
 
@@ -33,7 +33,7 @@ pub(super) trait Kept: Any + Send {
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
-impl<Q: Query> Kept for Slot<Q> {
+impl<Q: Query> AnySlot for Slot<Q> {
     fn works(&mut self) -> bool {
         self.collect();
         self.working.is_some()
@@ -49,7 +49,7 @@ impl<Q: Query> Kept for Slot<Q> {
 }
 
 /// Work on an input.
-pub(super) struct Working<Q: Query> {
+pub(super) struct RunningWork<Q: Query> {
     of: Q::Input,
     by: By<Q>,
 }
@@ -64,12 +64,12 @@ enum By<Q: Query> {
     Done(Q::Answer),
 }
 
-impl<Q: Query> Working<Q> {
+impl<Q: Query> RunningWork<Q> {
     /// Begins work, with workers in the background or else in portions. It starts when the work that it replaces has
     /// stopped: two computations of the same query would compete for processors, and with the window.
     pub fn begin(
         of: Q::Input,
-        replaced: Replaced<Q>,
+        replaced: ReplacedWork<Q>,
         workers: Option<&(dyn Workers + Send + Sync)>,
         wake: Option<Wake>,
     ) -> Self {
@@ -85,7 +85,7 @@ impl<Q: Query> Working<Q> {
             }
         };
         let job = Job::start(workers, done, move |ticket| {
-            if let Replaced(Some(job)) = replaced {
+            if let ReplacedWork(Some(job)) = replaced {
                 job.wait();
             }
             if !ticket.goes_on(0.0) {
@@ -117,10 +117,10 @@ impl<Q: Query> Working<Q> {
 }
 
 /// Work on an earlier input that was told to stop and may still be running.
-pub(super) struct Replaced<Q: Query>(Option<Job<Option<Q::Answer>>>);
+pub(super) struct ReplacedWork<Q: Query>(Option<Job<Option<Q::Answer>>>);
 
-impl<Q: Query> Replaced<Q> {
-    fn by_another(work: Option<Working<Q>>) -> Self {
+impl<Q: Query> ReplacedWork<Q> {
+    fn by_another(work: Option<RunningWork<Q>>) -> Self {
         match work.map(|work| work.by) {
             Some(By::Job(job)) => {
                 job.stop();
@@ -157,10 +157,10 @@ impl<Q: Query> Slot<Q> {
     /// Decides whether work on an input is to begin: the input is neither known nor given up, and no work is under way
     /// that runs to its end. If so, returns the work that it replaces. Stops work on another input, unless that runs to
     /// its end.
-    pub fn replaced_by(&mut self, input: &Q::Input) -> Option<Replaced<Q>> {
+    pub fn replaced_by(&mut self, input: &Q::Input) -> Option<ReplacedWork<Q>> {
         self.collect();
-        let stays = |work: &mut Working<Q>| Q::ENDS || work.of == *input;
-        let replaced = Replaced::by_another(self.working.take_if(|work| !stays(work)));
+        let stays = |work: &mut RunningWork<Q>| Q::ENDS || work.of == *input;
+        let replaced = ReplacedWork::by_another(self.working.take_if(|work| !stays(work)));
         self.given_up = self.given_up.take().filter(|(of, _)| of == input);
         let known = self.known.as_ref().is_some_and(|(of, _)| of == input);
         let new = !(known || self.given_up.is_some() || self.working.is_some());
@@ -168,13 +168,13 @@ impl<Q: Query> Slot<Q> {
     }
 
     /// Removes and returns work that is done by the caller, to be continued without holding the lock.
-    pub fn take_portions(&mut self) -> Option<Working<Q>> {
+    pub fn take_portions(&mut self) -> Option<RunningWork<Q>> {
         let here = self.working.as_ref().is_some_and(|working| matches!(working.by, By::Portions(..)));
         if here { self.working.take() } else { None }
     }
 
     /// Stores work in progress and drops the work before it.
-    pub fn work_on(&mut self, working: Working<Q>) {
+    pub fn work_on(&mut self, working: RunningWork<Q>) {
         self.working = Some(working);
         self.given_up = None;
         self.collect();
@@ -182,14 +182,14 @@ impl<Q: Query> Slot<Q> {
 
     /// Stores the answer of work that has ended.
     pub fn collect(&mut self) {
-        let Some(Working { mut of, by }) = self.working.take() else { return };
+        let Some(RunningWork { mut of, by }) = self.working.take() else { return };
         let by = match by {
             By::Job(job) => match job.poll() {
                 Poll::Working => By::Job(job),
                 Poll::Done(Some(answer)) => By::Done(answer),
                 // Work is stopped only together with dropping its handle, so a job without an answer is a fault.
                 Poll::Done(None) | Poll::Broken => {
-                    self.given_up = Some((of, State::Broken));
+                    self.given_up = Some((of, QueryStatus::Broken));
                     return;
                 }
             },
@@ -200,34 +200,34 @@ impl<Q: Query> Slot<Q> {
                 Q::let_go(&mut of);
                 self.known = Some((of, Arc::new(answer)));
             }
-            by => self.working = Some(Working { of, by }),
+            by => self.working = Some(RunningWork { of, by }),
         }
     }
 
     /// Returns the newest answer and its state relative to an input.
-    pub fn asked(&self, input: &Q::Input) -> Asked<Q::Answer> {
+    pub fn asked(&self, input: &Q::Input) -> QueryResult<Q::Answer> {
         let last = self.known.as_ref().map(|(_, answer)| answer.clone());
         let is_known = self.known.as_ref().is_some_and(|(of, _)| of == input);
         let state = match (&self.working, &self.given_up) {
-            _ if is_known => State::Known,
-            (Some(_), _) => State::UnderWay(self.progress().unwrap_or(0.0)),
+            _ if is_known => QueryStatus::Known,
+            (Some(_), _) => QueryStatus::UnderWay(self.progress().unwrap_or(0.0)),
             (None, Some((_, state))) => *state,
-            (None, None) => State::Broken,
+            (None, None) => QueryStatus::Broken,
         };
-        Asked { last, state }
+        QueryResult { last, state }
     }
 
     /// Returns the newest answer and its state relative to the last input requested.
-    pub fn newest(&mut self) -> Option<Asked<Q::Answer>> {
+    pub fn newest(&mut self) -> Option<QueryResult<Q::Answer>> {
         self.collect();
         let last = self.known.as_ref().map(|(_, answer)| answer.clone());
         let state = match (self.progress(), &self.given_up, &last) {
-            (Some(share), ..) => State::UnderWay(share),
+            (Some(share), ..) => QueryStatus::UnderWay(share),
             (None, Some((_, state)), _) => *state,
-            (None, None, Some(_)) => State::Known,
+            (None, None, Some(_)) => QueryStatus::Known,
             (None, None, None) => return None,
         };
-        Some(Asked { last, state })
+        Some(QueryResult { last, state })
     }
 
     /// Returns the fraction of the work that is done, from 0 to 1.
@@ -242,7 +242,7 @@ impl<Q: Query> Slot<Q> {
     /// Stops the work.
     pub fn stop(&mut self) {
         if let Some(working) = self.working.take() {
-            self.given_up = Some((working.of, State::Stopped));
+            self.given_up = Some((working.of, QueryStatus::Stopped));
         }
     }
 }

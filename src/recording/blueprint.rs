@@ -17,15 +17,15 @@ use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionI
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
-use super::design::SEEN;
+use super::design::FRONT_VIEW;
 use super::eye::Eye;
 use super::hash::Hash;
-use super::preview::{DESIGNS, Preview, have_designs};
-use super::store::{Store, StoreError, TIME};
-use super::style::{Together, colour, series_name, under};
+use super::preview::{DESIGNS_PATH, Preview, machines_differ};
+use super::store::{Store, StoreError, TIME_TIMELINE};
+use super::style::{CombinedArchetypes, colour, series_name, under};
 use super::topic::Topic;
 use crate::mechanics::balance::Condition;
-use crate::picture::charts::{Chart, Place};
+use crate::picture::charts::{Chart, ChartPlace};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 
@@ -60,7 +60,7 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
     }
     let time = view::TimePanelBlueprint::new()
         .with_state(PanelState::Collapsed)
-        .with_timeline(TIME)
+        .with_timeline(TIME_TIMELINE)
         .with_loop_mode(LoopMode::All)
         // A layout cannot set the displayed instant; playback shows more than the start.
         .with_play_state(PlayState::Playing);
@@ -203,8 +203,8 @@ impl Layout<'_> {
         for (chart, range) in compared {
             below.push(self.compared(cases, &chart, range)?);
         }
-        if have_designs(cases) {
-            below.push(self.document("Machines side by side", &EntityPath::from(DESIGNS))?);
+        if machines_differ(cases) {
+            below.push(self.document("Machines side by side", &EntityPath::from(DESIGNS_PATH))?);
         }
         below.push(self.events(cases)?);
         let bottom = self.container(ContainerKind::Horizontal, "", &below, &vec![1.0; below.len()])?;
@@ -225,8 +225,8 @@ impl Layout<'_> {
             }
         }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
-        let beside = self.plots(case, "Drives and base", |place| place == Place::Beside)?;
-        let inside = self.plots(case, "Inside", |place| place != Place::Beside)?;
+        let beside = self.plots(case, "Drives and base", |place| place == ChartPlace::Beside)?;
+        let inside = self.plots(case, "Inside", |place| place != ChartPlace::Beside)?;
         let plots = self.container(ContainerKind::Tabs, "", &[beside, inside], &[])?;
         let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
         let events = self.events(std::slice::from_ref(case))?;
@@ -278,7 +278,7 @@ impl Layout<'_> {
     /// Adds the Pareto front of added mass and inertia.
     fn front(&mut self, origin: &EntityPath) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
-        let [left, top, right, bottom] = SEEN;
+        let [left, top, right, bottom] = FRONT_VIEW;
         let bounds = view::VisualBounds2D::new(VisualBounds2D(Range2D {
             x_range: Range1D::new(left, right).0,
             y_range: Range1D::new(top, bottom).0,
@@ -289,7 +289,7 @@ impl Layout<'_> {
     }
 
     /// Adds the charts of a case in the given places, one below the other.
-    fn plots(&mut self, case: &Preview, name: &str, stands: fn(Place) -> bool) -> Result<Part, StoreError> {
+    fn plots(&mut self, case: &Preview, name: &str, stands: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
         let mut parts = Vec::new();
         for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
             parts.push(self.plot(case, chart)?);
@@ -357,7 +357,8 @@ impl Layout<'_> {
         let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
         let id = VisualizerInstructionId::new_deterministic(path, i);
         let instruction = under(&base, &id.0.to_string());
-        self.store.layout(&instruction, &Together(&[&view::VisualizerInstruction::new("SeriesLines"), style]))?;
+        self.store
+            .layout(&instruction, &CombinedArchetypes(&[&view::VisualizerInstruction::new("SeriesLines"), style]))?;
         self.store.layout(&base, &view::ActiveVisualizers::new([id]))
     }
 
@@ -399,7 +400,7 @@ impl Layout<'_> {
     fn events(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let shown = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
         let columns = view::TextLogColumns::new()
-            .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])
+            .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME_TIMELINE.into() }])
             .with_text_log_columns([
                 shown(TextLogColumnKind::EntityPath, false),
                 shown(TextLogColumnKind::LogLevel, false),

@@ -9,10 +9,10 @@ use rerun::{
 
 use super::dashes::dashed;
 use super::eye::Eye;
-use super::rows::Track;
-use super::store::{Clock, Instant, Store, StoreError};
-use super::style::{Together, colour, solid};
-use crate::picture::scene::{Area, Changes, Mesh, Model, Pose, Rgba, Strips};
+use super::rows::SparseRows;
+use super::store::{Instant, RowTimes, Store, StoreError};
+use super::style::{CombinedArchetypes, colour, solid};
+use crate::picture::scene::{Area, ItemChanges, Mesh, MeshSet, Rgba, Strips, Transform};
 
 /// Grid cells of a workspace along each angle.
 const CELLS: u32 = 40;
@@ -31,14 +31,14 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    pub const HOME: Self = Self { along: [1.0, 0.0], at: [0.0; 3] };
+    pub const IDENTITY: Self = Self { along: [1.0, 0.0], at: [0.0; 3] };
 
-    pub fn of(pose: &Pose) -> Self {
+    pub fn of(pose: &Transform) -> Self {
         Self { along: [pose[0][0], pose[0][1]], at: [pose[3][0], pose[3][1], pose[3][2]] }
     }
 
     pub fn shifted(at: [f32; 3]) -> Self {
-        Self { at, ..Self::HOME }
+        Self { at, ..Self::IDENTITY }
     }
 
     /// Transforms a point of the world to the coordinates of this pose.
@@ -67,7 +67,7 @@ impl Rigid {
 
 /// Kinds of items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EntityKind {
     Solid,
     Area,
     Line,
@@ -102,14 +102,14 @@ impl PartialEq for Strokes {
 
 /// Components of an entity that can change at any instant.
 #[derive(Clone, Debug)]
-pub enum Shape {
+pub enum EntityShape {
     Strokes(Strokes),
     Dots(Vec<Dot>),
     Instances(Vec<[f32; 3]>),
-    Mesh(Arc<Model>, usize),
+    Mesh(Arc<MeshSet>, usize),
 }
 
-impl PartialEq for Shape {
+impl PartialEq for EntityShape {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Strokes(a), Self::Strokes(b)) => a == b,
@@ -123,8 +123,8 @@ impl PartialEq for Shape {
 
 /// Components of an entity that are constant until they are written again.
 #[derive(Clone, Debug)]
-pub enum Lasting {
-    Mesh(Arc<Model>, usize, Rgba),
+pub enum StaticShape {
+    Mesh(Arc<MeshSet>, usize, Rgba),
     Sheet(Area),
     Strokes(Strokes),
     Ring {
@@ -136,7 +136,7 @@ pub enum Lasting {
     Tint(Rgba),
 }
 
-impl PartialEq for Lasting {
+impl PartialEq for StaticShape {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Mesh(a, i, rgba), Self::Mesh(b, k, other)) => {
@@ -154,16 +154,16 @@ impl PartialEq for Lasting {
 /// One entity.
 #[derive(Debug)]
 pub struct Entity {
-    pub kind: Kind,
+    pub kind: EntityKind,
     pub path: EntityPath,
     /// Names of its ancestors, nearest first, which may have poses.
     pub ancestors: Vec<String>,
     /// Constant components in the current scene.
-    pub lasting: Option<Lasting>,
+    pub lasting: Option<StaticShape>,
     /// Changing components in the current scene.
-    pub shape: Option<Shape>,
+    pub shape: Option<EntityShape>,
     /// Pose in the current scene.
-    pub pose: Option<(Rigid, Changes)>,
+    pub pose: Option<(Rigid, ItemChanges)>,
     /// Pose and vertical stretch of each solid of one name.
     pub placed: Vec<(Rigid, f32)>,
     /// Centres of the rings of one name, and their radius.
@@ -171,15 +171,15 @@ pub struct Entity {
     /// Whether the current scene contains it.
     pub is_there: bool,
     /// Constant components that have been written.
-    pub written: Option<Lasting>,
+    pub written: Option<StaticShape>,
     /// Whether a constant pose has been written.
     pub stands: bool,
-    pub shapes: Track<Option<Shape>>,
-    pub poses: Track<Rigid>,
+    pub shapes: SparseRows<Option<EntityShape>>,
+    pub poses: SparseRows<Rigid>,
 }
 
 impl Entity {
-    pub fn new(kind: Kind, path: EntityPath, name: &str) -> Self {
+    pub fn new(kind: EntityKind, path: EntityPath, name: &str) -> Self {
         let cuts = name.match_indices('/').map(|(i, _)| i).collect::<Vec<_>>();
         Self {
             kind,
@@ -193,8 +193,8 @@ impl Entity {
             is_there: false,
             written: None,
             stands: false,
-            shapes: Track::new(),
-            poses: Track::new(),
+            shapes: SparseRows::new(),
+            poses: SparseRows::new(),
         }
     }
 
@@ -207,33 +207,33 @@ impl Entity {
     /// Adds lines; lines of one name and style form one shape.
     pub fn strokes(&mut self, strokes: Strokes) {
         match &mut self.shape {
-            Some(Shape::Strokes(all)) if all.is_alike(&strokes) => {
+            Some(EntityShape::Strokes(all)) if all.is_alike(&strokes) => {
                 all.strips = all.strips.iter().chain(strokes.strips.iter()).cloned().collect();
             }
-            _ => self.shape = Some(Shape::Strokes(strokes)),
+            _ => self.shape = Some(EntityShape::Strokes(strokes)),
         }
     }
 
     pub fn dot(&mut self, dot: Dot) {
         match &mut self.shape {
-            Some(Shape::Dots(dots)) => dots.push(dot),
-            _ => self.shape = Some(Shape::Dots(vec![dot])),
+            Some(EntityShape::Dots(dots)) => dots.push(dot),
+            _ => self.shape = Some(EntityShape::Dots(vec![dot])),
         }
     }
 
     /// Converts several solids of one name to instances of one mesh, and several rings to one shape; the entity then
     /// has no pose.
     pub fn share(&mut self) {
-        if let (Some(Lasting::Ring { width, rgba, .. }), (middles, radius)) = (&self.lasting, &self.rings)
+        if let (Some(StaticShape::Ring { width, rgba, .. }), (middles, radius)) = (&self.lasting, &self.rings)
             && middles.len() > 1
         {
             let ring = |[x, y, z]: &[f32; 3]| circle(*radius).map(|[u, v, _]| [x + u, y + v, *z]).collect();
             let strips = middles.iter().map(ring).collect();
-            self.shape = Some(Shape::Strokes(Strokes { strips, width: *width, rgba: *rgba, dash: None }));
+            self.shape = Some(EntityShape::Strokes(Strokes { strips, width: *width, rgba: *rgba, dash: None }));
             (self.lasting, self.pose) = (None, None);
         }
         if self.placed.len() > 1 || self.placed.iter().any(|(_, stretch)| *stretch != 1.0) {
-            self.shape = Some(Shape::Instances(self.placed.iter().map(|(pose, _)| pose.at).collect()));
+            self.shape = Some(EntityShape::Instances(self.placed.iter().map(|(pose, _)| pose.at).collect()));
             self.pose = None;
         }
     }
@@ -251,7 +251,7 @@ impl Entity {
             if self.written.take().is_some() {
                 store.shape(Some(at), &self.path, &Clear::flat())?;
                 self.write_poses(store, eye)?;
-                (self.poses, self.stands) = (Track::new(), false);
+                (self.poses, self.stands) = (SparseRows::new(), false);
             }
             if matches!(self.shapes.last(), Some(Some(_))) {
                 self.shapes.push(at, None);
@@ -263,18 +263,18 @@ impl Entity {
         if let Some((pose, changes)) = self.pose {
             let pose = pose.within(outer);
             // Within an ancestor, equal poses differ by rounding errors.
-            let is_part = *outer != Rigid::HOME;
+            let is_part = *outer != Rigid::IDENTITY;
             let same = |last: &Rigid| if is_part { last.is_near(&pose) } else { *last == pose };
             let known = self.poses.last().is_some_and(same);
             let never = self.poses.last().is_none() && !self.stands;
-            let at_home = never && pose.is_near(&Rigid::HOME);
+            let at_home = never && pose.is_near(&Rigid::IDENTITY);
             match (changes, since) {
                 _ if known || at_home => {}
-                (Changes::Nothing, None) if never => {
+                (ItemChanges::Nothing, None) if never => {
                     stands = Some(transform(&[pose], eye));
                     self.stands = true;
                 }
-                (Changes::Nothing, None) => {}
+                (ItemChanges::Nothing, None) => {}
                 _ => self.poses.push(at, pose),
             }
         }
@@ -288,9 +288,9 @@ impl Entity {
         }
         if let Some(mut shape) = self.shape.take() {
             match &mut shape {
-                Shape::Dots(dots) => dots.iter_mut().for_each(|dot| dot.at = eye.place(outer.inside(dot.at))),
-                Shape::Instances(places) => places.iter_mut().for_each(|p| *p = eye.place(outer.inside(*p))),
-                Shape::Strokes(_) | Shape::Mesh(..) => {}
+                EntityShape::Dots(dots) => dots.iter_mut().for_each(|dot| dot.at = eye.place(outer.inside(dot.at))),
+                EntityShape::Instances(places) => places.iter_mut().for_each(|p| *p = eye.place(outer.inside(*p))),
+                EntityShape::Strokes(_) | EntityShape::Mesh(..) => {}
             }
             self.shapes.push(at, Some(shape));
         }
@@ -302,7 +302,7 @@ impl Entity {
         &self,
         store: &mut Store,
         since: Option<Instant>,
-        lasting: &Lasting,
+        lasting: &StaticShape,
         stands: Option<&Transform3D>,
         eye: &Eye,
     ) -> Result<(), StoreError> {
@@ -311,15 +311,15 @@ impl Entity {
             InstancePoses3D::update_fields().with_scales(scales)
         });
         let looks: Box<dyn AsComponents> = match lasting {
-            Lasting::Mesh(model, mesh, rgba) => Box::new(solid(&model.meshes[*mesh], *rgba, eye)),
-            Lasting::Sheet(area) => Box::new(sheet(area)),
-            Lasting::Tint(rgba) => Box::new(Mesh3D::update_fields().with_albedo_factor(colour(*rgba).0)),
-            Lasting::Strokes(strokes) => Box::new(
+            StaticShape::Mesh(model, mesh, rgba) => Box::new(solid(&model.meshes[*mesh], *rgba, eye)),
+            StaticShape::Sheet(area) => Box::new(sheet(area)),
+            StaticShape::Tint(rgba) => Box::new(Mesh3D::update_fields().with_albedo_factor(colour(*rgba).0)),
+            StaticShape::Strokes(strokes) => Box::new(
                 LineStrips3D::new(strokes.drawn(eye, MAX_DASHES_CONSTANT))
                     .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
                     .with_colors([colour(strokes.rgba)]),
             ),
-            Lasting::Ring { radius, width, rgba } => Box::new(
+            StaticShape::Ring { radius, width, rgba } => Box::new(
                 LineStrips3D::new([circle(*radius).map(|p| eye.place(p)).collect::<Vec<_>>()])
                     .with_radii([Radius::new_ui_points(0.5 * width)])
                     .with_colors([colour(*rgba)]),
@@ -327,8 +327,10 @@ impl Entity {
         };
         let mut all = vec![&*looks];
         all.extend(stands.map(|stands| stands as &dyn AsComponents));
-        all.extend(scales.as_ref().filter(|_| matches!(lasting, Lasting::Mesh(..))).map(|s| s as &dyn AsComponents));
-        store.shape(since, &self.path, &Together(&all))
+        all.extend(
+            scales.as_ref().filter(|_| matches!(lasting, StaticShape::Mesh(..))).map(|s| s as &dyn AsComponents),
+        );
+        store.shape(since, &self.path, &CombinedArchetypes(&all))
     }
 
     /// Writes the buffered poses.
@@ -348,32 +350,32 @@ impl Entity {
             return Ok(());
         }
         let (mut strokes, mut dots, mut places) = (Vec::new(), Vec::new(), Vec::<[f32; 3]>::new());
-        if rows.iter().flatten().any(|row| matches!(row, Shape::Mesh(..))) {
+        if rows.iter().flatten().any(|row| matches!(row, EntityShape::Mesh(..))) {
             return self.write_meshes(store, &clock, &rows, eye);
         }
         let mut lengths = Vec::with_capacity(rows.len());
         for row in &rows {
             lengths.push(match row {
-                Some(Shape::Strokes(row)) => {
+                Some(EntityShape::Strokes(row)) => {
                     let drawn = row.drawn(eye, MAX_DASHES_CHANGING);
                     let n = drawn.len();
                     strokes.extend(drawn.into_iter().map(|strip| (strip, row.width, row.rgba)));
                     n
                 }
-                Some(Shape::Dots(row)) => {
+                Some(EntityShape::Dots(row)) => {
                     dots.extend(row);
                     row.len()
                 }
-                Some(Shape::Instances(row)) => {
+                Some(EntityShape::Instances(row)) => {
                     places.extend(row);
                     row.len()
                 }
-                Some(Shape::Mesh(..)) | None => 0,
+                Some(EntityShape::Mesh(..)) | None => 0,
             });
         }
         let clock = clock.columns();
         match self.kind {
-            Kind::Line => {
+            EntityKind::Line => {
                 let radii = strokes.iter().map(|(_, width, _)| Radius::new_ui_points(0.5 * width)).collect::<Vec<_>>();
                 let colours = strokes.iter().map(|(.., rgba)| colour(*rgba)).collect::<Vec<_>>();
                 let lines = LineStrips3D::update_fields()
@@ -382,11 +384,11 @@ impl Entity {
                     .with_colors(colours);
                 store.columns(&clock, &self.path, lines.columns(lengths)?)
             }
-            Kind::Solid | Kind::Area => {
+            EntityKind::Solid | EntityKind::Area => {
                 let instances = InstancePoses3D::update_fields().with_translations(places);
                 store.columns(&clock, &self.path, instances.columns(lengths)?)
             }
-            Kind::Label => {
+            EntityKind::Label => {
                 let words = Points3D::update_fields()
                     .with_positions(dots.iter().map(|dot| dot.at))
                     .with_labels(dots.iter().map(|dot| dot.text.as_str()))
@@ -396,7 +398,7 @@ impl Entity {
                 let columns = words.columns(lengths)?.chain(dotless.columns_of_unit_batches()?);
                 store.columns(&clock, &self.path, columns)
             }
-            Kind::Marker => {
+            EntityKind::Marker => {
                 let points = Points3D::update_fields()
                     .with_positions(dots.iter().map(|dot| dot.at))
                     .with_radii(dots.iter().map(|dot| Radius::new_ui_points(dot.radius)))
@@ -412,13 +414,13 @@ impl Entity {
     fn write_meshes(
         &self,
         store: &mut Store,
-        clock: &Clock,
-        rows: &[Option<Shape>],
+        clock: &RowTimes,
+        rows: &[Option<EntityShape>],
         eye: &Eye,
     ) -> Result<(), StoreError> {
         let none = Mesh::default();
-        let mesh = |row: &Option<Shape>| match row {
-            Some(Shape::Mesh(model, i)) => model.meshes[*i].clone(),
+        let mesh = |row: &Option<EntityShape>| match row {
+            Some(EntityShape::Mesh(model, i)) => model.meshes[*i].clone(),
             _ => none.clone(),
         };
         let all: Vec<Mesh> = rows.iter().map(mesh).collect();
@@ -463,7 +465,7 @@ pub fn transform(poses: &[Rigid], eye: &Eye) -> Transform3D {
     let mut transform = Transform3D::update_fields();
     if let Some(pose) = poses.first() {
         transform = transform.with_translation(eye.place(pose.at));
-        if pose.along != Rigid::HOME.along {
+        if pose.along != Rigid::IDENTITY.along {
             transform = transform.with_quaternion(pose.turn());
         }
     }
@@ -473,7 +475,7 @@ pub fn transform(poses: &[Rigid], eye: &Eye) -> Transform3D {
 /// Returns one row for each pose; rotations are included if any pose is rotated.
 pub fn transform_rows(poses: &[Rigid], eye: &Eye) -> Transform3D {
     let rows = Transform3D::update_fields().with_many_translation(poses.iter().map(|pose| eye.place(pose.at)));
-    match poses.iter().any(|pose| pose.along != Rigid::HOME.along) {
+    match poses.iter().any(|pose| pose.along != Rigid::IDENTITY.along) {
         true => rows.with_many_quaternion(poses.iter().map(Rigid::turn)),
         false => rows,
     }

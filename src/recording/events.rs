@@ -2,13 +2,13 @@
 
 use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
 
-use super::rows::Track;
-use super::store::{Clock, Instant, Store, StoreError};
+use super::rows::SparseRows;
+use super::store::{Instant, RowTimes, Store, StoreError};
 use super::style::{brief, colour, under};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::Palette;
-use crate::query::Growing;
-use crate::session::events::{Event, Kind, Watched, bookmarked, gestures};
+use crate::query::IncrementalQuery;
+use crate::session::events::{Event, EventKind, EventLog, bookmarked, gestures};
 use crate::session::scenario::{Scenario, Task};
 use crate::session::verdict::Verdict;
 use crate::simulation::frame::{Frame, Peaks, Phase};
@@ -20,8 +20,8 @@ pub struct Events {
     prefix: String,
     palette: Palette,
     rows: Vec<Row>,
-    phases: Track<Phase>,
-    watched: Watched,
+    phases: SparseRows<Phase>,
+    watched: EventLog,
 }
 
 /// A row of the table.
@@ -36,8 +36,8 @@ struct Row {
 impl Events {
     /// Returns an empty list of events.
     pub fn new(prefix: String, palette: Palette) -> Self {
-        let watched = Watched::begin(&Default::default());
-        Self { prefix, palette, rows: Vec::new(), phases: Track::new(), watched }
+        let watched = EventLog::begin(&Default::default());
+        Self { prefix, palette, rows: Vec::new(), phases: SparseRows::new(), watched }
     }
 
     fn add(&mut self, at: Instant, text: String, level: &'static str, rgba: Rgba) {
@@ -62,12 +62,12 @@ impl Events {
 
     fn add_event(&mut self, event: &Event, dt: f64) {
         let (level, rgba) = match event.kind {
-            Kind::Edit => (TextLogLevel::INFO, self.palette.drive(0)),
-            Kind::Bookmark | Kind::Within => (TextLogLevel::INFO, self.palette.amber),
-            Kind::Note => (TextLogLevel::INFO, self.palette.ink),
-            Kind::Beyond => (TextLogLevel::WARN, self.palette.amber),
-            Kind::Warning | Kind::Peak => (TextLogLevel::WARN, self.palette.reaction),
-            Kind::Fault => (TextLogLevel::ERROR, self.palette.reaction),
+            EventKind::Edit => (TextLogLevel::INFO, self.palette.drive(0)),
+            EventKind::Bookmark | EventKind::Within => (TextLogLevel::INFO, self.palette.amber),
+            EventKind::Note => (TextLogLevel::INFO, self.palette.ink),
+            EventKind::Beyond => (TextLogLevel::WARN, self.palette.amber),
+            EventKind::Warning | EventKind::Peak => (TextLogLevel::WARN, self.palette.reaction),
+            EventKind::Fault => (TextLogLevel::ERROR, self.palette.reaction),
         };
         let at = Instant::at(event.step, event.step as f64 * dt);
         self.add(at, event.words.clone(), level, rgba);
@@ -108,7 +108,7 @@ impl Events {
         };
         self.add(end, verdict.sentence(), level, rgba);
         self.rows.sort_by_key(|row| row.at.step);
-        let mut clock = Clock::default();
+        let mut clock = RowTimes::default();
         self.rows.iter().for_each(|row| clock.push(row.at));
         let log = TextLog::update_fields()
             .with_many_text(self.rows.iter().map(|row| format!("{}{}", self.prefix, row.text)))

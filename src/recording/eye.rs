@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use rerun::blueprint::components::Eye3DKind;
 use rerun::external::re_sdk_types::blueprint::archetypes::EyeControls3D;
 
-use crate::picture::scene::camera::{Camera, Flat, Orbit};
+use crate::picture::scene::camera::{Camera, FlatCamera, Orbit};
 
 /// Half the height of the picture at a distance of 1; the viewer has a field of view of 55°.
 const HALF_HEIGHT: f64 = 0.5206;
@@ -51,7 +51,7 @@ impl Eye {
     pub fn of(camera: &Camera, axes: [usize; 3]) -> Self {
         match camera {
             Camera::Orbit(orbit) => Self::along(*orbit, axes),
-            Camera::Flat(Flat { centre, half_height }) => Self::above(*centre, 2.0 * half_height),
+            Camera::Flat(FlatCamera { centre, half_height }) => Self::above(*centre, 2.0 * half_height),
         }
     }
 

@@ -63,10 +63,10 @@ use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::{Statements, Verdict};
 use hash::Hash;
-use pictures::Series;
+use pictures::PictureSeries;
 use preview::Preview;
-use recorder::Set;
-use stop::Stop;
+use recorder::RecordingSetup;
+use stop::CaseError;
 use store::{Store, StoreError};
 
 /// A scenario that was recorded.
@@ -96,7 +96,7 @@ pub struct Recording {
 
 /// Progress of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress<'a> {
+pub struct RecordingProgress<'a> {
     /// Completed steps of all scenarios. Each step counts twice, because each scenario is run for the scales first.
     pub done: u64,
     /// Total number of steps.
@@ -151,7 +151,7 @@ pub fn record(
     scenarios: &[Scenario],
     file: &Path,
     options: &Options,
-    progress: &mut dyn FnMut(Progress) -> bool,
+    progress: &mut dyn FnMut(RecordingProgress) -> bool,
 ) -> Result<Vec<Recording>, RecordError> {
     check(scenarios, options)?;
     let to = NewFile::create(file, options.force)?;
@@ -232,7 +232,7 @@ fn write(
     to: NewFile,
     file: &Path,
     options: &Options,
-    progress: &mut dyn FnMut(Progress) -> bool,
+    progress: &mut dyn FnMut(RecordingProgress) -> bool,
 ) -> Result<Vec<Recording>, RecordError> {
     let because = |error| match error {
         StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
@@ -242,7 +242,7 @@ fn write(
     let mut before = 0;
     let mut cases = Vec::with_capacity(scenarios.len());
     for scenario in scenarios {
-        let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+        let mut tick = |step| progress(RecordingProgress { done: before + step, of: 2 * total, what: &scenario.name });
         let refused = |refusal| stopped_or(scenario.name.clone(), refusal);
         cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
@@ -252,25 +252,26 @@ fn write(
     before = total;
     check_pictures(scenarios, &cases, options)?;
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
-    let mut pictures = Series::of(options.pictures);
+    let mut pictures = PictureSeries::of(options.pictures);
     let pictured = pictures.is_wanted();
     let scale = preview::scale(&cases);
-    let mut set = Set { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
+    let mut set = RecordingSetup { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout comes first, so that the viewer does not create a default one.
-    let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
+    let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(CaseError::from);
     let done = laid_out.and_then(|()| {
-        if preview::have_designs(&cases) {
+        if preview::machines_differ(&cases) {
             let designs: Vec<_> =
                 cases.iter().map(|c| (c.name.as_str(), c.candidate.beside(&cases[0].candidate))).collect();
             let table = TextDocument::from_markdown(design::beside(&designs));
-            set.store.fixed(&EntityPath::from(preview::DESIGNS), &table)?;
+            set.store.fixed(&EntityPath::from(preview::DESIGNS_PATH), &table)?;
         }
         let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
         let info = RecordingInfo::update_fields().with_name(names.join(", "));
         set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
-            let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+            let mut tick =
+                |step| progress(RecordingProgress { done: before + step, of: 2 * total, what: &scenario.name });
             let (peaks, verdict, statements) = recorder::record(&mut set, scenario, case, &mut tick)?;
             before += case.steps;
             recordings.push(Recording {
@@ -296,9 +297,9 @@ fn write(
         Err(stop) => {
             store.abandon();
             Err(match stop {
-                Stop::Refused { scenario, refusal } => stopped_or(scenario, refusal),
-                Stop::Pictures(why) => RecordError::Pictures(why),
-                Stop::Store(error) => because(error),
+                CaseError::Refused { scenario, refusal } => stopped_or(scenario, refusal),
+                CaseError::Pictures(why) => RecordError::Pictures(why),
+                CaseError::Store(error) => because(error),
             })
         }
     }

@@ -3,8 +3,8 @@
 use rerun::{EncodedImage, EntityPath};
 
 use super::options::Pictures;
-use super::stop::Stop;
-use super::store::{Clock, Instant, Store};
+use super::stop::CaseError;
+use super::store::{Instant, RowTimes, Store};
 #[cfg(feature = "render")]
 use crate::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
 #[cfg(all(feature = "render", not(feature = "ui")))]
@@ -57,18 +57,18 @@ impl Painter {
 }
 
 /// Takes pictures, if they are requested and there is a usable adapter.
-pub struct Series {
+pub struct PictureSeries {
     wanted: Option<Pictures>,
     note: Option<String>,
     #[cfg(feature = "render")]
     painter: Option<Painter>,
     /// Number of pictures of the current case.
     taken: u64,
-    clock: Clock,
+    clock: RowTimes,
     pictures: Vec<Vec<u8>>,
 }
 
-impl Series {
+impl PictureSeries {
     /// Opens an adapter if pictures are requested.
     pub fn of(wanted: Option<Pictures>) -> Self {
         let mut series = Self {
@@ -77,7 +77,7 @@ impl Series {
             #[cfg(feature = "render")]
             painter: None,
             taken: 0,
-            clock: Clock::default(),
+            clock: RowTimes::default(),
             pictures: Vec::new(),
         };
         if let Some(wanted) = wanted {
@@ -124,11 +124,11 @@ impl Series {
 
     /// Takes a picture.
     #[cfg(feature = "render")]
-    pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame, options: &ViewOptions) -> Result<(), Stop> {
+    pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame, options: &ViewOptions) -> Result<(), CaseError> {
         let (Some(wanted), Some(painter)) = (self.wanted, &mut self.painter) else { return Ok(()) };
         let options = ViewOptions { pin_forces: wanted.pin_forces, ..options.clone() };
         let scene = stage.scene(frame, &options);
-        let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
+        let failed = |why: &dyn std::fmt::Display| CaseError::Pictures(why.to_string());
         let picture = painter.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
         if [picture.width, picture.height] != [wanted.width, wanted.height] {
             let most = picture.width.max(picture.height);
@@ -142,7 +142,7 @@ impl Series {
     }
 
     #[cfg(not(feature = "render"))]
-    pub fn take(&mut self, _: Instant, _: &Stage, _: &Frame, _: &ViewOptions) -> Result<(), Stop> {
+    pub fn take(&mut self, _: Instant, _: &Stage, _: &Frame, _: &ViewOptions) -> Result<(), CaseError> {
         Ok(())
     }
 
@@ -152,7 +152,7 @@ impl Series {
     }
 
     /// Writes the buffered pictures.
-    pub fn write(&mut self, store: &mut Store, path: &EntityPath) -> Result<(), Stop> {
+    pub fn write(&mut self, store: &mut Store, path: &EntityPath) -> Result<(), CaseError> {
         if self.pictures.is_empty() {
             return Ok(());
         }

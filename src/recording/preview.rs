@@ -4,12 +4,12 @@
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
-use super::design::Design;
+use super::design::RecordedDesign;
 use super::eye::Eye;
 use super::topic::Topic;
 use crate::picture::charts::{Chart, charts};
 use crate::picture::scene::camera::Orbit;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::reaction::Scale;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::query::Queries;
@@ -17,7 +17,7 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, replay_while};
 use crate::simulation::frame::Peaks;
 use crate::simulation::signals::{Signal, signals};
-use crate::study::comparison::Candidate;
+use crate::study::comparison::DesignCandidate;
 
 /// Extreme values of a run, and the views and charts that follow from them.
 #[derive(Debug)]
@@ -47,9 +47,9 @@ pub struct Preview {
     /// Eye of the view of the tower, if there is one.
     pub tower: Option<Eye>,
     /// Design of the machine.
-    pub design: Design,
+    pub design: RecordedDesign,
     /// Design of the machine for comparison with other cases.
-    pub candidate: Candidate,
+    pub candidate: DesignCandidate,
 }
 
 impl Preview {
@@ -75,7 +75,7 @@ impl Preview {
             !frame.step.is_multiple_of(1024) || tick(frame.step)
         })?;
         let last = run.frame();
-        let reach = Linkage::of(&run.scenario().machine).reach();
+        let reach = LinkageModel::of(&run.scenario().machine).reach();
         let views = Views::over(&run, b, run.queries());
         let eye = |kind: ViewKind, axes| views.shows(kind).then(|| Eye::of(&views.camera(kind), axes));
         let (joints, tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));
@@ -90,8 +90,8 @@ impl Preview {
             charts,
             scene: near(reach),
             joints,
-            candidate: Candidate::of(&run),
-            design: Design::of(scenario, &run, first.unwrap_or(last))?,
+            candidate: DesignCandidate::of(&run),
+            design: RecordedDesign::of(scenario, &run, first.unwrap_or(last))?,
             tower,
             queries: run.queries().clone(),
         })
@@ -99,10 +99,10 @@ impl Preview {
 }
 
 /// Path of the comparison of the machines of several cases.
-pub const DESIGNS: &str = "comparison/designs";
+pub const DESIGNS_PATH: &str = "comparison/designs";
 
 /// Whether the machines of several cases differ.
-pub fn have_designs(cases: &[Preview]) -> bool {
+pub fn machines_differ(cases: &[Preview]) -> bool {
     cases.iter().any(|case| !case.candidate.is_alike(&cases[0].candidate))
 }
 

@@ -8,12 +8,12 @@ use rerun::{AnyValues, EntityPath, ViewCoordinates};
 
 use super::events::Events;
 use super::eye::Eye;
-use super::pictures::Series;
+use super::pictures::PictureSeries;
 use super::preview::Preview;
 use super::rows::Thinned;
-use super::space::Space;
-use super::stop::Stop;
-use super::store::{Clock, Instant, Store};
+use super::space::RecordingSpace;
+use super::stop::CaseError;
+use super::store::{Instant, RowTimes, Store};
 use super::style::{lines, under};
 use super::topic::Topic;
 use crate::mechanics::planar::MAX_DRIVES;
@@ -37,11 +37,11 @@ const ROW_INTERVAL_S: f64 = 0.005;
 const MAX_TRAIL_POINTS: usize = 16_384;
 
 /// Common parts of the cases of one recording.
-pub struct Set<'a> {
+pub struct RecordingSetup<'a> {
     /// Store of all rows.
     pub store: &'a mut Store,
     /// Offscreen pictures.
-    pub pictures: &'a mut Series,
+    pub pictures: &'a mut PictureSeries,
     /// Scale of reactions.
     pub scale: Scale,
     /// Whether there is more than one case; the texts of events then name the case.
@@ -54,11 +54,11 @@ pub struct Set<'a> {
 /// # Errors
 /// If the scenario cannot run, be drawn or be written, or if `tick` returns false.
 pub fn record(
-    set: &mut Set<'_>,
+    set: &mut RecordingSetup<'_>,
     scenario: &Scenario,
     forecast: &Preview,
     tick: &mut dyn FnMut(u64) -> bool,
-) -> Result<(Peaks, Verdict, Statements), Stop> {
+) -> Result<(Peaks, Verdict, Statements), CaseError> {
     let mut recorder = Recorder::new(set, scenario, forecast)?;
     let mut failure = None;
     let run = replay_while(scenario, |run, frame| {
@@ -69,13 +69,13 @@ pub fn record(
     match (failure, run) {
         (Some(stop), _) => Err(stop),
         (None, Ok(run)) => recorder.finish(&run),
-        (None, Err(refusal)) => Err(Stop::Refused { scenario: scenario.name.clone(), refusal }),
+        (None, Err(refusal)) => Err(CaseError::Refused { scenario: scenario.name.clone(), refusal }),
     }
 }
 
 struct Recorder<'a> {
     store: &'a mut Store,
-    pictures: &'a mut Series,
+    pictures: &'a mut PictureSeries,
     scenario: &'a Scenario,
     forecast: &'a Preview,
     root: &'a EntityPath,
@@ -85,15 +85,15 @@ struct Recorder<'a> {
     constant_views: bool,
     /// Number of edits that have been applied.
     edits: usize,
-    clock: Clock,
+    clock: RowTimes,
     topics: Vec<Topic>,
     row_every: u64,
     drawn: Option<Drawn>,
     /// Pose constant b at the start, rad.
     first_b: f64,
-    machine: Space,
-    joints: Option<Space>,
-    tower: Option<Space>,
+    machine: RecordingSpace,
+    joints: Option<RecordingSpace>,
+    tower: Option<RecordingSpace>,
     trail: Thinned<[f32; 3]>,
     events: Events,
 }
@@ -111,8 +111,8 @@ impl Instant {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, forecast: &'a Preview) -> Result<Self, Stop> {
-        let Set { store, pictures, scale, several } = set;
+    fn new(set: &'a mut RecordingSetup<'_>, scenario: &'a Scenario, forecast: &'a Preview) -> Result<Self, CaseError> {
+        let RecordingSetup { store, pictures, scale, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         forecast.design.write(store, root)?;
@@ -128,9 +128,9 @@ impl<'a> Recorder<'a> {
             }
         };
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
-        let space = |path: &str, eye| Space::new(under(root, path), eye, palette.background);
+        let space = |path: &str, eye| RecordingSpace::new(under(root, path), eye, palette.background);
         Ok(Self {
-            machine: Space::new(root.clone(), forecast.scene, palette.background),
+            machine: RecordingSpace::new(root.clone(), forecast.scene, palette.background),
             joints: forecast.joints.map(|eye| space("joint_space", eye)),
             tower: forecast.tower.map(|eye| space("tower", eye)),
             trail: Thinned::new(1, MAX_TRAIL_POINTS),
@@ -144,7 +144,7 @@ impl<'a> Recorder<'a> {
             palette,
             constant_views: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
             edits: 0,
-            clock: Clock::default(),
+            clock: RowTimes::default(),
             topics: forecast.topics.clone(),
             row_every: (ROW_INTERVAL_S / scenario.step).round().max(1.0) as u64,
             drawn: None,
@@ -153,7 +153,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records one instant.
-    fn see(&mut self, run: &Run, frame: &Frame) -> Result<(), Stop> {
+    fn see(&mut self, run: &Run, frame: &Frame) -> Result<(), CaseError> {
         let (at, last) = (Instant::of(frame), frame.step == self.forecast.steps);
         if frame.step == 0 {
             self.events.start(at, &self.forecast.title, self.scenario.machine.name());
@@ -207,7 +207,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Draws all scenes of an instant.
-    fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
+    fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), CaseError> {
         let Some(Drawn { views, .. }) = &self.drawn else { return Ok(()) };
         let when = (at, if self.constant_views { None } else { Some(at) });
         let tip = point(frame.end_effector, views.stage().handle_height());
@@ -227,7 +227,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Writes all buffered rows.
-    fn flush(&mut self) -> Result<(), Stop> {
+    fn flush(&mut self) -> Result<(), CaseError> {
         for topic in &mut self.topics {
             topic.write(self.store, self.root, &self.clock)?;
         }
@@ -239,7 +239,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Writes the rest: trail, events and properties.
-    fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict, Statements), Stop> {
+    fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict, Statements), CaseError> {
         let frame = &run.frame();
         self.flush()?;
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));

@@ -1,19 +1,19 @@
 //! Rows of an entity, buffered until they are written.
 
-use super::store::{Clock, Instant};
+use super::store::{Instant, RowTimes};
 
 /// Rows of a component that changes rarely; rows equal to their predecessor are omitted.
 #[derive(Debug)]
-pub struct Track<T> {
-    clock: Clock,
+pub struct SparseRows<T> {
+    clock: RowTimes,
     rows: Vec<T>,
     last: Option<T>,
 }
 
-impl<T: Clone + PartialEq> Track<T> {
+impl<T: Clone + PartialEq> SparseRows<T> {
     /// Returns an empty track.
     pub fn new() -> Self {
-        Self { clock: Clock::default(), rows: Vec::new(), last: None }
+        Self { clock: RowTimes::default(), rows: Vec::new(), last: None }
     }
 
     /// Adds a row at an instant, unless it equals the last one.
@@ -31,7 +31,7 @@ impl<T: Clone + PartialEq> Track<T> {
     }
 
     /// Returns and removes the buffered rows with their instants.
-    pub fn take(&mut self) -> (Clock, Vec<T>) {
+    pub fn take(&mut self) -> (RowTimes, Vec<T>) {
         (std::mem::take(&mut self.clock), std::mem::take(&mut self.rows))
     }
 }

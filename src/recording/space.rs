@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use rerun::EntityPath;
 
-use super::entity::{Dot, Entity, Kind, Lasting, Rigid, Shape, Strokes};
+use super::entity::{Dot, Entity, EntityKind, EntityShape, Rigid, StaticShape, Strokes};
 use super::eye::Eye;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
 use crate::picture::scene::palette::mix;
-use crate::picture::scene::{Anchor, Area, Changes, Label, Line, Marker, Model, Rgba, Scene, Solid};
+use crate::picture::scene::{Anchor, Area, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid};
 
 /// Height between consecutive lines that are drawn over everything, px.
 const LINE_SPACING_PX: f32 = 0.1;
@@ -23,7 +23,7 @@ const LETTER_WIDTH: f32 = 0.5;
 
 /// A space of a recording.
 #[derive(Debug)]
-pub struct Space {
+pub struct RecordingSpace {
     root: EntityPath,
     eye: Eye,
     background: Rgba,
@@ -36,7 +36,7 @@ pub struct Space {
     posed: HashMap<String, usize>,
 }
 
-impl Space {
+impl RecordingSpace {
     /// Returns an empty space under a root, seen from an eye.
     pub fn new(root: EntityPath, eye: Eye, background: Rgba) -> Self {
         Self {
@@ -64,14 +64,14 @@ impl Space {
         self.renamed.iter().find_map(rest).map_or(Cow::Borrowed(name), Cow::Owned)
     }
 
-    fn entity(&mut self, kind: Kind, name: &str) -> &mut Entity {
+    fn entity(&mut self, kind: EntityKind, name: &str) -> &mut Entity {
         let name = self.renamed(name);
         let i = match self.known[kind as usize].get(name.as_ref()) {
             Some(i) => *i,
             None => {
                 let (i, name) = (self.entities.len(), name.into_owned());
                 self.entities.push(Entity::new(kind, under(&self.root, &name), &name));
-                if matches!(kind, Kind::Solid | Kind::Area | Kind::Line) {
+                if matches!(kind, EntityKind::Solid | EntityKind::Area | EntityKind::Line) {
                     self.posed.entry(name.clone()).or_insert(i);
                 }
                 self.known[kind as usize].insert(name, i);
@@ -84,7 +84,7 @@ impl Space {
     }
 
     /// Writes the constant shapes of a scene that are not yet in the recording, for all times or from the instant
-    /// `since` on. Rows of poses and shapes that can change are buffered until [`Space::write`].
+    /// `since` on. Rows of poses and shapes that can change are buffered until [`RecordingSpace::write`].
     ///
     /// # Errors
     /// If it cannot be written.
@@ -99,8 +99,9 @@ impl Space {
         scene.areas.iter().for_each(|area| {
             let pose = area.world_from_item();
             let flat = Area { turn: 0.0, at: [0.0; 2], z: 0.0, ..area.clone() };
-            let entity = self.entity(Kind::Area, &area.name);
-            (entity.lasting, entity.pose) = (Some(Lasting::Sheet(flat)), Some((Rigid::of(&pose), Changes::Pose)));
+            let entity = self.entity(EntityKind::Area, &area.name);
+            (entity.lasting, entity.pose) =
+                (Some(StaticShape::Sheet(flat)), Some((Rigid::of(&pose), ItemChanges::Pose)));
         });
         let mut lift = 0.0;
         for line in &scene.lines {
@@ -117,35 +118,35 @@ impl Space {
                 Some(pose)
             });
             let eye = self.eye;
-            self.entities[i].note(store, (at, since), &outer.unwrap_or(Rigid::HOME), &eye)?;
+            self.entities[i].note(store, (at, since), &outer.unwrap_or(Rigid::IDENTITY), &eye)?;
         }
         Ok(())
     }
 
-    fn solid(&mut self, solid: &Solid, model: &Arc<Model>) {
-        let entity = self.entity(Kind::Solid, &solid.name);
-        if solid.changes == Changes::Shape {
+    fn solid(&mut self, solid: &Solid, model: &Arc<MeshSet>) {
+        let entity = self.entity(EntityKind::Solid, &solid.name);
+        if solid.changes == ItemChanges::Shape {
             (entity.lasting, entity.shape) =
-                (Some(Lasting::Tint(solid.colour)), Some(Shape::Mesh(model.clone(), solid.mesh)));
+                (Some(StaticShape::Tint(solid.colour)), Some(EntityShape::Mesh(model.clone(), solid.mesh)));
             return;
         }
         entity.placed.push((Rigid::of(&solid.world_from_item), solid.world_from_item[2][2]));
         if entity.lasting.is_none() {
-            entity.lasting = Some(Lasting::Mesh(model.clone(), solid.mesh, solid.colour));
+            entity.lasting = Some(StaticShape::Mesh(model.clone(), solid.mesh, solid.colour));
             entity.pose = Some((Rigid::of(&solid.world_from_item), solid.changes));
         }
     }
 
-    fn line(&mut self, line: &Line, lift: f32) {
+    fn line(&mut self, line: &Polyline, lift: f32) {
         let (strips, rgba) = (line.strips.clone(), over(self.background, line.colour));
         let strokes = Strokes { strips, width: line.width, rgba, dash: line.dash };
-        let entity = self.entity(Kind::Line, &line.name);
+        let entity = self.entity(EntityKind::Line, &line.name);
         let mut pose = Rigid::of(&line.world_from_item);
         pose.at[2] += lift;
         entity.pose = Some((pose, line.changes));
         match line.changes {
-            Changes::Shape => entity.strokes(strokes),
-            _ => entity.lasting = Some(Lasting::Strokes(strokes)),
+            ItemChanges::Shape => entity.strokes(strokes),
+            _ => entity.lasting = Some(StaticShape::Strokes(strokes)),
         }
     }
 
@@ -154,23 +155,23 @@ impl Space {
         let dot = |at, radius, rgba| Dot { at, radius, rgba, text: String::new() };
         let (background, px) = (self.background, self.eye.pixel());
         if alpha == 0.0 {
-            let entity = self.entity(Kind::Line, &marker.name);
+            let entity = self.entity(EntityKind::Line, &marker.name);
             let radius = px * (marker.radius - 0.5 * marker.stroke_width);
             let rgba = over(background, marker.stroke);
-            entity.lasting = Some(Lasting::Ring { radius, width: marker.stroke_width, rgba });
+            entity.lasting = Some(StaticShape::Ring { radius, width: marker.stroke_width, rgba });
             entity.rings.0.push(marker.at);
             entity.rings.1 = radius;
-            entity.pose = Some((Rigid::shifted(marker.at), Changes::Pose));
+            entity.pose = Some((Rigid::shifted(marker.at), ItemChanges::Pose));
             return;
         }
         let rgba = over(background, if edged { marker.stroke } else { marker.fill });
-        self.entity(Kind::Marker, &marker.name).dot(dot(marker.at, marker.radius, rgba));
+        self.entity(EntityKind::Marker, &marker.name).dot(dot(marker.at, marker.radius, rgba));
         if edged {
             let [x, y, z] = marker.at;
             let inside = marker.radius - marker.stroke_width;
             // Nearer to the eye than the outer disc.
             let inner = dot([x, y, z + px], inside, over(background, marker.fill));
-            self.entity(Kind::Marker, &format!("{}/inside", marker.name)).dot(inner);
+            self.entity(EntityKind::Marker, &format!("{}/inside", marker.name)).dot(inner);
         }
     }
 
@@ -186,7 +187,7 @@ impl Space {
         let at = [0, 1, 2].map(|i| label.at[i] + shift[i]);
         let rgba = over(self.background, label.colour);
         let dot = Dot { at, radius: 0.0, rgba, text: label.text.clone() };
-        self.entity(Kind::Label, &label.name).dot(dot);
+        self.entity(EntityKind::Label, &label.name).dot(dot);
     }
 
     /// Writes the buffered rows.

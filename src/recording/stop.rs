@@ -5,7 +5,7 @@ use crate::session::Refusal;
 
 /// Reasons why a case is not recorded.
 #[derive(Debug)]
-pub enum Stop {
+pub enum CaseError {
     /// The scenario cannot run.
     Refused {
         /// Name of the scenario.
@@ -20,7 +20,7 @@ pub enum Stop {
     Store(StoreError),
 }
 
-impl<E: Into<StoreError>> From<E> for Stop {
+impl<E: Into<StoreError>> From<E> for CaseError {
     fn from(error: E) -> Self {
         Self::Store(error.into())
     }

@@ -22,13 +22,13 @@ use crate::files::NewFile;
 pub const APPLICATION: &str = "stillbase";
 
 /// Time line of simulated time.
-pub const TIME: &str = "sim_time";
+pub const TIME_TIMELINE: &str = "sim_time";
 
 /// Time line of steps.
-pub const STEP: &str = "step";
+pub const STEP_TIMELINE: &str = "step";
 
 /// Time line of changes of the machine, if there are any.
-pub const EDIT: &str = "edit";
+pub const EDIT_TIMELINE: &str = "edit";
 
 /// Reasons why a row is not written.
 #[derive(Debug, Error)]
@@ -82,14 +82,14 @@ impl Instant {
 
 /// Instants of the rows of some columns.
 #[derive(Clone, Debug, Default)]
-pub struct Clock {
+pub struct RowTimes {
     steps: Vec<i64>,
     nanos: Vec<i64>,
     /// Numbers of changes of the machine; empty, or one for each row.
     edits: Vec<i64>,
 }
 
-impl Clock {
+impl RowTimes {
     /// Adds a row.
     pub fn push(&mut self, at: Instant) {
         self.steps.push(at.step as i64);
@@ -120,11 +120,11 @@ impl Clock {
     pub fn columns(&self) -> Vec<TimeColumn> {
         let sorted = Some(true);
         let mut columns = vec![
-            TimeColumn::new(sorted, Timeline::new_sequence(STEP), self.steps.clone().into()),
-            TimeColumn::new(sorted, Timeline::new_duration(TIME), self.nanos.clone().into()),
+            TimeColumn::new(sorted, Timeline::new_sequence(STEP_TIMELINE), self.steps.clone().into()),
+            TimeColumn::new(sorted, Timeline::new_duration(TIME_TIMELINE), self.nanos.clone().into()),
         ];
         if !self.edits.is_empty() {
-            columns.push(TimeColumn::new(sorted, Timeline::new_sequence(EDIT), self.edits.clone().into()));
+            columns.push(TimeColumn::new(sorted, Timeline::new_sequence(EDIT_TIMELINE), self.edits.clone().into()));
         }
         columns
     }
@@ -221,11 +221,11 @@ impl Store {
 
     fn since(&mut self, at: Instant, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
         let mut point = TimePoint::from([
-            (Timeline::new_sequence(STEP), TimeInt::new_temporal(at.step as i64)),
-            (Timeline::new_duration(TIME), TimeInt::new_temporal(at.nanos)),
+            (Timeline::new_sequence(STEP_TIMELINE), TimeInt::new_temporal(at.step as i64)),
+            (Timeline::new_duration(TIME_TIMELINE), TimeInt::new_temporal(at.nanos)),
         ]);
         if let Some(edit) = at.edit {
-            point.insert(Timeline::new_sequence(EDIT), TimeInt::new_temporal(edit as i64));
+            point.insert(Timeline::new_sequence(EDIT_TIMELINE), TimeInt::new_temporal(edit as i64));
         }
         let chunk = self.row(point, path, what)?;
         self.append(self.recording.clone(), &chunk)

@@ -70,9 +70,9 @@ pub fn lines(strips: impl IntoIterator<Item = Vec<[f32; 3]>>, width: f32, rgba: 
 }
 
 /// Several archetypes as one row of an entity.
-pub struct Together<'a>(pub &'a [&'a dyn AsComponents]);
+pub struct CombinedArchetypes<'a>(pub &'a [&'a dyn AsComponents]);
 
-impl AsComponents for Together<'_> {
+impl AsComponents for CombinedArchetypes<'_> {
     fn as_serialized_batches(&self) -> Vec<SerializedComponentBatch> {
         self.0.iter().flat_map(|archetype| archetype.as_serialized_batches()).collect()
     }

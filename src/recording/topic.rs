@@ -3,7 +3,7 @@
 
 use rerun::{EntityPath, Scalars, SeriesLines};
 
-use super::store::{Clock, Store, StoreError};
+use super::store::{RowTimes, Store, StoreError};
 use super::style::{colour, series_name, under};
 use crate::picture::charts::{self, Chart};
 use crate::picture::scene::palette::Palette;
@@ -98,7 +98,7 @@ impl Topic {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write(&mut self, store: &mut Store, root: &EntityPath, clock: &Clock) -> Result<(), StoreError> {
+    pub fn write(&mut self, store: &mut Store, root: &EntityPath, clock: &RowTimes) -> Result<(), StoreError> {
         let rows = Scalars::new(std::mem::take(&mut self.values));
         let rows = rows.columns(std::iter::repeat_n(self.signals.len(), clock.len()))?;
         store.columns(&clock.columns(), &self.path(root), rows)

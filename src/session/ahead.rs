@@ -1,7 +1,7 @@
-//! [`Ahead`]: continues a copy of a run to the end of its planned motion, to predict how far the base will move.
+//! [`RunAhead`]: continues a copy of a run to the end of its planned motion, to predict how far the base will move.
 
 use super::run::Run;
-use crate::query::{Portion, Query, Same, Watch};
+use crate::query::{ByIdentity, Portion, ProgressCallback, Query};
 use crate::simulation::frame::Totals;
 
 /// Number of steps in a portion of the work.
@@ -9,22 +9,22 @@ const STEPS_PER_PORTION: u64 = 256;
 
 /// A copy of the run on display that goes ahead of it.
 #[derive(Debug)]
-pub struct Ahead {
+pub struct RunAhead {
     run: Run,
     /// The step at which its motion ends.
     last: u64,
 }
 
-impl Query for Ahead {
-    type Input = Same<Run>;
+impl Query for RunAhead {
+    type Input = ByIdentity<Run>;
     type Answer = Totals;
 
-    fn begin(Same(run): Self::Input) -> Self {
+    fn begin(ByIdentity(run): Self::Input) -> Self {
         let run = Run::clone(&run);
         Self { last: run.planned_steps() as u64, run }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Totals> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<Totals> {
         let done = |run: &Run| run.simulation().step_count();
         let until = self.last.min(done(&self.run) + STEPS_PER_PORTION);
         while done(&self.run) < until {

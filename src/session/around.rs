@@ -1,4 +1,4 @@
-//! [`around`]: makes a scenario for a machine that comes without one.
+//! [`gentle_motion`]: makes a scenario for a machine that comes without one.
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
@@ -25,7 +25,7 @@ const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 ///
 /// # Errors
 /// If no task can be stated for the machine.
-pub fn around(machine: &Machine) -> Result<Scenario, ScenarioError> {
+pub fn gentle_motion(machine: &Machine) -> Result<Scenario, ScenarioError> {
     let (mut slow, mut refused) = (None, None);
     for kind in ["reactionless", "minimum-norm"] {
         for span in SPAN_FRACTIONS {

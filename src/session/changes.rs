@@ -3,10 +3,10 @@
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
-use crate::planning::pose_constant::SpaceOf;
+use crate::planning::pose_constant::PoseSpaceQuery;
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::carried;
-use crate::query::{Queries, Whole};
+use crate::planning::posed::carried_points;
+use crate::query::{Queries, QuickWork};
 use crate::settings::range::shortened;
 
 /// Returns the scenario with the settings or the push of an edit. Nothing is planned or checked; see [`checked`]. Drags
@@ -30,32 +30,32 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
 /// Returns the scenario if it is valid after an edit of its settings or of the push.
 pub(super) fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     match edit {
-        Edit::Push { .. } | Edit::Set { .. } => sound(scenario, edit.name()),
+        Edit::Push { .. } | Edit::Set { .. } => check_fit(scenario, edit.name()),
         _ => Ok(scenario),
     }
 }
 
-pub(super) fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
+pub(super) fn check_fit(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
     scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))?;
     Ok(scenario)
 }
 
 /// Returns the scenario with an edit applied before the first step.
-pub(super) fn amended(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Result<Scenario, Refusal> {
+pub(super) fn after_start_edit(scenario: &Scenario, edit: &Edit, queries: &Queries) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
-    let space = queries.ask::<Whole<SpaceOf>>(&scenario.machine);
-    Ok(Scenario { task: posed(scenario, Result::as_deref(&space).ok(), *b), ..scenario.clone() })
+    let space = queries.ask::<QuickWork<PoseSpaceQuery>>(&scenario.machine);
+    Ok(Scenario { task: task_at_b(scenario, Result::as_deref(&space).ok(), *b), ..scenario.clone() })
 }
 
 /// Returns the task at another pose constant b, rad. Points turn with the reactionless workspace if b does not reach
 /// all of them.
-pub(super) fn posed(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) -> Task {
+pub(super) fn task_at_b(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) -> Task {
     if let Some(task) = scenario.task.posed(&scenario.machine, b) {
         return task;
     }
     let mut task = Task { b, ..scenario.task.clone() };
-    let places = space.map(|space| carried(space, &task.points(), [scenario.task.b, b]));
+    let places = space.map(|space| carried_points(space, &task.points(), [scenario.task.b, b]));
     if let Some([from, via @ .., to]) = places.as_deref() {
         let place = |p: &crate::mechanics::planar::Vector| [p.re, p.im];
         (task.from, task.to) = (place(from), place(to));
@@ -82,12 +82,12 @@ pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
 }
 
 /// Reason why a script cannot be carried out, and the index of the edit that causes it, if one does.
-pub(super) struct Failed {
+pub(super) struct ScriptError {
     edit: Option<usize>,
     refusal: Refusal,
 }
 
-impl Failed {
+impl ScriptError {
     pub(super) fn at(edit: usize, refusal: Refusal) -> Self {
         Self { edit: Some(edit), refusal }
     }
@@ -112,7 +112,7 @@ impl Failed {
     }
 }
 
-impl<E: Into<Refusal>> From<E> for Failed {
+impl<E: Into<Refusal>> From<E> for ScriptError {
     fn from(error: E) -> Self {
         Self { edit: None, refusal: error.into() }
     }
@@ -120,18 +120,18 @@ impl<E: Into<Refusal>> From<E> for Failed {
 
 /// Applies the edits at step 0 before the first drag. Returns the scenario, without any edits, and the number of edits
 /// applied.
-pub(super) fn folded(
+pub(super) fn fold_start_edits(
     scenario: &Scenario,
     script: &[TimedEdit],
     queries: &Queries,
-) -> Result<(Scenario, usize), Failed> {
+) -> Result<(Scenario, usize), ScriptError> {
     let count = opening(script);
     // Edits are removed first, because every copy below would copy them too.
     let mut start = scenario.without_edits();
     for (i, timed) in script[..count].iter().enumerate() {
-        start = amended(&start, &timed.edit, queries).map_err(|refusal| Failed::at(i, refusal))?;
+        start = after_start_edit(&start, &timed.edit, queries).map_err(|refusal| ScriptError::at(i, refusal))?;
     }
     // Only the scenario after all of these edits has to be valid, not those in between.
-    let start = if count > 0 { sound(start, "the scenario")? } else { start };
+    let start = if count > 0 { check_fit(start, "the scenario")? } else { start };
     Ok((start, count))
 }

@@ -1,4 +1,4 @@
-//! Applies a [`Brief`]: edits that keep a machine balanced, and choices of counterweights.
+//! Applies a [`DesignBrief`]: edits that keep a machine balanced, and choices of counterweights.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -6,14 +6,17 @@ use std::f64::consts::PI;
 use toml::{Table, Value};
 
 use super::edit::Edit;
-pub use super::scenario::Brief;
-use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Quantity, keep};
+pub use super::scenario::DesignBrief;
+use crate::mechanics::balance::{
+    Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
+};
 use crate::mechanics::counterweights::{
-    Disc, Free, FreeRotor, Front, NoWeights, Objective, Placed, Sites, Weighing, front, place,
+    CounterweightError, CounterweightSpec, Disc, FreeRotor, Front, Objective, Placed, RotorFreedom, Sites, front,
+    place_weights,
 };
 use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
 use crate::session::scenario::Scenario;
-use crate::settings::change::{DEFAULT, at, join, leaves, one};
+use crate::settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
 
 /// Penalty on a change of the mass of a counterweight, 1/kg.
 const MASS_PENALTY_PER_KG: f64 = 1.0;
@@ -26,7 +29,7 @@ const MASS_WEIGHT: f64 = 1e-3;
 /// A counterweight may be this much farther behind the root, m, because of rounding.
 const PLACE_TOLERANCE_M: f64 = 1e-6;
 
-impl Brief {
+impl DesignBrief {
     /// Returns a brief for counterweights like those of a machine: discs of steel of their thickness, as far behind the
     /// root as the farthest of them.
     pub fn of(machine: &Machine) -> Self {
@@ -69,24 +72,24 @@ impl Brief {
         let changed = machine.with(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
         let problem = self.free_numbers(&changed, start, &named);
-        let kept = keep(&changed, &problem).map_err(|why| why.to_string())?;
+        let kept = rebalance(&changed, &problem).map_err(|why| why.to_string())?;
         // All numbers that are free, changed or not, so that the next edit of a drag replaces this one.
-        let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
+        let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != ParameterBounds::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
         let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
-        Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &one(&key, value))))
+        Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &single_change(&key, value))))
     }
 
     /// Returns the numbers that may change: mass and place of counterweights if one is not fixed, otherwise the centres
     /// of mass of links. Numbers named by the edit are fixed.
-    fn free_numbers(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
+    fn free_numbers(&self, machine: &Machine, start: &Machine, named: &[String]) -> RebalanceRequest {
         let spec = machine.spec();
         let free: Vec<(Parameter, &str)> = match spec.counterweights.iter().all(|weight| weight.fixed) {
             true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),
             false => {
                 let weights = spec.counterweights.iter().enumerate();
-                let both = [Quantity::Mass, Quantity::Along];
+                let both = [BodyQuantity::Mass, BodyQuantity::Along];
                 weights
                     .flat_map(|(i, weight)| {
                         both.map(|what| (Parameter::new(Body::Counterweight(i), what), weight.link.as_str()))
@@ -99,22 +102,22 @@ impl Brief {
         let adjusted = |(parameter, link): (Parameter, &str)| {
             let is_fixed = matches!(parameter.body, Body::Counterweight(i) if spec.counterweights[i].fixed);
             let stays = is_fixed || self.fixed.contains(link) || named.contains(&parameter.key(machine));
-            Adjusted {
+            ListedParameter {
                 parameter,
                 hold: match (parameter.quantity, parameter.body) {
-                    _ if stays => Hold::Fixed,
-                    (Quantity::Along, Body::Counterweight(i)) => self.along(machine, start, i),
-                    _ => Hold::Free,
+                    _ if stays => ParameterBounds::Fixed,
+                    (BodyQuantity::Along, Body::Counterweight(i)) => self.along(machine, start, i),
+                    _ => ParameterBounds::Free,
                 },
                 penalty: match (parameter.quantity, parameter.body) {
-                    (Quantity::Mass, _) => MASS_PENALTY_PER_KG,
+                    (BodyQuantity::Mass, _) => MASS_PENALTY_PER_KG,
                     (_, Body::Link(j)) => penalties.get(j).copied().unwrap_or(1.0),
                     _ => PLACE_PENALTY_PER_M,
                 },
                 from: parameter.value(spec).unwrap_or_default(),
             }
         };
-        let mut keep = Keep { parameters: free.into_iter().map(adjusted).collect() };
+        let mut keep = RebalanceRequest { parameters: free.into_iter().map(adjusted).collect() };
         for parameter in Parameter::all(machine) {
             let key = parameter.key(machine);
             if let Some(hold) = self.hold.get(&key).filter(|_| !named.contains(&key)) {
@@ -126,16 +129,16 @@ impl Brief {
 
     /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and to
     /// that at the start. The counterweight stays clear of pins in this range.
-    fn along(&self, machine: &Machine, start: &Machine, i: usize) -> Hold {
+    fn along(&self, machine: &Machine, start: &Machine, i: usize) -> ParameterBounds {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
-        let Some(link) = link else { return Hold::Free };
+        let Some(link) = link else { return ParameterBounds::Free };
         let length = machine.resolved_links()[link].length;
         let ends = [-self.behind_root.unwrap_or(length), length];
         let within = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
         let [low, high] = weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within);
         let clear = weights[0].and_then(|weight| self.clear_of_pins(&machine.resolved_links()[link].pins, weight));
-        Hold::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
+        ParameterBounds::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
     }
 
     /// Returns the range of places, m, in which a counterweight of its present radius stays clear of the pins on either
@@ -152,7 +155,7 @@ impl Brief {
     ///
     /// # Errors
     /// If nothing within the bounds balances it.
-    pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, NoWeights> {
+    pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, CounterweightError> {
         front(machine, &self.weighing(machine), count)
     }
 
@@ -161,18 +164,18 @@ impl Brief {
     ///
     /// # Errors
     /// If nothing within the bounds balances the machine.
-    pub fn stillest(&self, machine: &Machine) -> Result<Placed, NoWeights> {
+    pub fn stillest(&self, machine: &Machine) -> Result<Placed, CounterweightError> {
         let objective = Objective { momentum: 1.0, mass: MASS_WEIGHT, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
         let rotors = drives.filter_map(|(drive, of)| {
             let ends = *self.ratio.get(&of.name)?;
-            Some(FreeRotor { drive, free: Free::Ratio(ends) })
+            Some(FreeRotor { drive, free: RotorFreedom::Ratio(ends) })
         });
-        place(machine, &Weighing { objective, rotors: rotors.collect(), ..self.weighing(machine) })
+        place_weights(machine, &CounterweightSpec { objective, rotors: rotors.collect(), ..self.weighing(machine) })
     }
 
     /// Returns the problem of the lightest counterweights for a machine within the bounds of the brief.
-    pub fn weighing(&self, machine: &Machine) -> Weighing {
+    pub fn weighing(&self, machine: &Machine) -> CounterweightSpec {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
         let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
@@ -181,16 +184,16 @@ impl Brief {
             to: part.length,
             most: self.heaviest.unwrap_or(f64::INFINITY),
         });
-        Weighing {
+        CounterweightSpec {
             clearance: self.clearance,
             payload: self.payload,
-            ..Weighing::least(Objective::mass(), sites.collect(), self.disc())
+            ..CounterweightSpec::least(Objective::mass(), sites.collect(), self.disc())
         }
     }
 }
 
 /// Returns the edit that sets the length of a link, m, and of all links that share it.
-pub fn length_of(link: &Link, to: f64) -> Edit {
+pub fn length_edit(link: &Link, to: f64) -> Edit {
     match &link.length {
         Length::Named(name) => Edit::at(&["length", name], to),
         Length::Metres(_) => Edit::at(&["link", &link.name, "length"], to),
@@ -202,7 +205,7 @@ pub fn length_of(link: &Link, to: f64) -> Edit {
 ///
 /// # Errors
 /// If the brief cannot be changed so, or nothing balances the machine: what prevents it, and what would be feasible.
-pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
+pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     let next = scenario.with(change).map_err(|why| why.to_string())?;
     let begins = next.design.keep_balanced && !scenario.design.keep_balanced;
     if !begins || Inertia::of(&next.machine).is_balanced() {
@@ -214,7 +217,7 @@ pub fn briefed(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
 
 /// Returns the edit that turns the machine into another one with the same links: numbers of links, lengths, and
 /// counterweights. Returns `None` if nothing differs.
-pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
+pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
         let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
@@ -228,7 +231,7 @@ pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let lengths = lengths.map(|(name, x)| at(&["length", name], *x));
     let change = links.chain(lengths).fold(Table::new(), |all, one| join(all, &one));
     let carries = |spec: &MachineSpec| (spec.counterweights.clone(), spec.payload.mass, spec.drives.clone());
-    let change = match weights_of(scenario, of) {
+    let change = match counterweights_edit(scenario, of) {
         Edit::Set { change: weights } if carries(was) != carries(is) => join(change, &weights),
         _ => change,
     };
@@ -237,18 +240,18 @@ pub fn becoming(scenario: &Scenario, of: &Machine) -> Option<Edit> {
 
 /// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. Holds of
 /// numbers of counterweights are removed if the counterweights are on other links.
-pub fn weights_of(scenario: &Scenario, of: &Machine) -> Edit {
+pub fn counterweights_edit(scenario: &Scenario, of: &Machine) -> Edit {
     let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
     let change = Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]);
     let [has, holds] = [machine, of].map(|machine| machine.spec().payload.mass);
-    let change = if has == holds { change } else { join(change, &one("payload.mass", holds)) };
+    let change = if has == holds { change } else { join(change, &single_change("payload.mass", holds)) };
     let carriers = |machine: &Machine| -> Vec<String> {
         machine.spec().counterweights.iter().map(|weight| weight.link.clone()).collect()
     };
     let are_others = carriers(machine) != carriers(of);
     let change = match are_others && scenario.design.hold.keys().any(|key| key.starts_with("counterweight.")) {
-        true => join(change, &one("design.hold.counterweight", DEFAULT)),
+        true => join(change, &single_change("design.hold.counterweight", DEFAULT_WORD)),
         false => change,
     };
     let ratio = |drive: &Drive| drive.rotor.map(|rotor| rotor.ratio);

@@ -1,17 +1,17 @@
-//! [`Designed`]: the states of the machine after each of its changes.
+//! [`DesignVersion`]: the states of the machine after each of its changes.
 
 use toml::Table;
 
 use super::changes::in_order;
 use super::edit::{Edit, TimedEdit};
-use super::events::GESTURE;
+use super::events::GESTURE_PAUSE;
 use super::refusal::Refusal;
 use super::scenario::Scenario;
 use crate::mechanics::machine::{Machine, is_of_machine};
 
 /// A state of the machine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Designed {
+pub struct DesignVersion {
     /// Number of changes of the machine up to this state.
     pub changes: usize,
     /// Step from which it holds.
@@ -30,9 +30,9 @@ const MAX_STATES: usize = 200;
 ///
 /// # Errors
 /// If an edit cannot be applied to the machine.
-pub fn designs(scenario: &Scenario) -> Result<Vec<Designed>, Refusal> {
+pub fn designs(scenario: &Scenario) -> Result<Vec<DesignVersion>, Refusal> {
     let mut now = scenario.without_edits();
-    let mut all = vec![Designed { changes: 0, step: 0, words: String::new(), machine: now.machine.clone() }];
+    let mut all = vec![DesignVersion { changes: 0, step: 0, words: String::new(), machine: now.machine.clone() }];
     let edits: Vec<TimedEdit> = in_order(&scenario.edits).into_iter().filter(|e| e.edit.sets_machine()).collect();
     let mut changes = 0;
     for (i, timed) in edits.iter().enumerate() {
@@ -44,7 +44,7 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<Designed>, Refusal> {
         }
         changes += 1;
         let (step, words) = (timed.step, Edit::Set { change: of_machine }.title());
-        all.push(Designed { changes, step, words, machine: now.machine.clone() });
+        all.push(DesignVersion { changes, step, words, machine: now.machine.clone() });
         if all.len() > MAX_STATES {
             all.remove(1);
         }
@@ -55,5 +55,5 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<Designed>, Refusal> {
 /// Whether an edit belongs to a drag that the next edit continues. `step` is the step size, s.
 fn is_dragged_on(timed: &TimedEdit, next: &TimedEdit, step: f64) -> bool {
     let later = next.step - timed.step;
-    later > 0 && later as f64 * step <= GESTURE + 1e-9 && timed.edit.is_replaced_by(&next.edit)
+    later > 0 && later as f64 * step <= GESTURE_PAUSE + 1e-9 && timed.edit.is_replaced_by(&next.edit)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::changes::{Failed, changed};
+use super::changes::{ScriptError, changed};
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
 use super::replay;
@@ -13,14 +13,14 @@ use crate::session::scenario::{Bookmark, Scenario};
 use crate::simulation::frame::Frame;
 
 /// Callback that receives the progress, from 0 to 1, and returns whether the work is to go on.
-pub use crate::query::Watch;
+pub use crate::query::ProgressCallback;
 
 /// Number of frames between two progress reports.
-pub(super) const WORD: usize = 256;
+pub(super) const REPORT_FRAMES: usize = 256;
 
 /// Kind of data that is saved with a run and on which no frame depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum AnnotationKind {
     /// Named instants.
     Bookmarks,
     /// Earlier courses of the run that other edits have replaced.
@@ -39,11 +39,11 @@ pub(super) struct Document {
     /// Bookmarks in the order of time.
     pub bookmarks: Arc<Vec<Bookmark>>,
     /// Courses of the run that were replaced when the user went back in time and edited, the oldest first.
-    pub branches: Arc<Vec<Left>>,
+    pub branches: Arc<Vec<LeftBranch>>,
 }
 
 /// Result of running a document.
-pub(super) struct Performed {
+pub(super) struct DocumentRun {
     /// Run at its last step.
     pub run: Run,
     /// One frame for each step.
@@ -53,7 +53,7 @@ pub(super) struct Performed {
 
 /// A branch: the same scenario with a script that was replaced by another one.
 #[derive(Clone, Debug)]
-pub(super) struct Left {
+pub(super) struct LeftBranch {
     pub script: Script,
     /// Number of steps to its end.
     pub end: u64,
@@ -68,25 +68,30 @@ impl Document {
     }
 
     /// Takes the bookmarks or the branches of another document over.
-    pub fn keep_as(&mut self, other: &Self, kept: Kept) {
+    pub fn keep_as(&mut self, other: &Self, kept: AnnotationKind) {
         match kept {
-            Kept::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
-            Kept::Branches => self.branches.clone_from(&other.branches),
+            AnnotationKind::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
+            AnnotationKind::Branches => self.branches.clone_from(&other.branches),
         }
     }
 
     /// Runs the document from its first to its last step, with the queries of a `known` run, if there is one. If
     /// `patient`, a task that does not fit its machine waits at the first step instead of failing.
-    pub fn perform(&self, known: Option<&Run>, patient: bool, watch: Watch<'_>) -> Result<Performed, Failed> {
+    pub fn perform(
+        &self,
+        known: Option<&Run>,
+        patient: bool,
+        watch: ProgressCallback<'_>,
+    ) -> Result<DocumentRun, ScriptError> {
         let (mut frames, mut machines) = (Sequence::default(), Machines::default());
         let see = |run: &Run, frame: &Frame| {
             frames.push(*frame);
             machines.hold(frame.step, &run.scenario().machine);
-            !frames.len().is_multiple_of(WORD) || watch(frames.len() as f64 / (self.end + 1) as f64)
+            !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
         let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
-        Ok(Performed { run, frames, machines })
+        Ok(DocumentRun { run, frames, machines })
     }
 
     /// Compares scenario and script with those of another document. If they differ at most in settings on which no

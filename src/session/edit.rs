@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
-use crate::mechanics::machine::{ANGLE, PARTS, is_of_machine};
-use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, effect_in, effect_of};
+use crate::mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
+use crate::session::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of};
 use crate::settings::change;
 use crate::settings::key::Effect;
-use crate::settings::range::{Check, shortened};
+use crate::settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -111,7 +111,7 @@ impl TimedEdit {
 impl Edit {
     /// Returns an edit of one setting by its path, such as `plant.payload.mass`.
     pub fn set(path: &str, value: impl Into<Value>) -> Self {
-        Self::Set { change: change::one(path, value) }
+        Self::Set { change: change::single_change(path, value) }
     }
 
     /// Returns an edit of one setting by the parts of its path.
@@ -183,21 +183,21 @@ impl Edit {
 
     /// Whether it changes the machine.
     pub fn sets_machine(&self) -> bool {
-        self.sets(&PARTS)
+        self.sets(&MACHINE_TABLES)
     }
 
     /// Checks the range of the numbers of a drag or pose. Settings are checked together with the rest of the scenario.
     ///
     /// # Errors
     /// The first number that is out of range.
-    pub fn check(&self) -> Result<(), Check> {
-        let found: Vec<Check> = match self {
-            Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
+    pub fn check(&self) -> Result<(), RangeCheck> {
+        let found: Vec<RangeCheck> = match self {
+            Self::DragTarget { x, y } => vec![POINT_RANGE.check("x", *x), POINT_RANGE.check("y", *y)],
             Self::DragAngles { a1, a2 } => vec![ANGLE.check("a1", *a1), ANGLE.check("a2", *a2)],
             Self::PullLink { along, x, y, .. } => {
-                vec![PLACE.check("along", *along), PLACE.check("x", *x), PLACE.check("y", *y)]
+                vec![POINT_RANGE.check("along", *along), POINT_RANGE.check("x", *x), POINT_RANGE.check("y", *y)]
             }
-            Self::SlideB { b } | Self::PoseB { b } => vec![POSE_CONSTANT.check("b", *b)],
+            Self::SlideB { b } | Self::PoseB { b } => vec![POSE_CONSTANT_RANGE.check("b", *b)],
             _ => Vec::new(),
         };
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
@@ -209,7 +209,8 @@ impl Edit {
     }
 
     /// Refusal of an edit [of the start](Self::is_of_the_start) after the first step.
-    pub(super) const AT_START: &str = "task, time, base and step can change only before the first step: want step = 0";
+    pub(super) const START_ONLY_REASON: &str =
+        "task, time, base and step can change only before the first step: want step = 0";
 
     /// Whether it changes the plan of the motion, so that it is allowed only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
@@ -308,7 +309,7 @@ fn title_of(change: &Table) -> String {
     }
     let one = |(path, value): (String, &Value)| {
         let number = change::number(value);
-        let back = value.as_str() == Some(change::DEFAULT);
+        let back = value.as_str() == Some(change::DEFAULT_WORD);
         match (path.as_str(), number) {
             ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
             // Most edits are of the task, so its name is left out.

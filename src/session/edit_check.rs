@@ -33,7 +33,9 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
         }
         now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;
         match now.check(timed.edit.name()) {
-            Ok(()) if place >= opening && timed.edit.is_of_the_start() => return Err(of_entry(Edit::AT_START.into())),
+            Ok(()) if place >= opening && timed.edit.is_of_the_start() => {
+                return Err(of_entry(Edit::START_ONLY_REASON.into()));
+            }
             Ok(()) => unsound = None,
             Err(why) if place >= opening => return Err(of_entry(why.to_string())),
             Err(why) => unsound = unsound.or_else(|| Some(of_entry(why.to_string()))),

@@ -6,16 +6,16 @@ use std::sync::Arc;
 
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
-use super::verdict::PAST;
+use super::verdict::LIMIT_TOLERANCE;
 use crate::mechanics::machine::Machine;
-use crate::query::{Growing, Shared};
+use crate::query::{IncrementalQuery, Shared};
 use crate::session::scenario::Bookmark;
-use crate::settings::number::{Short, significant};
+use crate::settings::number::{ShortNumber, significant};
 use crate::simulation::frame::{Frame, Phase, Reach};
 
 /// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EventKind {
     /// The user has changed something.
     Edit,
     /// The user has set a bookmark.
@@ -42,11 +42,11 @@ pub struct Event {
     /// Description.
     pub words: String,
     /// Kind.
-    pub kind: Kind,
+    pub kind: EventKind,
 }
 
 /// Edits form one gesture while they follow each other within this time, s; a drag sends one for each picture.
-pub(super) const GESTURE: f64 = 0.25;
+pub(super) const GESTURE_PAUSE: f64 = 0.25;
 
 /// The base has to feel nothing for this long, s, before an event says so, because a moment may only pass through zero.
 const MIN_QUIET_S: f64 = 0.05;
@@ -105,7 +105,7 @@ impl Gestures {
     }
 }
 
-impl Growing for Gestures {
+impl IncrementalQuery for Gestures {
     type Item = TimedEdit;
     /// Step size, s.
     type Input = f64;
@@ -153,7 +153,7 @@ impl Gesture {
         // A push lasts until its force is zero, however long the pointer rests.
         let goes_on = match &next.edit {
             Edit::Push { .. } => force(&next.edit) > 0.0 && force(last) > 0.0,
-            _ => (next.step - self.last.step) as f64 * step <= GESTURE + 1e-9,
+            _ => (next.step - self.last.step) as f64 * step <= GESTURE_PAUSE + 1e-9,
         };
         goes_on && last.is_replaced_by(&next.edit)
     }
@@ -168,7 +168,7 @@ impl Gesture {
             0 => words,
             steps => format!("{words}, within {:.3} s", steps as f64 * step),
         };
-        Event { step: self.first, words, kind: Kind::Edit }
+        Event { step: self.first, words, kind: EventKind::Edit }
     }
 }
 
@@ -177,14 +177,14 @@ pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
     let event = |mark: &Bookmark| Event {
         step: (mark.time / step).round() as u64,
         words: format!("bookmark: {}", mark.name),
-        kind: Kind::Bookmark,
+        kind: EventKind::Bookmark,
     };
     bookmarks.iter().map(event).collect()
 }
 
 /// Events found in frames, which are read in order, one for each step from the start on.
 #[derive(Clone, Debug)]
-pub struct Watched {
+pub struct EventLog {
     /// Step size, s.
     step: f64,
     machines: Machines,
@@ -215,7 +215,7 @@ struct Seen {
     peak: (u64, f64),
 }
 
-impl Growing for Watched {
+impl IncrementalQuery for EventLog {
     type Item = Frame;
     /// Step size, s, and the machine at each step.
     type Input = (f64, Machines);
@@ -255,7 +255,7 @@ impl Growing for Watched {
     }
 }
 
-impl Watched {
+impl EventLog {
     /// Returns the events that are not edits of the user.
     pub fn events(&self) -> &[Event] {
         &self.events
@@ -269,7 +269,7 @@ impl Watched {
     /// Returns the event of the largest |n_B|.
     pub fn peak(&self) -> Event {
         let (step, moment) = self.now.peak;
-        Event { step, words: format!("peak |n_B| {} N m", significant(moment)), kind: Kind::Peak }
+        Event { step, words: format!("peak |n_B| {} N m", significant(moment)), kind: EventKind::Peak }
     }
 
     /// Reads one more frame of a run whose frames are not kept, with the step size, s, and the machine at that step.
@@ -286,8 +286,8 @@ impl Watched {
             self.now.peak = (step, frame.peaks.arm_moment);
         }
         match (self.now.phase.replace(frame.phase), frame.phase) {
-            (Some(Phase::Motion), Phase::Rest) => self.add(step, Kind::Note, "end of motion"),
-            (Some(Phase::Follow), Phase::Rest) => self.add(step, Kind::Note, "at rest"),
+            (Some(Phase::Motion), Phase::Rest) => self.add(step, EventKind::Note, "end of motion"),
+            (Some(Phase::Follow), Phase::Rest) => self.add(step, EventKind::Note, "at rest"),
             _ => {}
         }
         self.carried(frame);
@@ -300,7 +300,7 @@ impl Watched {
         self.now.events = self.events.len();
     }
 
-    fn add(&mut self, step: u64, kind: Kind, words: impl Into<String>) {
+    fn add(&mut self, step: u64, kind: EventKind, words: impl Into<String>) {
         Arc::make_mut(&mut self.events).push(Event { step, words: words.into(), kind });
     }
 
@@ -308,23 +308,23 @@ impl Watched {
     fn carried(&mut self, frame: &Frame) {
         let step = frame.step;
         match (self.now.held.replace(frame.loaded), frame.loaded) {
-            (Some(false), true) => self.add(step, Kind::Note, "the payload is picked up"),
-            (None, true) => self.add(step, Kind::Note, "the payload is held"),
-            (Some(true), false) => self.add(step, Kind::Note, "the payload is let go"),
+            (Some(false), true) => self.add(step, EventKind::Note, "the payload is picked up"),
+            (None, true) => self.add(step, EventKind::Note, "the payload is held"),
+            (Some(true), false) => self.add(step, EventKind::Note, "the payload is let go"),
             _ => {}
         }
         match (std::mem::replace(&mut self.now.saturated, frame.wheel.saturated), frame.wheel.saturated) {
             (false, true) => {
                 let text = format!("the reaction wheel saturates at {} rad/s", significant(frame.wheel.rate));
-                self.add(step, Kind::Warning, text);
+                self.add(step, EventKind::Warning, text);
             }
-            (true, false) => self.add(step, Kind::Note, "the reaction wheel gives what is wanted again"),
+            (true, false) => self.add(step, EventKind::Note, "the reaction wheel gives what is wanted again"),
             _ => {}
         }
         if let Some(fault) = (!self.now.faulty).then(|| frame.fault()).flatten() {
             self.now.faulty = true;
             let text = format!("audit failed: {} ({}) {:.1e} {}", fault.name, fault.meaning, fault.value, fault.unit);
-            self.add(step, Kind::Fault, text);
+            self.add(step, EventKind::Fault, text);
         }
     }
 
@@ -336,17 +336,17 @@ impl Watched {
             let share = torque.abs() / limit;
             if share >= AT_LIMIT_FROM && self.now.limited & bit == 0 {
                 self.now.limited |= bit;
-                let text = format!("drive {} comes to its torque limit, {} N m", k + 1, Short(limit));
-                self.add(frame.step, Kind::Warning, text);
+                let text = format!("drive {} comes to its torque limit, {} N m", k + 1, ShortNumber(limit));
+                self.add(frame.step, EventKind::Warning, text);
             } else if share < AT_LIMIT_UNTIL {
                 self.now.limited &= !bit;
             }
         }
         let (by, angle) = frame.peaks.past_limit;
-        if by > PAST && !self.now.past {
+        if by > LIMIT_TOLERANCE && !self.now.past {
             self.now.past = true;
             let angle = machine.angles().get(angle).map_or("a joint", |angle| &angle.name);
-            self.add(frame.step, Kind::Warning, format!("{angle} passes its limit"));
+            self.add(frame.step, EventKind::Warning, format!("{angle} passes its limit"));
         }
     }
 
@@ -357,15 +357,15 @@ impl Watched {
             self.now.quiet = None;
             self.now.felt = [true, true];
             match (ever, of_late) {
-                (false, _) => self.add(frame.step, Kind::Warning, "the base begins to feel the arm"),
-                (true, false) => self.add(frame.step, Kind::Warning, "the base feels the arm again"),
+                (false, _) => self.add(frame.step, EventKind::Warning, "the base begins to feel the arm"),
+                (true, false) => self.add(frame.step, EventKind::Warning, "the base feels the arm again"),
                 (true, true) => {}
             }
         } else if of_late {
             let since = *self.now.quiet.get_or_insert(frame.step);
             if (frame.step - since) as f64 * dt >= MIN_QUIET_S {
                 self.now.felt[1] = false;
-                self.add(since, Kind::Note, "the base feels nothing again");
+                self.add(since, EventKind::Note, "the base feels nothing again");
             }
         }
     }
@@ -377,11 +377,11 @@ impl Watched {
             return;
         }
         let (text, kind) = match reach {
-            Reach::Inside => ("the target is inside the reactionless workspace".into(), Kind::Within),
-            Reach::Carried => ("the target turns with the workspace".into(), Kind::Within),
+            Reach::Inside => ("the target is inside the reactionless workspace".into(), EventKind::Within),
+            Reach::Carried => ("the target turns with the workspace".into(), EventKind::Within),
             Reach::Outside { shown_b, .. } => {
                 let mend = shown_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it"));
-                (format!("the target is outside the reactionless workspace: {mend}"), Kind::Beyond)
+                (format!("the target is outside the reactionless workspace: {mend}"), EventKind::Beyond)
             }
         };
         self.add(frame.step, kind, text);

@@ -1,9 +1,9 @@
 //! [`Fork`]: the difference between two runs of one scenario.
 
-use super::document::Left;
+use super::document::LeftBranch;
 use super::edit::TimedEdit;
 use super::events::{first_gesture, last_gesture};
-use crate::query::{Quick, Same, Sequence};
+use crate::query::{ByIdentity, QuickQuery, Sequence};
 
 /// Difference between a branch and the run on display.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Fork {
     pub to: f64,
 }
 
-impl Left {
+impl LeftBranch {
     /// Returns the difference between the branch and a run with other edits that ends at step `end`.
     pub(super) fn beside(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
         Fork::of((&self.script.in_order(), self.end, self.script.is_led()), (edits, end), self.step)
@@ -28,8 +28,8 @@ impl Left {
 #[derive(Debug)]
 pub(super) struct Forks;
 
-impl Quick for Forks {
-    type Input = (Same<Vec<Left>>, Sequence<TimedEdit>, u64);
+impl QuickQuery for Forks {
+    type Input = (ByIdentity<Vec<LeftBranch>>, Sequence<TimedEdit>, u64);
     type Answer = Vec<Fork>;
 
     fn answer((branches, edits, end): &Self::Input) -> Vec<Fork> {

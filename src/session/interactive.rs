@@ -14,14 +14,14 @@ mod passing;
 
 use std::sync::Arc;
 
-use change::Change;
+use change::HistoryStep;
 
 use super::document::Document;
 use super::edit::TimedEdit;
-use super::events::{Gestures, Watched};
+use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
-use crate::query::{Grown, Queries, Sequence};
+use crate::query::{IncrementalAnswer, Queries, Sequence};
 use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use crate::simulation::frame::Frame;
 
@@ -37,8 +37,8 @@ pub struct Session {
     machines: Machines,
     cursor: usize,
     playing: bool,
-    undo: Vec<Arc<Change>>,
-    redo: Vec<Arc<Change>>,
+    undo: Vec<Arc<HistoryStep>>,
+    redo: Vec<Arc<HistoryStep>>,
     /// Whether a gesture lasts; edits of one kind then join into one undo entry.
     gesture: bool,
     /// Whether settings changed in the gesture apply at the present step; its first edit decides.
@@ -82,12 +82,12 @@ impl Session {
     }
 
     /// Returns the gestures of the user, from the cache of queries.
-    pub fn gestures(&self, queries: &Queries) -> Grown<Gestures> {
+    pub fn gestures(&self, queries: &Queries) -> IncrementalAnswer<Gestures> {
         queries.grow(&self.scenario().step, &self.edits, usize::MAX)
     }
 
     /// Returns all other events, from the cache of queries, which reads no more than `at_most` new frames.
-    pub fn events(&self, queries: &Queries, at_most: usize) -> Grown<Watched> {
+    pub fn events(&self, queries: &Queries, at_most: usize) -> IncrementalAnswer<EventLog> {
         queries.grow(&(self.scenario().step, self.machines.clone()), &self.frames, at_most)
     }
 

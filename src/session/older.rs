@@ -24,10 +24,10 @@ pub fn settings(table: &mut Table) -> Result<Option<Table>, String> {
         }
         "set-machine" => {
             let (key, value) = (text(take("key"), "key")?, text(take("value"), "value")?);
-            change::one(&key, change::value(&value))
+            change::single_change(&key, change::value(&value))
         }
-        "set-time" => change::one("task.time", take("time").ok_or("missing field `time`")?),
-        "compare-b" => change::one("compare_b", take("b").unwrap_or_else(|| change::DEFAULT.into())),
+        "set-time" => change::single_change("task.time", take("time").ok_or("missing field `time`")?),
+        "compare-b" => change::single_change("compare_b", take("b").unwrap_or_else(|| change::DEFAULT_WORD.into())),
         _ => return Ok(None),
     };
     take("do");

@@ -8,13 +8,13 @@ use crate::planning::following::Blocked;
 use crate::planning::off_plane::drift::DriftError;
 use crate::planning::off_plane::least_reaction::LeastReactionError;
 use crate::planning::off_plane::price::PriceError;
-use crate::planning::pose_constant::{NoCommon, Unreachable};
+use crate::planning::pose_constant::{NoCommonB, Unreachable};
 use crate::planning::pose_space::{NoPoseSpace, PlaneError};
 use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeError;
 use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
-use crate::settings::number::Short;
-use crate::settings::range::{Check, Want, refused};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::{RangeCheck, Requirement, range_error};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -39,7 +39,7 @@ pub enum Refusal {
         /// Message with the names of the points.
         said: String,
         /// Reason, and the change that would help.
-        why: NoCommon,
+        why: NoCommonB,
     },
     /// The path cannot be made.
     #[error(transparent)]
@@ -95,14 +95,14 @@ pub enum Refusal {
         value: String,
     },
     /// A number out of range.
-    #[error("{}", refused(what, *value, want))]
+    #[error("{}", range_error(what, *value, want))]
     OutOfRange {
         /// Key of the number.
         what: String,
         /// The value that was given.
         value: f64,
         /// Allowed values.
-        want: Want,
+        want: Requirement,
     },
     /// The motion takes longer than the maximum.
     #[error("the motion would take {}: want at most {MAX_TIME} s, with higher limits or a shorter way", seconds(*time))]
@@ -111,7 +111,7 @@ pub enum Refusal {
         time: f64,
     },
     /// The run has more steps than the maximum.
-    #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", Short(*time), Short(*step))]
+    #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", ShortNumber(*time), ShortNumber(*step))]
     TooManySteps {
         /// s.
         time: f64,
@@ -170,12 +170,12 @@ fn seconds(time: f64) -> String {
 ///
 /// # Errors
 /// If it is longer than [`MAX_TIME`], or not a number.
-pub(super) fn allowed(time: f64) -> Result<(), Refusal> {
+pub(super) fn check_time(time: f64) -> Result<(), Refusal> {
     if time <= MAX_TIME { Ok(()) } else { Err(Refusal::TooLong { time }) }
 }
 
-impl From<Check> for Refusal {
-    fn from(Check { key, value, want, .. }: Check) -> Self {
+impl From<RangeCheck> for Refusal {
+    fn from(RangeCheck { key, value, want, .. }: RangeCheck) -> Self {
         Self::OutOfRange { what: key.into(), value, want }
     }
 }

@@ -1,7 +1,7 @@
 //! Replays scenarios with their edits from the first to the last step.
 
 use crate::query::Queries;
-use crate::session::changes::{Failed, folded, in_order};
+use crate::session::changes::{ScriptError, fold_start_edits, in_order};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run, TimedEdit};
 use crate::simulation::audit::AuditFigure;
@@ -11,10 +11,10 @@ use crate::simulation::frame::Frame;
 ///
 /// # Errors
 /// If an edit cannot apply.
-pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
+pub fn with_start_edits(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     let script = in_order(&scenario.edits);
     let (start, count) =
-        folded(scenario, &script, &Queries::default()).map_err(|failed| failed.named(&scenario.edits))?;
+        fold_start_edits(scenario, &script, &Queries::default()).map_err(|failed| failed.named(&scenario.edits))?;
     Ok((start, script.len() - count))
 }
 
@@ -58,7 +58,7 @@ fn whole(
 ) -> Result<Run, Refusal> {
     let end = |run: &Run, script: &[TimedEdit]| {
         let last = run.whole(script)?;
-        allow(last).map(|()| last).map_err(Failed::from)
+        allow(last).map(|()| last).map_err(ScriptError::from)
     };
     let done = perform(scenario, &in_order(&scenario.edits), (end, false), None, see);
     done.map_err(|failed| failed.named(&scenario.edits))
@@ -69,7 +69,7 @@ fn whole(
 ///
 /// # Errors
 /// As [`replay`].
-pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>), Refusal> {
+pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>), Refusal> {
     let mut course: [Vec<f64>; 3] = Default::default();
     let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
@@ -85,10 +85,10 @@ pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>),
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, Failed>, bool),
+    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, ScriptError>, bool),
     known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame) -> bool,
-) -> Result<Run, Failed> {
+) -> Result<Run, ScriptError> {
     let (mut run, begun) = Run::begin(scenario, script, known)?;
     if let Some(waiting) = run.waiting() {
         if !patient {
@@ -102,7 +102,7 @@ pub(super) fn perform(
     loop {
         let step = run.simulation().step_count();
         while let Some((i, timed)) = edits.next_if(|(_, e)| e.step <= step) {
-            run.apply(&timed.edit).map_err(|refusal| Failed::at(i, refusal))?;
+            run.apply(&timed.edit).map_err(|refusal| ScriptError::at(i, refusal))?;
         }
         let frame = run.frame();
         if !frame.is_finite() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::changes::{Failed, folded};
+use super::changes::{ScriptError, fold_start_edits};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
@@ -11,12 +11,12 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
 use crate::planning::following::follow::Bounds;
 use crate::planning::following::{Follower, Pull};
-use crate::planning::pose_constant::{BOfPoints, SpaceOf};
+use crate::planning::pose_constant::{CommonB, PoseSpaceQuery};
 use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
-use crate::planning::posture::Led;
+use crate::planning::posture::GuidedSpace;
 use crate::planning::reactionless::{BSet, Decimal};
-use crate::query::{Queries, Same, Shared, Whole};
-use crate::session::changes::{amended, changed, checked};
+use crate::query::{ByIdentity, Queries, QuickWork, Shared};
+use crate::session::changes::{after_start_edit, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
 use crate::settings::key::Effect;
 use crate::simulation::frame::Frame;
@@ -24,7 +24,7 @@ use crate::simulation::{Guide, Simulation};
 
 /// Why a run waits: its task does not fit its machine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Waiting {
+pub struct WaitReason {
     /// Why the task cannot be planned.
     pub why: Refusal,
     /// Index of each point that the b of the task does not reach, counted from A, and the nearest b that reaches it,
@@ -32,7 +32,7 @@ pub struct Waiting {
     pub points: Vec<(usize, Option<Decimal>)>,
 }
 
-impl Waiting {
+impl WaitReason {
     fn of(scenario: &Scenario, space: Option<&PoseSpace>, why: Refusal) -> Self {
         let task = &scenario.task;
         let Some(space) = space else { return Self { why, points: Vec::new() } };
@@ -55,7 +55,7 @@ pub struct Run {
     space: Result<Arc<PoseSpace>, NoPoseSpace>,
     plan: Arc<Plan>,
     /// Set if the task cannot be planned; the plan is then to rest.
-    waiting: Option<Waiting>,
+    waiting: Option<WaitReason>,
     simulation: Simulation,
     /// Cache of queries about the run, which copies share.
     queries: Queries,
@@ -80,9 +80,9 @@ impl Run {
         scenario: &Scenario,
         script: &[TimedEdit],
         known: Option<&Self>,
-    ) -> Result<(Self, usize), Failed> {
+    ) -> Result<(Self, usize), ScriptError> {
         let queries = known.map_or_else(Queries::default, |run| run.queries.clone());
-        let (start, count) = folded(scenario, script, &queries)?;
+        let (start, count) = fold_start_edits(scenario, script, &queries)?;
         Ok((Self::patient(&start, &queries)?, count))
     }
 
@@ -100,7 +100,7 @@ impl Run {
         let known = space.as_deref();
         let (plan, waiting) = match plan(scenario, known) {
             Ok(plan) => (plan, None),
-            Err(why) => (Plan::rest(scenario, known.ok()), Some(Waiting::of(scenario, known.ok(), why))),
+            Err(why) => (Plan::rest(scenario, known.ok()), Some(WaitReason::of(scenario, known.ok(), why))),
         };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
@@ -109,7 +109,7 @@ impl Run {
     }
 
     /// Returns why the run waits, if its task does not fit its machine.
-    pub fn waiting(&self) -> Option<&Waiting> {
+    pub fn waiting(&self) -> Option<&WaitReason> {
         self.waiting.as_ref()
     }
 
@@ -143,8 +143,8 @@ impl Run {
 
     /// Returns the set of b that reach all points of the task, if there are any.
     pub fn bands(&self) -> Option<BSet> {
-        let space = Same(self.space.clone().ok()?);
-        self.queries.ask::<Whole<BOfPoints>>(&(space, self.scenario.task.points())).all.clone()
+        let space = ByIdentity(self.space.clone().ok()?);
+        self.queries.ask::<QuickWork<CommonB>>(&(space, self.scenario.task.points())).all.clone()
     }
 
     /// Returns the simulation.
@@ -186,9 +186,9 @@ impl Run {
     }
 
     /// Returns the planned motion, while the machine follows it, as a shared value.
-    pub fn shared_motion(&self) -> Option<Same<Motion>> {
+    pub fn shared_motion(&self) -> Option<ByIdentity<Motion>> {
         match self.simulation.guide() {
-            Guide::Motion { motion, .. } => Some(Same(motion.clone())),
+            Guide::Motion { motion, .. } => Some(ByIdentity(motion.clone())),
             Guide::Follow(_) => None,
         }
     }
@@ -213,7 +213,7 @@ impl Run {
             return Ok(());
         }
         if self.is_untouched() && !edit.leads() {
-            let scenario = checked(amended(&self.scenario, edit, &self.queries)?, edit)?;
+            let scenario = checked(after_start_edit(&self.scenario, edit, &self.queries)?, edit)?;
             *self = Self::planned(&scenario, &self.queries)?;
             return Ok(());
         }
@@ -274,7 +274,7 @@ impl Run {
     /// Changes settings during a motion, which keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
         if edit.is_of_the_start() {
-            return Err(Refusal::Task(Edit::AT_START.into()));
+            return Err(Refusal::Task(Edit::START_ONLY_REASON.into()));
         }
         let scenario = checked(changed(&self.scenario, edit)?, edit)?;
         if let Some((key, value)) = edit.limits().filter(|_| self.leaves_limits(&scenario)) {
@@ -426,14 +426,14 @@ impl Run {
     ///
     /// # Errors
     /// If it is later than [`MAX_STEPS`], or an edit comes after it.
-    pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, Failed> {
+    pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
         let (last, step) = (self.last_step(), self.scenario.step);
         if last > MAX_STEPS {
             let time = self.scenario.duration.unwrap_or(self.planned_time());
             return Err(Refusal::TooManySteps { time, step, steps: last }.into());
         }
         match script.iter().position(|e| e.step > last) {
-            Some(late) => Err(Failed::at(
+            Some(late) => Err(ScriptError::at(
                 late,
                 Refusal::Task(format!("the run ends at step {last}: want an earlier one, or a longer duration")),
             )),
@@ -446,7 +446,7 @@ impl Run {
 /// points.
 fn space_of(scenario: &Scenario, queries: &Queries) -> Result<Arc<PoseSpace>, NoPoseSpace> {
     let task = &scenario.task;
-    let space = Result::clone(&queries.ask::<Whole<SpaceOf>>(&scenario.machine))?;
-    let led = (Same(space), scenario.machine.clone(), task.posture, task.keep_off_change_points);
-    Ok(Arc::clone(&queries.ask::<Whole<Led>>(&led)))
+    let space = Result::clone(&queries.ask::<QuickWork<PoseSpaceQuery>>(&scenario.machine))?;
+    let led = (ByIdentity(space), scenario.machine.clone(), task.posture, task.keep_off_change_points);
+    Ok(Arc::clone(&queries.ask::<QuickWork<GuidedSpace>>(&led)))
 }

@@ -8,21 +8,21 @@
 
 mod statements;
 
-pub use statements::{Lamp, Statement, Statements};
+pub use statements::{Statement, Statements, StatusLight};
 
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::curves::Samples;
-use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
+use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
 use crate::session::scenario::{Scenario, TaskKind};
-use crate::settings::number::{Short, fixed, significant};
+use crate::settings::number::{ShortNumber, fixed, significant};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
 
 /// An end effector misses its target if it ends farther from it than this, m.
-pub const MISS: f64 = 1e-4;
+pub const TARGET_TOLERANCE: f64 = 1e-4;
 
 /// A joint is past its limit if it exceeds the limit by more than this, rad.
-pub const PAST: f64 = 1e-6;
+pub const LIMIT_TOLERANCE: f64 = 1e-6;
 
 /// A drive is past its limit above this ratio of peak to limit. Control adds less to a motion that just keeps the
 /// limit.
@@ -68,7 +68,7 @@ pub struct Verdict {
 }
 
 /// Returns the torque or speed limit that the peaks exceed by the largest factor, and that factor.
-fn over(limits: &Limits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
+fn over(limits: &DriveLimits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     let of = |quantity, peaks: PerDrive| {
         let factors = PerDrive::from_fn(peaks.len(), |k| peaks[k] / limits.on(quantity)[k]);
         (0..peaks.len()).map(move |drive| (DriveLimit { quantity, drive }, factors[drive]))
@@ -83,7 +83,7 @@ fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     let columns = task.samples.as_ref().map(Samples::columns);
     let of_drives = task.kind == TaskKind::Given && columns == Some(scenario.machine.drives());
     let [x, y] = task.to;
-    of_drives && (frame.target.at - Vector::new(x, y)).norm() <= MISS
+    of_drives && (frame.target.at - Vector::new(x, y)).norm() <= TARGET_TOLERANCE
 }
 
 /// A remark on a verdict, in two or three words and in a sentence.
@@ -105,14 +105,14 @@ impl Verdict {
             reactionless: peaks.is_reactionless() && frame.fault().is_none(),
             base_feels_nothing: peaks.base_feels_nothing(),
             moved: peaks.rate.iter().any(|rate| *rate > MIN_RATE_RAD_S),
-            over: over(&Limits::of(&scenario.machine), peaks),
+            over: over(&DriveLimits::of(&scenario.machine), peaks),
             arm_moment: peaks.arm_moment,
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
             force: peaks.force,
             tilt: peaks.tilt,
             miss: (frame.end_effector - frame.target.at).norm(),
             has_target: !gives_drives(scenario, frame),
-            past_limit: (by > PAST).then(|| (name(angle), by)),
+            past_limit: (by > LIMIT_TOLERANCE).then(|| (name(angle), by)),
             fault: frame.fault(),
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
                 scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
@@ -169,7 +169,7 @@ impl Verdict {
         if let Some([end, from]) = self.never_held.filter(|_| finished) {
             let long = format!(
                 "plant.payload.from is {} s, and the run ends at {} s: nothing is picked up",
-                Short(from),
+                ShortNumber(from),
                 fixed(end, 3)
             );
             add("payload never held", long);
@@ -199,7 +199,7 @@ impl Verdict {
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
-        if finished && self.has_target && (self.miss > MISS || self.miss.is_nan()) {
+        if finished && self.has_target && (self.miss > TARGET_TOLERANCE || self.miss.is_nan()) {
             add("off its target", format!("ends {} m from its target", significant(self.miss)));
         }
         all

@@ -5,27 +5,27 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use crate::settings::range::{clipped, shortened};
+use crate::settings::range::{quote_clipped, shortened};
 
 /// Word that removes a key, so that its default applies.
-pub const DEFAULT: &str = "default";
+pub const DEFAULT_WORD: &str = "default";
 
 /// Returns a value with some of its keys changed. Nested tables are changed key by key; the word `default` removes a
 /// key.
 ///
 /// # Errors
 /// Says which key or value is wrong, and what is accepted.
-pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
-    read(&laid(value, change)?)
+pub fn with_changes<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
+    read(&merged_keys(value, change)?)
 }
 
 /// Returns the keys of a value with some of them changed, not yet converted to a value.
 ///
 /// # Errors
 /// Says which number is not finite.
-pub fn laid<T: Serialize>(value: &T, change: &Table) -> Result<Table, String> {
+pub fn merged_keys<T: Serialize>(value: &T, change: &Table) -> Result<Table, String> {
     if let Some(key) = not_finite(change) {
-        return Err(format!("{} is not a finite number: want one", clipped(&key)));
+        return Err(format!("{} is not a finite number: want one", quote_clipped(&key)));
     }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
     lay(&mut table, change);
@@ -40,8 +40,8 @@ pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, String> {
     table.clone().try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
 }
 
-/// Returns the current values of the keys of a change, so that [`with`] restores them.
-pub fn only<T: Serialize>(value: &T, change: &Table) -> Table {
+/// Returns the current values of the keys of a change, so that [`with_changes`] restores them.
+pub fn present_values<T: Serialize>(value: &T, change: &Table) -> Table {
     pick(&Table::try_from(value).unwrap_or_default(), change)
 }
 
@@ -55,7 +55,7 @@ pub fn covers(later: &Table, earlier: &Table) -> bool {
 }
 
 /// Returns a change of one key, given as its parts joined by dots.
-pub fn one(key: &str, value: impl Into<Value>) -> Table {
+pub fn single_change(key: &str, value: impl Into<Value>) -> Table {
     at(&key.split('.').collect::<Vec<_>>(), value)
 }
 
@@ -136,9 +136,9 @@ pub fn number(value: &Value) -> Option<f64> {
 }
 
 /// Returns whether two values are equal, where 2 equals 2.0.
-pub fn same(a: &Value, b: &Value) -> bool {
+pub fn same_value(a: &Value, b: &Value) -> bool {
     match (a, b) {
-        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same_value(a, b)),
         _ => number(a).zip(number(b)).map_or(a == b, |(a, b)| a == b),
     }
 }
@@ -157,7 +157,7 @@ pub fn typed(value: &Value) -> String {
 fn lay(table: &mut Table, change: &Table) {
     for (key, value) in change {
         match (value, table.get_mut(key)) {
-            (Value::String(word), _) if word == DEFAULT => {
+            (Value::String(word), _) if word == DEFAULT_WORD => {
                 table.remove(key);
             }
             (Value::Table(change), Some(Value::Table(inner))) => {
@@ -184,7 +184,7 @@ fn pick(table: &Table, change: &Table) -> Table {
     let picked = |(key, value): (&String, &Value)| {
         let now = match (value, table.get(key)) {
             (Value::Table(change), Some(Value::Table(inner))) => Value::Table(pick(inner, change)),
-            (_, now) => now.cloned().unwrap_or_else(|| DEFAULT.into()),
+            (_, now) => now.cloned().unwrap_or_else(|| DEFAULT_WORD.into()),
         };
         (key.clone(), now)
     };

@@ -5,8 +5,8 @@ use std::fmt;
 
 use toml::{Table, Value};
 
-use super::change::{self, DEFAULT};
-use super::range::{Check, Range};
+use super::change::{self, DEFAULT_WORD};
+use super::range::{Range, RangeCheck};
 
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Key {
     /// Parts of the key joined by dots; `*` stands for the name of a link, a length, a drive or an angle.
     pub path: &'static str,
     /// Type and range of the value.
-    pub holds: Holds,
+    pub holds: KeyType,
     /// Default if a file omits the key, as it would be typed. [`NONE`](Self::NONE) if there is no value then,
     /// [`REQUIRED`](Self::REQUIRED) if the key must be given.
     pub default: &'static str,
@@ -43,7 +43,7 @@ pub enum Effect {
 
 /// Type and range of the value of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Holds {
+pub enum KeyType {
     /// A number.
     Number(Range),
     /// A whole number.
@@ -73,13 +73,13 @@ impl Key {
     pub const REQUIRED: &'static str = "";
 
     /// Returns a key that always has an effect.
-    pub const fn new(path: &'static str, holds: Holds, default: &'static str, words: &'static str) -> Self {
+    pub const fn new(path: &'static str, holds: KeyType, default: &'static str, words: &'static str) -> Self {
         Self { path, holds, default, words, when: "", instead: "", effect: Effect::Motion }
     }
 
     /// Returns a key that holds a number.
     pub const fn number(path: &'static str, range: Range, default: &'static str, words: &'static str) -> Self {
-        Self::new(path, Holds::Number(range), default, words)
+        Self::new(path, KeyType::Number(range), default, words)
     }
 
     /// Returns the key with the condition under which it has an effect.
@@ -134,20 +134,20 @@ impl Key {
     /// Returns the range of its numbers, if it holds any.
     pub const fn range(&self) -> Option<Range> {
         match self.holds {
-            Holds::Number(range)
-            | Holds::Whole(range)
-            | Holds::PerDrive(range)
-            | Holds::List(_, range)
-            | Holds::Bounds(range)
-            | Holds::Points(range) => Some(range),
-            Holds::Choice(_) | Holds::Switch | Holds::Spread(_) | Holds::Rows => None,
+            KeyType::Number(range)
+            | KeyType::Whole(range)
+            | KeyType::PerDrive(range)
+            | KeyType::List(_, range)
+            | KeyType::Bounds(range)
+            | KeyType::Points(range) => Some(range),
+            KeyType::Choice(_) | KeyType::Switch | KeyType::Spread(_) | KeyType::Rows => None,
         }
     }
 
     /// Returns the unit of its numbers.
     pub const fn unit(&self) -> &'static str {
         match self.holds {
-            Holds::Spread(unit) => unit,
+            KeyType::Spread(unit) => unit,
             _ => match self.range() {
                 Some(range) => range.unit(),
                 None => "",
@@ -157,9 +157,9 @@ impl Key {
 }
 
 /// Words for how a number may vary, in place of bounds.
-pub const BOUNDS: [&str; 2] = ["fixed", "free"];
+pub const HOLD_WORDS: [&str; 2] = ["fixed", "free"];
 
-impl Holds {
+impl KeyType {
     /// Returns this type with its numbers in a range, if it holds any.
     #[must_use]
     pub const fn within(self, range: Range) -> Self {
@@ -181,7 +181,7 @@ impl Holds {
             let fits = |list: &Vec<Value>| count.is_none_or(|n| list.len() == n) && list.iter().all(number);
             value.as_array().is_some_and(fits)
         };
-        if value.as_str() == Some(DEFAULT) {
+        if value.as_str() == Some(DEFAULT_WORD) {
             return true;
         }
         match self {
@@ -192,14 +192,14 @@ impl Holds {
             Self::Points(_) => value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(2)))),
             Self::Choice(words) => value.as_str().is_some_and(|word| words.contains(&word)),
             Self::Switch => value.is_bool(),
-            Self::Bounds(_) => value.as_str().is_some_and(|word| BOUNDS.contains(&word)) || list(value, Some(2)),
+            Self::Bounds(_) => value.as_str().is_some_and(|word| HOLD_WORDS.contains(&word)) || list(value, Some(2)),
             Self::Spread(_) => value.is_table(),
             Self::Rows => true,
         }
     }
 }
 
-impl fmt::Display for Holds {
+impl fmt::Display for KeyType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(range) => range.fmt(f),
@@ -209,7 +209,7 @@ impl fmt::Display for Holds {
             Self::Points(range) => write!(f, "points x, y, each {range}"),
             Self::Choice(words) => f.write_str(&words.join(", ")),
             Self::Switch => f.write_str("true or false"),
-            Self::Bounds(range) => write!(f, "{}, or the least and the greatest, each {range}", BOUNDS.join(", ")),
+            Self::Bounds(range) => write!(f, "{}, or the least and the greatest, each {range}", HOLD_WORDS.join(", ")),
             Self::Spread(unit) => write!(f, "normal:σ or uniform:half-width, 0 or more, in {unit} or %"),
             Self::Rows => f.write_str("rows of numbers"),
         }
@@ -229,7 +229,7 @@ pub fn names(pattern: &str, path: &str) -> bool {
 }
 
 /// Returns a check of every number of a table against the range of its key.
-pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> Vec<Check> {
+pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> Vec<RangeCheck> {
     let mut list = Vec::new();
     for (path, value) in change::leaves(table) {
         if let Some(range) = key_of(&path).and_then(Key::range) {
@@ -239,7 +239,7 @@ pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> V
     list
 }
 
-fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
+fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<RangeCheck>) {
     match value {
         // Each point of a list is named by its index, from 1.
         Value::Array(items) if items.iter().any(Value::is_array) => {

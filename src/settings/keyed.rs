@@ -2,72 +2,72 @@
 
 use std::collections::BTreeMap;
 
-use super::key::Holds;
+use super::key::KeyType;
 use super::range::Range;
 
 /// A type that the field of a key may have.
-pub trait Holding {
+pub trait HasKeyType {
     /// Type of the value of its key. The row of the key states the range of its numbers, if it holds any.
-    const HOLDS: Holds;
+    const HOLDS: KeyType;
 }
 
 /// A type with a default that can be typed.
-pub trait Held: Holding {
+pub trait DefaultFromText: HasKeyType {
     /// Returns the value that the text of a default states; zero, `false` or the first choice if the text states none.
     fn typed(default: &str) -> Self;
 }
 
 /// Range of a row that states none.
-pub const ANY: Range = Range::either_way(f64::MAX, "");
+pub const ANY_NUMBER: Range = Range::either_way(f64::MAX, "");
 
 /// A row states its range where it holds numbers.
 macro_rules! holds {
     ($($type:ty: $holds:expr;)+) => {
-        $(impl Holding for $type {
-            const HOLDS: Holds = $holds;
+        $(impl HasKeyType for $type {
+            const HOLDS: KeyType = $holds;
         })+
     };
 }
 
 holds! {
-    f64: Holds::Number(ANY);
-    u32: Holds::Whole(ANY);
-    bool: Holds::Switch;
-    Vec<[f64; 2]>: Holds::Points(ANY);
+    f64: KeyType::Number(ANY_NUMBER);
+    u32: KeyType::Whole(ANY_NUMBER);
+    bool: KeyType::Switch;
+    Vec<[f64; 2]>: KeyType::Points(ANY_NUMBER);
 }
 
-impl<const N: usize> Holding for [f64; N] {
-    const HOLDS: Holds = Holds::List(N, ANY);
+impl<const N: usize> HasKeyType for [f64; N] {
+    const HOLDS: KeyType = KeyType::List(N, ANY_NUMBER);
 }
 
-impl<T: Holding> Holding for Option<T> {
-    const HOLDS: Holds = T::HOLDS;
+impl<T: HasKeyType> HasKeyType for Option<T> {
+    const HOLDS: KeyType = T::HOLDS;
 }
 
 /// A value under each of several names.
-impl<T: Holding> Holding for BTreeMap<String, T> {
-    const HOLDS: Holds = T::HOLDS;
+impl<T: HasKeyType> HasKeyType for BTreeMap<String, T> {
+    const HOLDS: KeyType = T::HOLDS;
 }
 
-impl Held for f64 {
+impl DefaultFromText for f64 {
     fn typed(default: &str) -> Self {
         default.parse().unwrap_or_default()
     }
 }
 
-impl Held for u32 {
+impl DefaultFromText for u32 {
     fn typed(default: &str) -> Self {
         default.parse().unwrap_or_default()
     }
 }
 
-impl Held for bool {
+impl DefaultFromText for bool {
     fn typed(default: &str) -> Self {
         default == "true"
     }
 }
 
-impl<const N: usize> Held for [f64; N] {
+impl<const N: usize> DefaultFromText for [f64; N] {
     fn typed(default: &str) -> Self {
         let mut numbers = default.split(',').map(f64::typed);
         [(); N].map(|()| numbers.next().unwrap_or_default())
@@ -75,14 +75,14 @@ impl<const N: usize> Held for [f64; N] {
 }
 
 /// `None`, the only default that such a key has.
-impl<T: Holding> Held for Option<T> {
+impl<T: HasKeyType> DefaultFromText for Option<T> {
     fn typed(_: &str) -> Self {
         None
     }
 }
 
 /// An empty list, the only default that such a key has.
-impl Held for Vec<[f64; 2]> {
+impl DefaultFromText for Vec<[f64; 2]> {
     fn typed(_: &str) -> Self {
         Self::new()
     }
@@ -185,7 +185,7 @@ macro_rules! keyed {
             pub const KEYS: &'static [$crate::settings::key::Key] = &[$(
                 $crate::settings::key::Key::new(
                     concat!($path, stringify!($field)),
-                    <$type as $crate::settings::keyed::Holding>::HOLDS$(.within($range))?,
+                    <$type as $crate::settings::keyed::HasKeyType>::HOLDS$(.within($range))?,
                     $default,
                     $crate::settings::keyed::sentence(concat!($($words),+)),
                 )
@@ -195,7 +195,7 @@ macro_rules! keyed {
             )* $($(
                 $crate::settings::key::Key::new(
                     concat!($path, stringify!($names), ".*"),
-                    <$each as $crate::settings::keyed::Holding>::HOLDS$(.within($within))?,
+                    <$each as $crate::settings::keyed::HasKeyType>::HOLDS$(.within($within))?,
                     $one,
                     $crate::settings::keyed::sentence(concat!($($said),+)),
                 )
@@ -253,7 +253,7 @@ macro_rules! keyed {
         }
     };
     (@usual $type:ty, $default:expr) => {
-        <$type as $crate::settings::keyed::Held>::typed($default)
+        <$type as $crate::settings::keyed::DefaultFromText>::typed($default)
     };
     (@usual $type:ty, $default:expr, $usual:expr) => {
         $usual

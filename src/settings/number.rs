@@ -4,9 +4,9 @@ use std::fmt;
 
 /// A number with as many digits as it needs; powers of ten below 1e-5 and from 1e7 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Short(pub f64);
+pub struct ShortNumber(pub f64);
 
-impl fmt::Display for Short {
+impl fmt::Display for ShortNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(x) = *self;
         match x.abs() {
@@ -62,7 +62,7 @@ pub fn nine_digits(x: f64) -> String {
         return "0".into();
     }
     let rounded = format!("{x:.8e}").parse().unwrap_or(x);
-    Short(rounded).to_string()
+    ShortNumber(rounded).to_string()
 }
 
 /// Returns a number in subscript digits: 12 as ₁₂.

@@ -41,7 +41,7 @@ impl Quantity {
 
 /// Why a typed text is no number of the requested unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Misread {
+pub enum QuantityError {
     /// A character or word without a meaning here.
     Unknown(String),
     /// The text ends too early.
@@ -54,7 +54,7 @@ pub enum Misread {
     NotFinite,
 }
 
-impl fmt::Display for Misread {
+impl fmt::Display for QuantityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown(what) if what == "," => f.write_str("a comma is not understood: want a point, such as 0.5"),
@@ -75,10 +75,10 @@ impl fmt::Display for Misread {
 ///
 /// # Errors
 /// Says what was not understood, and what is accepted.
-pub fn read(text: &str, unit: &str) -> Result<f64, Misread> {
+pub fn read(text: &str, unit: &str) -> Result<f64, QuantityError> {
     let typed = parse(text)?;
     if !typed.value.is_finite() {
-        return Err(Misread::NotFinite);
+        return Err(QuantityError::NotFinite);
     }
     if !typed.has_unit {
         return Ok(typed.value);
@@ -94,17 +94,17 @@ pub fn read(text: &str, unit: &str) -> Result<f64, Misread> {
     let found = wanted.into_iter().find(|wanted| same(typed.of, wanted.of));
     match found.map(|wanted| typed.value / wanted.value) {
         Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(Misread::NotFinite),
-        None => Err(Misread::OtherKind(shortened(text.trim(), 24), unit.to_owned())),
+        Some(_) => Err(QuantityError::NotFinite),
+        None => Err(QuantityError::OtherKind(shortened(text.trim(), 24), unit.to_owned())),
     }
 }
 
-fn parse(text: &str) -> Result<Quantity, Misread> {
+fn parse(text: &str) -> Result<Quantity, QuantityError> {
     let mut reader = Reader { rest: text.trim(), depth: 0 };
     let value = reader.sum()?;
     match reader.rest.chars().next() {
         None => Ok(value),
-        Some(c) => Err(Misread::Unknown(c.to_string())),
+        Some(c) => Err(QuantityError::Unknown(c.to_string())),
     }
 }
 
@@ -131,7 +131,7 @@ impl Reader<'_> {
         found.is_some()
     }
 
-    fn sum(&mut self) -> Result<Quantity, Misread> {
+    fn sum(&mut self) -> Result<Quantity, QuantityError> {
         let mut sum = self.product()?;
         loop {
             let sign = match () {
@@ -141,13 +141,13 @@ impl Reader<'_> {
             };
             let next = self.product()?;
             if next.of != sum.of || next.has_unit != sum.has_unit {
-                return Err(Misread::Mixed);
+                return Err(QuantityError::Mixed);
             }
             sum.value += sign * next.value;
         }
     }
 
-    fn product(&mut self) -> Result<Quantity, Misread> {
+    fn product(&mut self) -> Result<Quantity, QuantityError> {
         let mut product = self.signed()?;
         loop {
             product = match () {
@@ -160,7 +160,7 @@ impl Reader<'_> {
         }
     }
 
-    fn signed(&mut self) -> Result<Quantity, Misread> {
+    fn signed(&mut self) -> Result<Quantity, QuantityError> {
         let mut negative = false;
         loop {
             match () {
@@ -173,7 +173,7 @@ impl Reader<'_> {
         Ok(if negative { Quantity { value: -value.value, ..value } } else { value })
     }
 
-    fn power(&mut self) -> Result<Quantity, Misread> {
+    fn power(&mut self) -> Result<Quantity, QuantityError> {
         let base = self.one()?;
         let raised = self.superscript();
         if let Some(power) = raised {
@@ -186,7 +186,7 @@ impl Reader<'_> {
         self.peek();
         let end = self.rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(self.rest.len());
         let (digits, rest) = self.rest.split_at(end);
-        let power: i32 = digits.parse().ok().filter(|power| *power <= 99).ok_or(Misread::Unfinished)?;
+        let power: i32 = digits.parse().ok().filter(|power| *power <= 99).ok_or(QuantityError::Unfinished)?;
         self.rest = rest;
         Ok(base.to_the(if negative { -power } else { power }))
     }
@@ -201,14 +201,14 @@ impl Reader<'_> {
         Some(if negative { -power } else { power })
     }
 
-    fn one(&mut self) -> Result<Quantity, Misread> {
+    fn one(&mut self) -> Result<Quantity, QuantityError> {
         match self.peek() {
-            None => Err(Misread::Unfinished),
+            None => Err(QuantityError::Unfinished),
             Some('(') => {
                 self.takes(&['(']);
                 self.depth += 1;
                 if self.depth > MAX_DEPTH {
-                    return Err(Misread::Unknown("(((".into()));
+                    return Err(QuantityError::Unknown("(((".into()));
                 }
                 let inside = self.sum()?;
                 self.depth -= 1;
@@ -220,11 +220,11 @@ impl Reader<'_> {
         }
     }
 
-    fn unexpected<T>(&mut self) -> Result<T, Misread> {
-        Err(self.peek().map_or(Misread::Unfinished, |c| Misread::Unknown(c.to_string())))
+    fn unexpected<T>(&mut self) -> Result<T, QuantityError> {
+        Err(self.peek().map_or(QuantityError::Unfinished, |c| QuantityError::Unknown(c.to_string())))
     }
 
-    fn number(&mut self) -> Result<Quantity, Misread> {
+    fn number(&mut self) -> Result<Quantity, QuantityError> {
         let bytes = self.rest.as_bytes();
         let digits = |mut i: usize| {
             while bytes.get(i).is_some_and(u8::is_ascii_digit) {
@@ -245,16 +245,16 @@ impl Reader<'_> {
             }
         }
         let (number, rest) = self.rest.split_at(end);
-        let value = number.parse().map_err(|_| Misread::Unknown(number.into()))?;
+        let value = number.parse().map_err(|_| QuantityError::Unknown(number.into()))?;
         self.rest = rest;
         Ok(Quantity::plain(value))
     }
 
-    fn word(&mut self) -> Result<Quantity, Misread> {
+    fn word(&mut self) -> Result<Quantity, QuantityError> {
         let end = self.rest.find(|c| !is_of_word(c)).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
-        meaning(word).ok_or_else(|| Misread::Unknown(word.into()))
+        meaning(word).ok_or_else(|| QuantityError::Unknown(word.into()))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use crate::settings::number::{Short, counted};
+use crate::settings::number::{ShortNumber, counted};
 
 /// A closed interval and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,21 +53,21 @@ impl Range {
     }
 
     /// Checks a number of a key against the interval.
-    pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> Check {
-        Check { key: key.into(), value, ok: self.contains(value), want: Want::Within(self) }
+    pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> RangeCheck {
+        RangeCheck { key: key.into(), value, ok: self.contains(value), want: Requirement::Within(self) }
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} to {}", Short(self.low), Short(self.high))?;
+        write!(f, "{} to {}", ShortNumber(self.low), ShortNumber(self.high))?;
         if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
     }
 }
 
 /// A number of a key, and whether it is accepted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
+pub struct RangeCheck {
     /// Key, as `--set` names it.
     pub key: Cow<'static, str>,
     /// The number.
@@ -75,30 +75,30 @@ pub struct Check {
     /// Whether the number is accepted.
     pub ok: bool,
     /// What is accepted.
-    pub want: Want,
+    pub want: Requirement,
 }
 
-impl Check {
+impl RangeCheck {
     /// Returns a check whose condition is not an interval, with the condition in words.
     pub fn words(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: &'static str) -> Self {
-        Self { key: key.into(), value, ok, want: Want::Words(want) }
+        Self { key: key.into(), value, ok, want: Requirement::Words(want) }
     }
 
     /// Returns a check whose condition depends on other numbers, with the condition in words.
     pub fn said(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: impl FnOnce() -> String) -> Self {
-        let want = if ok { Want::Words("") } else { Want::Said(want()) };
+        let want = if ok { Requirement::Words("") } else { Requirement::Said(want()) };
         Self { key: key.into(), value, ok, want }
     }
 
     /// Returns a failed check of a list with too many or too few items.
     pub fn count(key: impl Into<Cow<'static, str>>, count: usize, of: &'static str, want: String) -> Self {
-        Self { key: key.into(), value: count as f64, ok: false, want: Want::Count { of, want } }
+        Self { key: key.into(), value: count as f64, ok: false, want: Requirement::Count { of, want } }
     }
 }
 
 /// What is accepted.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Want {
+pub enum Requirement {
     /// A number in an interval.
     Within(Range),
     /// A condition that is not an interval, in words.
@@ -115,14 +115,14 @@ pub enum Want {
 }
 
 /// Returns the message for a number that is not accepted: its key, its value, and what is accepted.
-pub fn refused(key: &str, value: f64, want: &Want) -> String {
+pub fn range_error(key: &str, value: f64, want: &Requirement) -> String {
     match want {
-        Want::Count { of, want } => format!("{key} has {}: want {want}", counted(value, of)),
-        _ => format!("{key} is {}: want {want}", Short(value)),
+        Requirement::Count { of, want } => format!("{key} has {}: want {want}", counted(value, of)),
+        _ => format!("{key} is {}: want {want}", ShortNumber(value)),
     }
 }
 
-impl fmt::Display for Want {
+impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Within(range) => range.fmt(f),
@@ -136,7 +136,7 @@ impl fmt::Display for Want {
 const MAX_CLIPPED: usize = 80;
 
 /// Returns given text as a message repeats it: its beginning, on one line, without control characters.
-pub fn clipped(text: &str) -> String {
+pub fn quote_clipped(text: &str) -> String {
     shortened(text, MAX_CLIPPED)
 }
 

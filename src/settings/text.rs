@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// Maximum size of a text that is read, bytes: a session of 100,000 edits has half of it.
-pub const MOST_BYTES: u64 = 16 << 20;
+pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
 /// Returns text for a terminal: characters that control a terminal or change the writing direction are escaped.
 pub fn plain(text: &str) -> Cow<'_, str> {
@@ -18,7 +18,7 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 }
 
 /// Returns the first character that controls a terminal or changes the writing direction; line feeds are allowed.
-pub fn steering(text: &str) -> Option<char> {
+pub fn control_character(text: &str) -> Option<char> {
     text.chars().find(|c| steers(*c))
 }
 
@@ -39,7 +39,7 @@ const MAX_MESSAGE_CHARS: usize = 1600;
 const MESSAGE_END_CHARS: usize = 400;
 
 /// Returns a message of readable length: the middle of a longer one is left out.
-pub fn brief(text: &str) -> Cow<'_, str> {
+pub fn shorten_message(text: &str) -> Cow<'_, str> {
     // A text has at most as many characters as bytes.
     if text.len() <= MAX_MESSAGE_CHARS {
         return text.into();

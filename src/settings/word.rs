@@ -2,7 +2,7 @@
 
 /// Words of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Words {
+pub struct ChoiceWords {
     /// Word in files, in edits and on the command line.
     pub file: &'static str,
     /// Words on the screen.
@@ -19,7 +19,7 @@ pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
     const FILE: &'static [&'static str];
 
     /// Returns the words of this variant.
-    fn words(self) -> Words;
+    fn words(self) -> ChoiceWords;
 
     /// Returns the variant with a word in files.
     fn of_word(word: &str) -> Option<Self> {
@@ -61,9 +61,9 @@ macro_rules! words {
             const ALL: &'static [Self] = &[$(Self::$variant),+];
             const FILE: &'static [&'static str] = &[$($file),+];
 
-            fn words(self) -> $crate::settings::word::Words {
+            fn words(self) -> $crate::settings::word::ChoiceWords {
                 match self {
-                    $(Self::$variant => $crate::settings::word::Words {
+                    $(Self::$variant => $crate::settings::word::ChoiceWords {
                         file: $file,
                         screen: $screen,
                         meaning: $meaning,
@@ -72,12 +72,12 @@ macro_rules! words {
             }
         }
 
-        impl $crate::settings::keyed::Holding for $name {
-            const HOLDS: $crate::settings::key::Holds =
-                $crate::settings::key::Holds::Choice(<Self as $crate::settings::word::Choice>::FILE);
+        impl $crate::settings::keyed::HasKeyType for $name {
+            const HOLDS: $crate::settings::key::KeyType =
+                $crate::settings::key::KeyType::Choice(<Self as $crate::settings::word::Choice>::FILE);
         }
 
-        impl $crate::settings::keyed::Held for $name {
+        impl $crate::settings::keyed::DefaultFromText for $name {
             fn typed(default: &str) -> Self {
                 use $crate::settings::word::Choice;
                 Self::of_word(default).unwrap_or(Self::ALL[0])

@@ -10,15 +10,15 @@
 //! in a joint uses its own angle, q_k − q_on. With equal gains on all drives and an exact model, Σ D_k e_k decays on
 //! its own: errors that start on the plane stay on it and transmit no moment. With unequal gains they leave the plane.
 
-use crate::mechanics::dynamics::{by_drives, first, torques};
+use crate::mechanics::dynamics::{by_drives, leading_entries, torques};
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
 use crate::planning::Reference;
 use crate::settings::keyed::keyed;
-use crate::settings::number::{Short, nine_digits};
-use crate::settings::range::{Check, Range};
+use crate::settings::number::{ShortNumber, nine_digits};
+use crate::settings::range::{Range, RangeCheck};
 use crate::settings::word::words;
-use crate::simulation::plant::{Each, MovingBody};
+use crate::simulation::plant::{DriveValues, MovingBody};
 
 keyed! {
     /// Settings of control.
@@ -28,9 +28,9 @@ keyed! {
         /// errors alone.
         law: ControlLaw = "computed-torque";
         /// Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.
-        kp: Each = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
+        kp: DriveValues = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
         /// Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.
-        kd: Each = "40", range: Range::new(0.0, 2e5, "s⁻¹"), saved: always;
+        kd: DriveValues = "40", range: Range::new(0.0, 2e5, "s⁻¹"), saved: always;
         // A wheel in the base is not part of the model.
         /// Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.
         knows_base: bool = "true", when: "base.kind = free or compliant: a fixed base does not move";
@@ -70,15 +70,15 @@ impl Control {
     }
 
     /// Returns the checks that depend on the step, s, and on the number `n` of drives.
-    pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<Check> {
+    pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<RangeCheck> {
         let mut list = Vec::new();
-        let at_step = |range: Range| format!("{range} at a step of {} s", Short(step));
+        let at_step = |range: Range| format!("{range} at a step of {} s", ShortNumber(step));
         for (key, gain, most) in [
             ("control.kp", self.kp, Range::new(0.0, 1.0 / (step * step), "s⁻²")),
             ("control.kd", self.kd, Range::new(0.0, 2.0 / step, "s⁻¹")),
         ] {
             let all = gain.values().into_iter();
-            list.extend(all.map(|x| Check::said(key, x, most.contains(x), || at_step(most.rounded()))));
+            list.extend(all.map(|x| RangeCheck::said(key, x, most.contains(x), || at_step(most.rounded()))));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
@@ -87,9 +87,9 @@ impl Control {
         let (delay, encoder) = (self.delay, self.encoder);
         let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            Check::said("control.rate", self.rate, period, || rates(steps, step)),
-            Check::said("control.delay", delay, whole(delay / step), || delays(delay, step)),
-            Check::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
+            RangeCheck::said("control.rate", self.rate, period, || rates(steps, step)),
+            RangeCheck::said("control.delay", delay, whole(delay / step), || delays(delay, step)),
+            RangeCheck::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list
     }
@@ -103,7 +103,7 @@ fn rates(steps: f64, step: f64) -> String {
         steps if steps < 1e9 => format!("{} or {} Hz, whole steps apart", every(steps.ceil()), every(steps.floor())),
         _ => format!("{} Hz or more", every(1e9)),
     };
-    format!("0, or {near}, at a step of {} s", Short(step))
+    format!("0, or {near}, at a step of {} s", ShortNumber(step))
 }
 
 /// Describes the delays, s, of whole steps nearest to a given one.
@@ -112,7 +112,7 @@ fn delays(delay: f64, step: f64) -> String {
     let near = near.into_iter().filter(|x| DELAY_RANGE.contains(*x)).map(nine_digits).collect::<Vec<_>>();
     match near.is_empty() {
         true => DELAY_RANGE.to_string(),
-        false => format!("{} s, whole steps of {} s", near.join(" or "), Short(step)),
+        false => format!("{} s, whole steps of {} s", near.join(" or "), ShortNumber(step)),
     }
 }
 
@@ -124,7 +124,7 @@ pub struct Reading<'a> {
     /// q̇_k − θ̇, rad/s.
     pub qd: PerDrive,
     /// Unit vectors e(q) of all rotational coordinates, in inertial axes.
-    pub e: &'a Units,
+    pub e: &'a UnitVectors,
     /// Absolute rates q̇ of all rotational coordinates, rad/s.
     pub rates: &'a PerDrive,
     /// p_B and θ.
@@ -246,7 +246,7 @@ fn torque_of<const N: usize, const MOVES: bool>(
     reading: &Reading,
     loaded: bool,
 ) -> PerDrive {
-    let (own, all) = ((reading.q.0.array(), reading.qd.array()), (first(reading.e), reading.rates.array()));
+    let (own, all) = ((reading.q.0.array(), reading.qd.array()), (leading_entries(reading.e), reading.rates.array()));
     let base = (reading.base, reading.velocity);
     PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, own, all, base, loaded))
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::AuditFigure;
 use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::joint_forces::Inside;
+use crate::mechanics::joint_forces::InternalLoads;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use crate::simulation::plant::WheelState;
 
@@ -12,7 +12,7 @@ pub use crate::planning::following::follow::Target;
 pub use crate::planning::pose_space::Reach;
 pub use crate::planning::reactionless::Dexterity;
 pub use crate::simulation::audit::Audit;
-pub use crate::simulation::peaks::{Peaks, REACTIONLESS};
+pub use crate::simulation::peaks::{Peaks, REACTIONLESS_SHARE};
 pub use crate::simulation::totals::Totals;
 
 /// One instant of a run.
@@ -69,7 +69,7 @@ pub struct Frame {
     /// min |sin(q_k − q_l)|: 0 at a change point, where pin forces grow without bound.
     pub transmission: f64,
     /// Pin forces and tilting moment of the base.
-    pub inside: Inside,
+    pub inside: InternalLoads,
     /// Phase of the run.
     pub phase: Phase,
     /// Peaks so far.

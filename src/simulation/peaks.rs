@@ -66,12 +66,12 @@ impl Peaks {
 
     /// Returns the moment up to which a moment counts as zero, N m: a fraction of the torques plus rounding of weight.
     pub(super) fn no_moment(&self) -> f64 {
-        REACTIONLESS * self.torque_sum + ROUNDING * self.weight
+        REACTIONLESS_SHARE * self.torque_sum + ROUNDING * self.weight
     }
 
     /// Returns the force up to which a force counts as zero, N.
     pub(super) fn no_force(&self) -> f64 {
-        REACTIONLESS * self.inertial_pull + ROUNDING * self.weight
+        REACTIONLESS_SHARE * self.inertial_pull + ROUNDING * self.weight
     }
 
     /// Returns whether the arm transmits no reaction: peak |n_B| is at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B|
@@ -103,7 +103,7 @@ fn worse(a: f64, b: f64) -> f64 {
 }
 
 /// Peaks below this fraction of torques or inertial forces count as zero.
-pub const REACTIONLESS: f64 = 1e-6;
+pub const REACTIONLESS_SHARE: f64 = 1e-6;
 
 /// Relative rounding error of weight that is not carried, as in free fall; for moments per metre of lever.
 const ROUNDING: f64 = 1e-12;

@@ -1,9 +1,9 @@
 //! Table of signals: each row is a plot, a series of the recording and a column of the CSV.
 
-use crate::mechanics::joint_forces::{self, Joints, KEPT};
+use crate::mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
-use crate::query::Quick;
+use crate::query::QuickQuery;
 use crate::settings::number::subscript;
 use crate::simulation::frame::Frame;
 
@@ -61,7 +61,7 @@ impl Signal {
 #[derive(Debug)]
 pub struct SignalsOf;
 
-impl Quick for SignalsOf {
+impl QuickQuery for SignalsOf {
     type Input = Machine;
     type Answer = Vec<Signal>;
 
@@ -192,7 +192,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
         table.push(Signal { path, symbol, label, unit, drive, quantity });
     };
     if let Ok(joints) = Joints::of(machine) {
-        for (i, pin) in joints.pins().iter().enumerate().take(KEPT) {
+        for (i, pin) in joints.pins().iter().enumerate().take(MAX_FRAME_PINS) {
             let path = format!("pin/{}", pin.name);
             let (symbol, label) = (format!("F {}", pin.name), format!("force of pin {}", pin.name));
             let drive = Some(machine.resolved_links()[pin.to].drive);
@@ -220,7 +220,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
     }
     if drives.len() > 1 {
         let label = "least |q_k − q_l − mπ|: how far the nearest change point is".into();
-        let value = Quantity::Whole(|f| joint_forces::nearest(&f.q, &f.qd).map_or(0.0, |c| c.distance));
+        let value = Quantity::Whole(|f| joint_forces::nearest_change_point(&f.q, &f.qd).map_or(0.0, |c| c.distance));
         add("change_point/distance".into(), "Δq".into(), label, "rad", None, value);
     }
     table

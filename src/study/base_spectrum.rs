@@ -4,14 +4,14 @@ use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 use thiserror::Error;
 
-use super::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, Window};
+use super::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, WindowFunction};
 use crate::session::scenario::Scenario;
-use crate::session::{Refusal, felt};
+use crate::session::{Refusal, base_loads};
 use crate::settings::number::fixed;
 
 /// One value for each component of the base wrench.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Axes<T> {
+pub struct PerAxis<T> {
     /// For the dynamic f_Bx.
     pub force_x: T,
     /// For the dynamic f_By.
@@ -20,10 +20,10 @@ pub struct Axes<T> {
     pub moment: T,
 }
 
-impl<T> Axes<T> {
+impl<T> PerAxis<T> {
     /// Applies a function to each component.
-    pub fn map<'a, U>(&'a self, f: impl Fn(&'a T) -> U) -> Axes<U> {
-        Axes { force_x: f(&self.force_x), force_y: f(&self.force_y), moment: f(&self.moment) }
+    pub fn map<'a, U>(&'a self, f: impl Fn(&'a T) -> U) -> PerAxis<U> {
+        PerAxis { force_x: f(&self.force_x), force_y: f(&self.force_y), moment: f(&self.moment) }
     }
 
     /// Returns each component with its symbol and unit.
@@ -34,7 +34,7 @@ impl<T> Axes<T> {
 
 /// RMS values of one component, and its comparison with a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Axis {
+pub struct AxisStatistics {
     /// Unit of the samples and of both RMS values.
     pub unit: &'static str,
     /// RMS of the samples, unweighted.
@@ -52,15 +52,15 @@ pub struct BaseSpectrum {
     /// Name of the scenario.
     pub scenario: String,
     /// Window function of the spectra.
-    pub window: Window,
+    pub window: WindowFunction,
     /// Number of samples.
     pub samples: usize,
     /// Time between two samples, s.
     pub step: f64,
     /// RMS values of each component, and their comparison with limits.
-    pub axes: Axes<Axis>,
+    pub axes: PerAxis<AxisStatistics>,
     /// Spectra of each component; all have the same frequencies.
-    pub spectra: Axes<Spectrum>,
+    pub spectra: PerAxis<Spectrum>,
     /// The first audit that failed, in words.
     pub fault: Option<String>,
 }
@@ -92,14 +92,14 @@ impl BaseSpectrum {
     ///
     /// # Errors
     /// Fails if the scenario cannot be run, or its samples have no spectrum.
-    pub fn of(scenario: &Scenario, window: Window) -> Result<Self, NoBaseSpectrum> {
-        let (course, fault) = felt(scenario)?;
+    pub fn of(scenario: &Scenario, window: WindowFunction) -> Result<Self, NoBaseSpectrum> {
+        let (course, fault) = base_loads(scenario)?;
         let [force_x, force_y, moment] = &course;
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, window);
-        let spectra = Axes { force_x: of(force_x)?, force_y: of(force_y)?, moment: of(moment)? };
+        let spectra = PerAxis { force_x: of(force_x)?, force_y: of(force_y)?, moment: of(moment)? };
         // Unweighted, as a window emphasises the middle of the run.
         let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
-        let axis = |unit, samples: &[f64], spectrum: &Spectrum| Axis {
+        let axis = |unit, samples: &[f64], spectrum: &Spectrum| AxisStatistics {
             unit,
             rms: rms(samples),
             weighted_rms: spectrum.rms(),
@@ -110,7 +110,7 @@ impl BaseSpectrum {
             window,
             samples: moment.len(),
             step: scenario.step,
-            axes: Axes {
+            axes: PerAxis {
                 force_x: axis("N", force_x, &spectra.force_x),
                 force_y: axis("N", force_y, &spectra.force_y),
                 moment: axis("N m", moment, &spectra.moment),

@@ -1,11 +1,13 @@
-//! Balance by moving the centres of mass of the links, with a report: [`designed`] from scratch, or [`kept`] with the
+//! Balance by moving the centres of mass of the links, with a report: [`design_centres`] from scratch, or [`rebalance_report`] with the
 //! least change.
 
 use serde::Serialize;
 
 use super::balance_constants::BalanceConstants;
 use super::measures::Measures;
-use crate::mechanics::balance::{Adjusted, DesignError, Keep, NotKept, Quantity, design, keep};
+use crate::mechanics::balance::{
+    BodyQuantity, DesignError, ListedParameter, RebalanceError, RebalanceRequest, design, rebalance,
+};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::planning::Motion;
 
@@ -24,9 +26,9 @@ pub struct DesignReport {
 
 /// Report on a machine that was balanced with the least change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KeptReport {
+pub struct RebalanceReport {
     /// Parameters that may change, in the order of the request.
-    pub changes: Vec<KeptChange>,
+    pub changes: Vec<RebalanceChange>,
     /// Value of the objective, Σ (p Δ)² over the changes.
     pub cost: f64,
     /// Whether the minimum within the limits is proven.
@@ -41,7 +43,7 @@ pub struct KeptReport {
 
 /// One parameter that may change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KeptChange {
+pub struct RebalanceChange {
     /// Key, such as `link.5.com`.
     pub key: String,
     /// Value before.
@@ -59,7 +61,7 @@ pub struct KeptChange {
 ///
 /// # Errors
 /// As [`design`].
-pub fn designed(
+pub fn design_centres(
     machine: &Machine,
     penalty: &[f64],
     motion: Option<&Motion>,
@@ -77,17 +79,21 @@ pub fn designed(
 /// the machine.
 ///
 /// # Errors
-/// As [`keep`].
-pub fn kept(machine: &Machine, asked: &Keep, motion: Option<&Motion>) -> Result<(Machine, KeptReport), NotKept> {
-    let kept = keep(machine, asked)?;
-    let change = |(one, value): (&Adjusted, &f64)| KeptChange {
+/// As [`rebalance`].
+pub fn rebalance_report(
+    machine: &Machine,
+    asked: &RebalanceRequest,
+    motion: Option<&Motion>,
+) -> Result<(Machine, RebalanceReport), RebalanceError> {
+    let kept = rebalance(machine, asked)?;
+    let change = |(one, value): (&ListedParameter, &f64)| RebalanceChange {
         key: one.parameter.key(machine),
         from: one.parameter.value(machine.spec()).unwrap_or_default(),
         to: *value,
         penalty: one.penalty,
-        unit: if one.parameter.quantity == Quantity::Mass { "kg" } else { "m" },
+        unit: if one.parameter.quantity == BodyQuantity::Mass { "kg" } else { "m" },
     };
-    let report = KeptReport {
+    let report = RebalanceReport {
         changes: asked.parameters.iter().zip(&kept.values).map(change).collect(),
         cost: kept.cost,
         certified: kept.certified,

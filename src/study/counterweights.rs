@@ -1,14 +1,14 @@
-//! [`balanced`]: balances a machine by counterweights, if requested with other link lengths, and reports on it.
+//! [`balance_by_weights`]: balances a machine by counterweights, if requested with other link lengths, and reports on it.
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::balance_constants::BalanceConstants;
 use super::front_point::FrontPoint;
-use super::lengths::{Found, LengthSearch, NoLengths, Progress, search};
+use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search};
 use super::measures::Measures;
 use crate::mechanics::counterweights::{
-    FreeRotor, NoWeights, Placed, Residual, Sites, Weighing, front, over_payloads, place,
+    CounterweightError, CounterweightSpec, FreeRotor, Placed, Residual, Sites, front, over_payloads, place_weights,
 };
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 use crate::planning::Motion;
@@ -20,7 +20,7 @@ const PAYLOAD_SAMPLES: usize = 11;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CounterweightRequest {
     /// Sites of the counterweights, and the objective. A search for lengths uses its own instead.
-    pub weighing: Weighing,
+    pub weighing: CounterweightSpec,
     /// Link lengths to optimise together with the counterweights.
     pub lengths: Option<LengthSearch>,
     /// Number of machines on the Pareto front from the least mass to the least inertia.
@@ -35,10 +35,10 @@ pub enum NoCounterweights {
     Lengths(NoLengths),
     /// No counterweights balance the machine.
     #[error(transparent)]
-    Weights(NoWeights),
+    Weights(CounterweightError),
     /// There is no Pareto front.
     #[error(transparent)]
-    Front(NoWeights),
+    Front(CounterweightError),
     /// The result is no valid machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
@@ -70,7 +70,7 @@ pub struct CounterweightReport {
     pub front_points: Vec<FrontPoint>,
     /// Lengths that were optimised.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub sought: Option<SoughtLengths>,
+    pub sought: Option<LengthsReport>,
     /// Rotors that were chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rotors: Vec<ChosenRotor>,
@@ -86,7 +86,7 @@ pub struct CounterweightReport {
 
 /// Optimised lengths, and the reliability of the result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SoughtLengths {
+pub struct LengthsReport {
     /// Name and length, m.
     pub lengths: Vec<(String, f64)>,
     /// Always `false`: the search proves no minimum.
@@ -116,7 +116,7 @@ pub struct ChosenRotor {
 }
 
 /// Returns the counterweights of a machine that are removed before others are placed: all but the fixed ones.
-pub fn taken_off(machine: &Machine) -> Vec<Counterweight> {
+pub fn removed_weights(machine: &Machine) -> Vec<Counterweight> {
     machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect()
 }
 
@@ -125,21 +125,21 @@ pub fn taken_off(machine: &Machine) -> Vec<Counterweight> {
 ///
 /// # Errors
 /// Fails if no counterweights balance the machine, or the request is invalid.
-pub fn balanced(
+pub fn balance_by_weights(
     machine: &Machine,
     asked: &CounterweightRequest,
     motion: Option<&Motion>,
-    go_on: &mut dyn FnMut(Progress) -> bool,
+    go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
     let mut weighing = asked.weighing.clone();
     let (placed, sought) = match &asked.lengths {
-        None => (place(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
+        None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
             let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
             if lengths.anywhere {
                 weighing.sites = Sites::anywhere(&found.placed.machine);
             }
-            let sought = SoughtLengths::of(lengths, &found);
+            let sought = LengthsReport::of(lengths, &found);
             (found.placed, Some(sought))
         }
     };
@@ -152,12 +152,12 @@ pub fn balanced(
     let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
     report.sought = sought;
-    report.taken_off = taken_off(machine);
+    report.taken_off = removed_weights(machine);
     Ok((placed.machine, report))
 }
 
-impl SoughtLengths {
-    fn of(asked: &LengthSearch, found: &Found) -> Self {
+impl LengthsReport {
+    fn of(asked: &LengthSearch, found: &FoundLengths) -> Self {
         let names = asked.lengths.iter().map(|free| free.name.clone());
         let [starts, agreeing] = found.starts;
         Self {
@@ -177,7 +177,7 @@ impl CounterweightReport {
         placed: &Placed,
         front_points: Vec<FrontPoint>,
         motion: Option<&Motion>,
-        asked: &Weighing,
+        asked: &CounterweightSpec,
     ) -> Result<Self, MachineError> {
         // The bare machine includes the present payload, so that it does not count as added mass.
         let bare = placed.machine.without_counterweights()?;
@@ -191,7 +191,7 @@ impl CounterweightReport {
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),
             torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),
-            weights: taken_off(machine),
+            weights: removed_weights(machine),
             taken_off: Vec::new(),
             gap: placed.gap,
             certified: placed.is_certified(),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::mechanics::counterweights::{Placed, Tolerance, off_by};
+use crate::mechanics::counterweights::{Placed, PlacementTolerance, worst_residual};
 use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
@@ -24,7 +24,7 @@ pub struct FrontPoint {
     /// Area of the reactionless workspace, m²; `None` unless the machine has three drives and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<f64>,
-    /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`Tolerance::USUAL`]), kg m.
+    /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::USUAL`]), kg m.
     pub off_by: f64,
 }
 
@@ -78,7 +78,7 @@ impl FrontPoint {
             inertia: Inertia::of(machine).total_momentum(),
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| plane_area(machine)).flatten(),
-            off_by: off_by(machine, &Tolerance::USUAL).force,
+            off_by: worst_residual(machine, &PlacementTolerance::USUAL).force,
         }
     }
 }

@@ -4,26 +4,26 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::front_point::FrontPoint;
-use crate::mechanics::counterweights::{Front, FrontSearch, NoWeights, Weighing};
+use crate::mechanics::counterweights::{CounterweightError, CounterweightSpec, Front, FrontSearch};
 use crate::mechanics::machine::Machine;
 use crate::planning::Motion;
-use crate::query::{Portion, Query, Same, Watch};
-use crate::session::design::Brief;
+use crate::query::{ByIdentity, Portion, ProgressCallback, Query};
+use crate::session::design::DesignBrief;
 
 /// A machine whose Pareto front is requested.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrontOf {
+pub struct FrontCase {
     /// Name in the answer.
     pub name: String,
     /// The machine; its counterweights are removed first, except fixed ones.
     pub machine: Machine,
     /// Bounds on the counterweights: the same for all machines, applied to the links of this one.
-    pub asked: Weighing,
+    pub asked: CounterweightSpec,
 }
 
-impl FrontOf {
+impl FrontCase {
     /// Builds the request from a brief, which states the same bounds for machines with different links.
-    pub fn of(name: impl Into<String>, machine: &Machine, brief: &Brief) -> Self {
+    pub fn of(name: impl Into<String>, machine: &Machine, brief: &DesignBrief) -> Self {
         // Counterweights are removed here, so that the request stays equal while they change.
         let machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
         Self { name: name.into(), asked: brief.weighing(&machine), machine }
@@ -34,11 +34,11 @@ impl FrontOf {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrontsRequest {
     /// The machines.
-    pub machines: Vec<FrontOf>,
+    pub machines: Vec<FrontCase>,
     /// Number of machines on each front, at least two.
     pub count: usize,
     /// Motion for the torque, used for machines with the same number of drives.
-    pub motion: Option<Same<Motion>>,
+    pub motion: Option<ByIdentity<Motion>>,
     /// Whether to compute the areas of workspaces, which take longer than all other measures.
     pub workspace: bool,
 }
@@ -49,19 +49,19 @@ pub struct MachineFront {
     /// Name of the machine.
     pub name: String,
     /// Its Pareto front, or why it has none.
-    pub outcome: Result<ToldFront, NoWeights>,
+    pub outcome: Result<MeasuredFront, CounterweightError>,
 }
 
 /// A Pareto front with the measures of its machines.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ToldFront {
+pub struct MeasuredFront {
     /// The machines, from the lightest to the one with the least inertia.
     pub front: Front,
     /// Measures of each machine, in the same order.
     pub points: Vec<FrontPoint>,
 }
 
-impl ToldFront {
+impl MeasuredFront {
     /// Returns added mass, kg, and Σ D_k, kg m², of each machine.
     pub fn measures(&self) -> Vec<[f64; 2]> {
         self.points.iter().map(FrontPoint::measures).collect()
@@ -110,7 +110,7 @@ impl Query for Fronts {
     }
 
     /// Computes one machine of a front, or its measures.
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         let (known, all) = (self.done.len(), self.asked.machines.len() as f64);
         let Some(of) = self.asked.machines.get(known) else {
             return Portion::Done(std::mem::take(&mut self.done));
@@ -136,7 +136,7 @@ impl Query for Fronts {
                 }
                 None => {
                     let front = Front { points: std::mem::take(&mut front.points) };
-                    Ok(ToldFront { front, points: std::mem::take(points) })
+                    Ok(MeasuredFront { front, points: std::mem::take(points) })
                 }
             },
         };

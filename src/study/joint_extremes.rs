@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::mechanics::joint_forces::{AxialMoments, Joints, JointsError, KEPT, Pin, PinPeak};
+use crate::mechanics::joint_forces::{AxialMoments, Joints, JointsError, MAX_FRAME_PINS, Pin, PinPeak};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::cross;
 use crate::simulation::frame::Frame;
@@ -63,7 +63,7 @@ pub struct Transmission {
 
 /// Moments that tilt the base.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Tilt {
+pub struct TiltExtremes {
     /// Whether all heights are zero, so that the planar model has no tilting moments.
     pub flat: bool,
     /// |n_x|, N m.
@@ -91,7 +91,7 @@ pub struct JointReport {
     /// Pairs of drives whose closed loops become flat where the drives align.
     pub transmission: Vec<Transmission>,
     /// Moments that tilt the base.
-    pub tilt: Tilt,
+    pub tilt: TiltExtremes,
     /// The first audit that failed, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub audit_failed: Option<String>,
@@ -135,7 +135,7 @@ impl JointExtremes {
     pub fn of(machine: Machine) -> Result<Self, JointsError> {
         let joints = Joints::of(&machine)?;
         let pairs = vec![Sine::default(); Inertia::pairs(machine.drives()).count()];
-        let seen = vec![PinPeak::default(); joints.pins().len().min(KEPT)];
+        let seen = vec![PinPeak::default(); joints.pins().len().min(MAX_FRAME_PINS)];
         Ok(Self { machine, joints, seen, pairs, tilt: [None; 3] })
     }
 
@@ -203,7 +203,7 @@ impl JointExtremes {
             worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
             pins,
             transmission: Inertia::pairs(machine.drives()).zip(&self.pairs).filter_map(pair).collect(),
-            tilt: Tilt { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
+            tilt: TiltExtremes { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
             audit_failed: last.fault().map(|lamp| lamp.to_string()),
         }
     }

@@ -9,11 +9,13 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::mechanics::counterweights::{NoWeights, Objective, Placed, Sites, Weighing, place};
+use crate::mechanics::counterweights::{
+    CounterweightError, CounterweightSpec, Objective, Placed, Sites, place_weights,
+};
 use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
 use crate::planning::pose_space::plane_area;
-use crate::query::{Portion, Query, Shared, Watch};
-use crate::session::design::Brief;
+use crate::query::{Portion, ProgressCallback, Query, Shared};
+use crate::session::design::DesignBrief;
 
 /// A length to optimise: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +32,7 @@ pub struct LengthSearch {
     /// Lengths to optimise. Links keep their mass per metre; centre of mass and inertia scale with the length.
     pub lengths: Vec<FreeLength>,
     /// Sites of the counterweights, and the objective.
-    pub weighing: Weighing,
+    pub weighing: CounterweightSpec,
     /// Whether sites at the ends of links, or as far behind the roots, move with the lengths.
     pub anywhere: bool,
     /// Lower bound on the sum of the arms' lengths, Σ |L_k|, m.
@@ -45,7 +47,7 @@ pub struct LengthSearch {
 
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct FoundLengths {
     /// The machine with its counterweights, which are certified for these lengths.
     pub placed: Placed,
     /// Lengths in the order of the request, m.
@@ -58,7 +60,7 @@ pub struct Found {
 
 /// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Progress {
+pub struct SearchProgress {
     /// Number of finished starts.
     pub starts: usize,
     /// Number of machines evaluated.
@@ -104,7 +106,7 @@ pub enum NoLengths {
     },
     /// The counterweights have no solution.
     #[error(transparent)]
-    Weights(#[from] NoWeights),
+    Weights(#[from] CounterweightError),
 }
 
 /// Lower bound on the penalty value of an infeasible machine, above that of any feasible one. The value grows with the
@@ -112,20 +114,20 @@ pub enum NoLengths {
 const INFEASIBLE: f64 = 1e30;
 
 /// [`search`] as a query, in one portion; its progress is the fraction of finished starts.
-pub struct Seeking {
+pub struct LengthsQuery {
     machine: Shared<Machine>,
     asked: LengthSearch,
 }
 
-impl Query for Seeking {
+impl Query for LengthsQuery {
     type Input = (Shared<Machine>, LengthSearch);
-    type Answer = Result<Found, NoLengths>;
+    type Answer = Result<FoundLengths, NoLengths>;
 
     fn begin((machine, asked): Self::Input) -> Self {
         Self { machine, asked }
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         let (starts, mut wanted) = (self.asked.starts.max(1) as f64, true);
         let found = search(&self.machine.0, &self.asked, &mut |progress| {
             wanted = goes_on(progress.starts as f64 / starts);
@@ -149,8 +151,8 @@ const CONVERGED_BELOW: f64 = 1e-5;
 pub fn search(
     machine: &Machine,
     asked: &LengthSearch,
-    go_on: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Found, NoLengths> {
+    go_on: &mut dyn FnMut(SearchProgress) -> bool,
+) -> Result<FoundLengths, NoLengths> {
     check(machine, asked)?;
     let mut seen = Seen {
         machine,
@@ -184,7 +186,7 @@ pub fn search(
         return Err(NoLengths::None { machines, why });
     };
     let alike = ends.iter().filter(|end| (**end - value).abs() <= 1e-3 * value.abs()).count();
-    Ok(Found { placed, lengths, starts: [ends.len(), alike], machines })
+    Ok(FoundLengths { placed, lengths, starts: [ends.len(), alike], machines })
 }
 
 fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
@@ -193,7 +195,7 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
     }
     for (what, least) in [("reach", asked.least_reach), ("workspace", asked.least_workspace)] {
         if let Some(least) = least.filter(|least| !(least.is_finite() && *least >= 0.0)) {
-            return Err(NoWeights::OutOfRange {
+            return Err(CounterweightError::OutOfRange {
                 what: format!("a {what} of at least"),
                 value: least,
                 want: "a number not below 0".into(),
@@ -236,11 +238,11 @@ const DEFAULT_STARTS: usize = 6;
 
 impl LengthSearch {
     /// Builds the search from a brief, for a machine and an objective.
-    pub fn of(brief: &Brief, machine: &Machine, objective: Objective) -> Self {
+    pub fn of(brief: &DesignBrief, machine: &Machine, objective: Objective) -> Self {
         let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
         Self {
             lengths: lengths.collect(),
-            weighing: Weighing { objective, ..brief.weighing(machine) },
+            weighing: CounterweightSpec { objective, ..brief.weighing(machine) },
             anywhere: true,
             least_reach: brief.reach,
             least_workspace: brief.workspace,
@@ -280,10 +282,12 @@ impl LengthSearch {
         let (lengths, changed) = self.changed(machine, shares)?;
         let mut violations = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
         let weighing = match self.anywhere {
-            true => Weighing { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() },
+            true => {
+                CounterweightSpec { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() }
+            }
             false => self.weighing.clone(),
         };
-        let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
+        let placed = place_weights(&changed, &weighing).map_err(|why| why.to_string())?;
         if let Some(least) = self.least_workspace {
             let area = plane_area(&placed.machine).unwrap_or(0.0);
             violations[1] = (least - area).max(0.0);
@@ -313,7 +317,7 @@ fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites
 struct Seen<'a> {
     machine: &'a Machine,
     asked: &'a LengthSearch,
-    go_on: &'a mut dyn FnMut(Progress) -> bool,
+    go_on: &'a mut dyn FnMut(SearchProgress) -> bool,
     stopped: bool,
     machines: usize,
     ended: usize,
@@ -343,7 +347,7 @@ impl Seen<'_> {
             Err(_) => f64::INFINITY,
         };
         let best = self.best.as_ref().map_or(f64::INFINITY, |(best, ..)| *best);
-        self.stopped |= !(self.go_on)(Progress { starts: self.ended, machines: self.machines, best });
+        self.stopped |= !(self.go_on)(SearchProgress { starts: self.ended, machines: self.machines, best });
         value
     }
 }

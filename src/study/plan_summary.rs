@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use crate::mechanics::machine::Inertia;
-use crate::planning::common::common;
+use crate::planning::common::common_b_set;
 use crate::planning::following::Blocked;
 use crate::planning::off_plane::Price;
 use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::off_plane::price::{FloatingBase, PriceError};
-use crate::planning::pose_constant::Mend;
+use crate::planning::pose_constant::PointCorrection;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run};
@@ -108,7 +108,7 @@ pub struct Obstacle {
     pub mending_b: Option<f64>,
     /// Smallest move of one point after which all points have a b in common.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mend: Option<Mend>,
+    pub mend: Option<PointCorrection>,
 }
 
 impl PlanSummary {
@@ -123,7 +123,7 @@ impl PlanSummary {
         planned: Result<&Run, &Refusal>,
         base: Option<&FloatingBase>,
     ) -> Result<Self, PriceError> {
-        let common = space.and_then(|space| common(space, &scenario.task.points()));
+        let common = space.and_then(|space| common_b_set(space, &scenario.task.points()));
         let (b, cost, obstacle) = match planned {
             Ok(run) => (run.plan().forecast.b_start, Some(PlanCost::of(run, base)?), None),
             Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(refusal))),

@@ -1,16 +1,16 @@
-//! [`Samples`]: signals of a run over time, for drawing at any scale, statistics and CSV.
+//! [`SignalSamples`]: signals of a run over time, for drawing at any scale, statistics and CSV.
 
 use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::series::{Series, Statistics};
-use crate::query::Growing;
+use crate::query::IncrementalQuery;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 
 /// Samples of some signals of one run. A signal that was added later has fewer samples until it catches up.
 #[derive(Clone, Debug, Default)]
-pub struct Samples {
+pub struct SignalSamples {
     times: Vec<f64>,
     /// Series by the path of the signal.
     series: Vec<(String, Series)>,
@@ -18,7 +18,7 @@ pub struct Samples {
     signals: Vec<Signal>,
 }
 
-impl Growing for Samples {
+impl IncrementalQuery for SignalSamples {
     type Item = Frame;
     /// Requested signals.
     type Input = Vec<Signal>;
@@ -66,7 +66,7 @@ impl Growing for Samples {
     }
 }
 
-impl Samples {
+impl SignalSamples {
     /// Returns signals by path with their sampling times, s. A signal with another number of samples is left out.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();

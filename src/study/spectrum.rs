@@ -31,7 +31,7 @@ use thiserror::Error;
 /// Window function of the samples before the transform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Window {
+pub enum WindowFunction {
     /// Hann window ½ (1 − cos(2π n/N)), periodic: little leakage to distant frequencies.
     #[default]
     Hann,
@@ -40,7 +40,7 @@ pub enum Window {
     Rectangular,
 }
 
-impl Window {
+impl WindowFunction {
     fn weight(self, n: usize, of: usize) -> f64 {
         match self {
             Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / of as f64).cos()),
@@ -49,7 +49,7 @@ impl Window {
     }
 }
 
-impl FromStr for Window {
+impl FromStr for WindowFunction {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
@@ -89,7 +89,7 @@ pub enum SpectrumError {
 }
 
 /// Minimum number of samples of a spectrum.
-pub const LEAST: usize = 8;
+pub const MIN_SPECTRUM_SAMPLES: usize = 8;
 
 /// A one-sided spectrum of one signal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -106,11 +106,11 @@ impl Spectrum {
     /// Returns the spectrum of samples that are `step` seconds apart.
     ///
     /// # Errors
-    /// Fails if there are fewer than [`LEAST`] samples, one is not finite, or the step is not above 0.
-    pub fn of(samples: &[f64], step: f64, window: Window) -> Result<Self, SpectrumError> {
+    /// Fails if there are fewer than [`MIN_SPECTRUM_SAMPLES`] samples, one is not finite, or the step is not above 0.
+    pub fn of(samples: &[f64], step: f64, window: WindowFunction) -> Result<Self, SpectrumError> {
         let count = samples.len();
-        if count < LEAST {
-            return Err(SpectrumError::TooFew { count, least: LEAST });
+        if count < MIN_SPECTRUM_SAMPLES {
+            return Err(SpectrumError::TooFew { count, least: MIN_SPECTRUM_SAMPLES });
         }
         if let Some(index) = samples.iter().position(|x| !x.is_finite()) {
             return Err(SpectrumError::NotFinite { index });
@@ -124,7 +124,7 @@ impl Spectrum {
         let mut lines = transform.make_output_vec();
         // Unreachable: both arrays have the length of the transform.
         if transform.process(&mut weighted, &mut lines).is_err() {
-            return Err(SpectrumError::TooFew { count, least: LEAST });
+            return Err(SpectrumError::TooFew { count, least: MIN_SPECTRUM_SAMPLES });
         }
         let power: f64 = weights.iter().map(|w| w * w).sum();
         let resolution = 1.0 / (count as f64 * step);

@@ -6,7 +6,7 @@ use super::pose_measures::PoseMeasures;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{Vector, unit};
 use crate::planning::pose_space::{Outline, Planes, PoseSpace};
-use crate::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
+use crate::planning::reactionless::{Boundary, ChangeCurve, DRIVE_PAIRS, PlaneMap};
 
 /// Region that the end effector reaches while b is held.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,7 +34,7 @@ pub struct WorkspaceReport {
     pub curve: Option<Vec<[f64; 2]>>,
     /// Curves and areas inside the workspace. Only for three drives.
     #[serde(flatten)]
-    pub inside: Option<Inside>,
+    pub inside: Option<WorkspaceInterior>,
     /// Points of the request.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointInWorkspace>,
@@ -42,7 +42,7 @@ pub struct WorkspaceReport {
 
 /// Curves and areas inside the workspace of three drives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Inside {
+pub struct WorkspaceInterior {
     /// Whether a fold runs through the interior.
     pub interior_singularity: bool,
     /// Maximum number of poses at one point.
@@ -147,13 +147,13 @@ impl WorkspaceReport {
             y_max: extent.y_max,
             loops: boundary.turned(b),
             curve: None,
-            inside: Some(Inside::of(planes, b)),
+            inside: Some(WorkspaceInterior::of(planes, b)),
             points,
         }
     }
 }
 
-impl Inside {
+impl WorkspaceInterior {
     fn of(planes: &Planes, b: f64) -> Self {
         let (map, boundary) = (planes.map(), planes.boundary());
         let turn = map.turn(b);
@@ -182,12 +182,12 @@ impl Inside {
 
 /// Returns the two drives of a pair, counted from 1.
 fn drives(pair: usize) -> [usize; 2] {
-    PAIRS[pair].map(|k| k + 1)
+    DRIVE_PAIRS[pair].map(|k| k + 1)
 }
 
 /// Returns the parts on the sides of each pair of drives that has change points inside.
 fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<AreaOfSide> {
-    let divided = (0..PAIRS.len()).filter(|&pair| changes.iter().any(|c| c.pair == pair));
+    let divided = (0..DRIVE_PAIRS.len()).filter(|&pair| changes.iter().any(|c| c.pair == pair));
     let part = |(pair, half_turns): (usize, i32)| {
         let mut sides = [None; 3];
         sides[pair] = Some(half_turns);

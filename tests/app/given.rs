@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{SessionCommand, TableOptions, Taking, WindowCommand};
+use stillbase::app::{SessionCommand, TableAction, TableOptions, WindowCommand};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::settings::change::one;
+use stillbase::settings::change::single_change;
 
 use super::{Window, session, window};
 use crate::Test;
@@ -97,7 +97,7 @@ fn a_motion_of_ones_own_becomes_one_without_reactions() {
 fn a_measured_machine_is_taken_as_it_is_and_mended() {
     let folder = Folder::new("given");
     let case = Scenario::builtin("case-1").expect("built in");
-    let built = case.with(&one("link.5.com", -0.02)).expect("a machine");
+    let built = case.with(&single_change("link.5.com", -0.02)).expect("a machine");
     let file = folder.file("plate.csv", table(&built, true, 1));
     let mut h = window("case-3", Theme::Dark);
     open(&mut h, file);
@@ -151,7 +151,7 @@ fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
     assert!(h.query_by_label("Take the proposal").is_some(), "the spline bridges it");
     // What the table does not say cannot be taken.
     let app_state = h.state_mut().app_state_mut();
-    app_state.carry_out(SessionCommand::TakeGiven(Taking::Measured));
+    app_state.carry_out(SessionCommand::TakeGiven(TableAction::Measured));
     assert!(app_state.view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
     app_state.carry_out(WindowCommand::Ask(TableOptions { b: Some(9e5), ..TableOptions::default() }));
     h.run_steps(3);

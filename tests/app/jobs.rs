@@ -14,7 +14,7 @@ use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange, Wind
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
-use stillbase::query::{AtOnce, Job, Poll, Work, Workers};
+use stillbase::query::{InlineWorkers, Job, Poll, Work, Workers};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
@@ -510,7 +510,7 @@ fn work_begins_when_the_window_is_drawn() {
     let scenario = Scenario::builtin("case-3").expect("built in");
     let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(workers.clone());
     let ctx = egui::Context::default();
-    let mut draw = |app_state: &mut AppState| {
+    let draw = |app_state: &mut AppState| {
         let input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
             ..egui::RawInput::default()
@@ -575,7 +575,7 @@ fn jobs_end_break_off_and_are_stopped() {
             woken.fetch_add(1, Ordering::SeqCst);
         }
     };
-    let job = Job::start(&AtOnce, wake(), |ticket| ticket.goes_on(0.25));
+    let job = Job::start(&InlineWorkers, wake(), |ticket| ticket.goes_on(0.25));
     assert!((job.progress() - 0.25).abs() < 1e-3);
     assert!(matches!(job.poll(), Poll::Done(true)));
     assert!(matches!(job.poll(), Poll::Broken), "a result is given once");

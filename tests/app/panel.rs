@@ -5,7 +5,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{SessionCommand, Tool, ViewChange};
 use stillbase::mechanics::planar::PerDrive;
-use stillbase::picture::scene::exaggeration::{Exaggeration, Shown};
+use stillbase::picture::scene::exaggeration::{DrawnFrame, Exaggeration};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
@@ -14,7 +14,7 @@ use stillbase::planning::posture::Posture;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
-use stillbase::simulation::plant::{Base, BaseKind, Each, PlantDifferences};
+use stillbase::simulation::plant::{Base, BaseKind, DriveValues, PlantDifferences};
 
 use super::{Window, hold, on_screen, seen, session, type_into, window, window_of};
 use crate::Test;
@@ -74,14 +74,14 @@ fn what_differs_is_set_and_taken_back() {
     h.get_by_label("viscous per drive").click();
     h.run_steps(2);
     let plant = session(&h).scenario().plant.clone();
-    assert_eq!(plant.friction.viscous, Each::Own(PerDrive::from_fn(3, |_| 0.02)));
+    assert_eq!(plant.friction.viscous, DriveValues::Own(PerDrive::from_fn(3, |_| 0.02)));
     assert!((plant.friction.coulomb.of(3)[2] - 0.05).abs() < 1e-3 && plant.torque_limits && plant.force == [2.0, 0.0]);
     assert!(h.query_by_label("4 differences").is_some());
     assert!(h.query_by_label_contains("Friction over time").is_some(), "friction has a plot where there is some");
     // One at a time, then all.
     h.get_by_label("Coulomb back to normal").click();
     h.run_steps(2);
-    assert_eq!(session(&h).scenario().plant.friction.coulomb, Each::All(0.0));
+    assert_eq!(session(&h).scenario().plant.friction.coulomb, DriveValues::All(0.0));
     h.get_by_label("Plant back to normal").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().plant, PlantDifferences::default());
@@ -214,7 +214,7 @@ fn a_base_that_moves_is_seen_to_move() {
     let moved = foreseen * (f.totals.shift + f.totals.base_angle * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's field is where it is drawn, and pulling it there asks for the same b.
-    let shown = Shown::of(&f, Exaggeration::Times(foreseen));
+    let shown = DrawnFrame::of(&f, Exaggeration::Times(foreseen));
     let stage = h.state().app_state().stage().clone();
     let at = stage.handle(Handle::Ring, &shown).expect("three drives");
     let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");

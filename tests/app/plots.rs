@@ -4,7 +4,7 @@ use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{Command, PlotFile, SessionCommand, ViewChange};
-use stillbase::picture::charts::choice::Change;
+use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
@@ -40,7 +40,7 @@ fn range(h: &Window) -> Option<[f64; 2]> {
 /// Where a time stands in a plot that shows one second from 0 on, some points aside of what rounding does.
 fn at_share(h: &Window, plot: &str, share: f32) -> Pos2 {
     let rect = h.get_by_label_contains(plot).rect();
-    let left = rect.left() + stillbase::picture::charts::figure::LEFT;
+    let left = rect.left() + stillbase::picture::charts::figure::LEFT_MARGIN;
     pos2(left + share * (rect.right() - 2.0 - left), rect.center().y - 8.0)
 }
 
@@ -164,7 +164,7 @@ fn hands_move_the_values_that_a_plot_shows() {
     h.run_steps(2);
     assert_eq!(values(&h), Some([moved, end]));
     for place in [at, inside] {
-        h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Values(name.into(), Some([-0.1, 0.1]))));
+        h.state_mut().app_state_mut().carry_out(ViewChange::Charts(PlotChange::Values(name.into(), Some([-0.1, 0.1]))));
         h.run_steps(20);
         for _ in 0..2 {
             h.drag_at(place);
@@ -273,7 +273,7 @@ fn a_signal_is_sought_and_plotted_by_keys_alone() {
 
 fn one_signal_stands_against_another() {
     let mut h = after_case("case-1", Theme::Dark, 1400.0);
-    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Plot("tip/y".into())));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(PlotChange::Plot("tip/y".into())));
     h.run_steps(2);
     h.get_by_label("End effector, y: menu").focus();
     h.run_steps(2);
@@ -325,7 +325,7 @@ fn values_under_the_pointer_are_those_of_the_frame() {
 fn a_plot_is_written_to_files() {
     let folder = Folder::new("plots");
     let mut h = after_case("case-1", Theme::Dark, 800.0);
-    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(Change::Range(Some([0.2, 0.3]))));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(PlotChange::Range(Some([0.2, 0.3]))));
     h.run_steps(2);
     let mut write = |file: PlotFile, name: &str| {
         let path = folder.path(name);
@@ -379,12 +379,12 @@ fn plots_look_as_they_should() {
         Command::Session(SessionCommand::Seek(1.0)),
         Command::Session(SessionCommand::Seek(0.62)),
         Command::View(ViewChange::Mark(Some(0.3))),
-        Command::View(ViewChange::Charts(Change::Close("Base force".into()))),
-        Command::View(ViewChange::Charts(Change::Show("Torque".into(), "torque/2".into(), false))),
-        Command::View(ViewChange::Charts(Change::Plot("tip/y".into()))),
-        Command::View(ViewChange::Charts(Change::Against("plot 1".into(), Some("tip/x".into())))),
-        Command::View(ViewChange::Charts(Change::Statistics(true))),
-        Command::View(ViewChange::Charts(Change::Range(Some([0.1, 0.9])))),
+        Command::View(ViewChange::Charts(PlotChange::Close("Base force".into()))),
+        Command::View(ViewChange::Charts(PlotChange::Show("Torque".into(), "torque/2".into(), false))),
+        Command::View(ViewChange::Charts(PlotChange::Plot("tip/y".into()))),
+        Command::View(ViewChange::Charts(PlotChange::Against("plot 1".into(), Some("tip/x".into())))),
+        Command::View(ViewChange::Charts(PlotChange::Statistics(true))),
+        Command::View(ViewChange::Charts(PlotChange::Range(Some([0.1, 0.9])))),
     ] {
         h.state_mut().app_state_mut().carry_out(command);
     }

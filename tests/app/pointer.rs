@@ -290,7 +290,7 @@ fn a_path_is_drawn_by_hand() {
     h.drop_at(at(&h, 1.0));
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
+    assert_eq!(task.shape(), stillbase::session::scenario::PathShape::Freehand);
     assert!(task.points().len() > 20, "{}", task.points().len());
     assert!(h.state().app_state().view_state().tool == Tool::Hold, "the pencil is laid down");
     h.get_by_label("Play").click();

@@ -35,7 +35,7 @@ fn opening_an_odd_scenario_changes_nothing_in_it() {
 fn a_refused_path_shows_where_and_what_b_would_do() {
     let mut h = window("case-3", Theme::Dark);
     h.step();
-    let change = stillbase::session::scenario::Change::from_iter([
+    let change = stillbase::session::scenario::TaskChange::from_iter([
         ("shape".to_owned(), "line".into()),
         ("from".to_owned(), vec![0.42, 1.12].into()),
         ("to".to_owned(), vec![0.0, 0.5].into()),

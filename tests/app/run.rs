@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{SessionCommand, ViewChange};
 use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
-use stillbase::planning::common::common;
+use stillbase::planning::common::common_b_set;
 use stillbase::session::Edit;
 
 use super::{Window, hold, pull, session, type_into, window};
@@ -140,7 +140,7 @@ fn the_knob_of_b_stops_where_b_does() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let points = session(&h).scenario().task.points();
-    let ends = common(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
+    let ends = common_b_set(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
     let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
     let shown = |h: &Window| h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
     let period = session(&h).run().planes().expect("planes").map().period();
@@ -162,7 +162,7 @@ fn b_leaves_the_task_as_it_is() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let points = session(&h).scenario().task.points();
-    let ends = common(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
+    let ends = common_b_set(session(&h).run().pose_space().expect("planes"), &points).expect("a band").intervals[0];
     for (asked, stops) in [(3.6, ends[1]), (0.9, ends[0])] {
         h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(asked);
         h.run_steps(2);
@@ -209,7 +209,7 @@ fn a_run_is_played_over_and_over() {
     let time = session(&h).frame().time;
     assert!(session(&h).is_playing() && time > 0.1 && time < 0.6, "after 1.4 s it is under way again: {time}");
     // A range of the plots is played alone.
-    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(charts::choice::Change::Range(Some([0.4, 0.6]))));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Charts(charts::choice::PlotChange::Range(Some([0.4, 0.6]))));
     let mut seen = [f64::INFINITY, 0.0];
     h.run_steps(30);
     for _ in 0..40 {

@@ -6,9 +6,9 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, LeftOff, Preferences, SessionCommand, ViewChange, WindowCommand};
+use stillbase::app::{AppState, Command, Preferences, ResumePoint, SessionCommand, ViewChange, WindowCommand};
 use stillbase::files::journal::{self, Journal};
-use stillbase::picture::charts::choice::Change;
+use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
@@ -40,16 +40,16 @@ fn heavier() -> Command {
 
 fn what_a_program_left_behind_is_found() {
     let folder = Folder::new("journal");
-    assert!(journal::left(&folder.0).is_empty());
+    assert!(journal::leftover_journals(&folder.0).is_empty());
     let mut h = window("case-3", Theme::Dark);
     tell(&mut h, heavier());
     let kept = session(&h).to_scenario();
     let running = Journal::begin(&folder.0).expect("the folder can be written");
     journal::write(running.file(), &kept.to_toml()).expect("written");
-    assert!(journal::left(&folder.0).is_empty(), "its program still runs");
+    assert!(journal::leftover_journals(&folder.0).is_empty(), "its program still runs");
     // A program that is killed lets go of its lock and removes nothing.
     drop(running);
-    let left = journal::left(&folder.0);
+    let left = journal::leftover_journals(&folder.0);
     assert_eq!(left.len(), 1);
     let text = std::fs::read_to_string(&left[0].file).expect("readable");
     assert_eq!(Scenario::parse(&text, "left", None).expect("a session"), kept);
@@ -58,9 +58,9 @@ fn what_a_program_left_behind_is_found() {
     assert_ne!(next.file(), left[0].file);
     journal::write(next.file(), "").expect("written");
     next.end();
-    assert_eq!(journal::left(&folder.0), left, "one that ended in order leaves nothing");
-    journal::forget(&left[0].file);
-    assert!(journal::left(&folder.0).is_empty());
+    assert_eq!(journal::leftover_journals(&folder.0), left, "one that ended in order leaves nothing");
+    journal::remove_journal(&left[0].file);
+    assert!(journal::leftover_journals(&folder.0).is_empty());
 }
 
 fn programs_beside_each_other_keep_a_journal_each() {
@@ -225,10 +225,10 @@ fn own_plots_and_the_instant_are_recovered() {
     let mut h = window("case-3", Theme::Dark);
     tell(&mut h, heavier());
     for change in [
-        Change::Plot("torque/2".into()),
-        Change::Add("Torque".into(), "drives/q1".into()),
-        Change::Show("Torque".into(), "torque/2".into(), false),
-        Change::Statistics(true),
+        PlotChange::Plot("torque/2".into()),
+        PlotChange::Add("Torque".into(), "drives/q1".into()),
+        PlotChange::Show("Torque".into(), "torque/2".into(), false),
+        PlotChange::Statistics(true),
     ] {
         tell(&mut h, Command::View(ViewChange::Charts(change)));
     }
@@ -237,9 +237,9 @@ fn own_plots_and_the_instant_are_recovered() {
     assert_eq!(left_off.time, session(&h).frame().time);
     let kept = session(&h).to_scenario();
     let text = left_off.before(&kept.to_toml());
-    assert_eq!(LeftOff::of(&text).as_ref(), Some(&left_off));
+    assert_eq!(ResumePoint::of(&text).as_ref(), Some(&left_off));
     assert_eq!(Scenario::parse(&text, "left", None).expect("a session all the same"), kept);
-    assert_eq!(LeftOff::of(&kept.to_toml()), None);
+    assert_eq!(ResumePoint::of(&kept.to_toml()), None);
     let mut h = found(&folder.file("session-0.toml", text));
     h.run_steps(2);
     h.get_by_label("Open that session").click();
@@ -247,7 +247,7 @@ fn own_plots_and_the_instant_are_recovered() {
     assert_eq!(h.state().app_state().left_off(), left_off);
     assert!((session(&h).frame().time - 0.412).abs() < 1e-9);
     // An instant that the run never had: no more is made than the run has.
-    let far = LeftOff { time: 1e300, ..LeftOff::default() }.before(&kept.to_toml());
+    let far = ResumePoint { time: 1e300, ..ResumePoint::default() }.before(&kept.to_toml());
     let mut h = found(&folder.file("session-0.toml", far));
     h.run_steps(2);
     h.get_by_label("Open that session").click();
@@ -255,6 +255,6 @@ fn own_plots_and_the_instant_are_recovered() {
     assert!((session(&h).frame().time - 1.0).abs() < 1e-9 && session(&h).frames().len() <= 1001);
     // What no program wrote does no harm.
     for strange in ["#| time = nan\n", "#| time = -1.0\n", "#| plots = 3\n", "#| \u{0}\n"] {
-        assert_eq!(LeftOff::of(strange), None, "{strange}");
+        assert_eq!(ResumePoint::of(strange), None, "{strange}");
     }
 }

@@ -3,7 +3,7 @@
 use egui::TexturesDelta;
 use egui_kittest::TestRenderer;
 use stillbase::app::window::App;
-use stillbase::picture::gui::{GuiRenderer, Sheet};
+use stillbase::picture::gui::{GuiRenderer, RenderTarget};
 use stillbase::picture::render::offscreen::{Gpu, surface};
 
 /// Shows an application over the whole window; kittest would leave a margin around it.
@@ -41,7 +41,7 @@ impl TestRenderer for Screen {
         let shapes = ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point());
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let behind = ctx.global_style().visuals.panel_fill;
-        let sheet = Sheet { view: &view, size_px, pixels_per_point: ctx.pixels_per_point(), behind };
+        let sheet = RenderTarget { view: &view, size_px, pixels_per_point: ctx.pixels_per_point(), behind };
         self.gui.draw(&sheet, &mut self.textures, &shapes);
         let picture = self.gpu.readback(&texture).map_err(|why| why.to_string())?;
         image::RgbaImage::from_raw(picture.width, picture.height, picture.rgba).ok_or_else(|| "no pixels".into())

@@ -4,8 +4,8 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::SessionCommand;
 use stillbase::picture::paint::words::placed;
-use stillbase::picture::paint::{Spot, draw_drafts};
-use stillbase::picture::scene::framing::Room;
+use stillbase::picture::paint::{SceneViewport, draw_drafts};
+use stillbase::picture::scene::framing::PictureArea;
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -55,13 +55,13 @@ fn clear_words(h: &Window, name: &str, view: ViewKind, size: egui::Vec2) {
     let (views, frame) = (state.views(), session(h).frame());
     let rect = egui::Rect::from_min_size(egui::pos2(40.0, 30.0), size);
     let content = views.content(view, frame, &[]);
-    let room = Room { size: [f64::from(size.x), f64::from(size.y)], covered: Vec::new() };
+    let room = PictureArea { size: [f64::from(size.x), f64::from(size.y)], covered: Vec::new() };
     let camera = content.framed(views.camera(view), &room);
     let options = ViewOptions { invites: true, limits: true, ..Default::default() };
     let scene = views.scene(view, frame, &options, &camera);
     let painter = egui::Painter::new(h.ctx.clone(), egui::LayerId::background(), rect);
     let grid = egui::Rect::from_min_max(rect.right_bottom() - egui::vec2(90.0, 28.0), rect.right_bottom());
-    let spot = Spot { rect, camera };
+    let spot = SceneViewport { rect, camera };
     let all = placed(&painter, &spot, &scene, &[grid]);
     assert!(all.is_empty() == scene.labels.is_empty() && all.len() <= scene.labels.len());
     let bars = scene.bars.iter().flat_map(|[a, b]| {

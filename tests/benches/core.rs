@@ -7,8 +7,10 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
-use stillbase::mechanics::balance::{Body, Breakdown, Hold, Keep, Parameter, Preset, Quantity, keep};
-use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, front, place};
+use stillbase::mechanics::balance::{
+    Body, BodyQuantity, Breakdown, Parameter, ParameterBounds, Preset, RebalanceRequest, rebalance,
+};
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, front, place_weights};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::end_effector;
@@ -20,11 +22,11 @@ use stillbase::planning::curves::path::minimum_norm_path;
 use stillbase::planning::curves::{Curve, CurvePoint, Path, Samples};
 use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::off_plane::LeastReaction;
-use stillbase::planning::off_plane::least_reaction::Goal;
+use stillbase::planning::off_plane::least_reaction::ReactionNorm;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap};
-use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
+use stillbase::planning::timing::{DriveLimits, Profile, TimeLaw, fastest};
 use stillbase::session::scenario::{Scenario, default_spreads};
 use stillbase::session::{Edit, Run, Session, replay};
 use stillbase::study::tolerance::{CHUNK, Ensemble};
@@ -288,7 +290,7 @@ fn tip_path() -> Path {
 #[divan::bench]
 fn fastest_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
-    let (model, limits, path) = (Inertia::of(machine), Limits::of(machine), tip_path());
+    let (model, limits, path) = (Inertia::of(machine), DriveLimits::of(machine), tip_path());
     bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, false));
 }
 
@@ -296,7 +298,7 @@ fn fastest_of_1000_points(bencher: Bencher) {
 #[divan::bench]
 fn fastest_smooth_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
-    let limits = Limits { jerk: PerDrive::from([2000.0; 3]), ..Limits::of(machine) };
+    let limits = DriveLimits { jerk: PerDrive::from([2000.0; 3]), ..DriveLimits::of(machine) };
     let (model, path) = (Inertia::of(machine), tip_path());
     bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, true));
 }
@@ -305,7 +307,7 @@ fn fastest_smooth_of_1000_points(bencher: Bencher) {
 #[divan::bench]
 fn profile_at(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
-    let (model, limits) = (Inertia::of(machine), Limits::of(machine));
+    let (model, limits) = (Inertia::of(machine), DriveLimits::of(machine));
     let found = fastest(&tip_path(), &model, &Surroundings::default(), &limits, false).expect("limits");
     let (profile, mut t) = (found.profile, 0.0);
     bencher.bench_local(|| {
@@ -325,8 +327,9 @@ fn least_reaction_path(bencher: Bencher) {
         CurvePoint { p: from + law.s * way, first: law.rate * way, second: law.acceleration * way }
     };
     let start = map.poses(from, 1.75)[0];
-    bencher
-        .bench_local(|| LeastReaction::plan(&map, &model, curve, black_box(start), None, Goal::Rms).expect("it can"));
+    bencher.bench_local(|| {
+        LeastReaction::plan(&map, &model, curve, black_box(start), None, ReactionNorm::Rms).expect("it can")
+    });
 }
 
 /// Everything that the linked views keep from frame to frame.
@@ -413,31 +416,31 @@ fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
 }
 
 /// Torques of a million steps, as the window has them.
-fn million() -> stillbase::study::samples::Samples {
+fn million() -> stillbase::study::samples::SignalSamples {
     let count = 1_000_000;
     let times = (0..count).map(|i| 1e-3 * f64::from(i)).collect();
     let wave =
         |k: i32| (0..count).map(move |i| f64::from(k) + (1e-4 * f64::from(i * k)).sin() + 0.1 * f64::from(i % 7));
-    stillbase::study::samples::Samples::of(times, (1..=3).map(|k| (format!("torque/{k}"), wave(k).collect())))
+    stillbase::study::samples::SignalSamples::of(times, (1..=3).map(|k| (format!("torque/{k}"), wave(k).collect())))
 }
 
 /// What a frame takes to draw a plot of three signals of a million samples each, 1000 pixels wide, while its range moves:
 /// lines, bounds, statistics and all that is painted.
 #[divan::bench]
 fn plot_of_three_million_samples(bencher: Bencher) {
-    use stillbase::picture::charts::choice::Choice;
-    use stillbase::picture::charts::drawn::Drawn;
-    use stillbase::picture::charts::figure::{Figure, Look};
+    use stillbase::picture::charts::choice::PlotChoice;
+    use stillbase::picture::charts::drawn::PlotLines;
+    use stillbase::picture::charts::figure::{Figure, PlotContext};
     use stillbase::picture::scene::palette::{Theme, palette};
     let (samples, p) = (million(), palette(Theme::Dark));
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
     let table = stillbase::simulation::signals::signals(&session.scenario().machine);
-    let plots = Choice::default().plots(session.scenario(), &table, false);
+    let plots = PlotChoice::default().plots(session.scenario(), &table, false);
     let (now, mut from) = (session.frame(), 0.0);
-    let look = Look { palette: &p, peaks: &now.peaks, now, mark: None, hover: None };
+    let look = PlotContext { palette: &p, peaks: &now.peaks, now, mark: None, hover: None };
     bencher.bench_local(|| {
         from = (from + 0.37) % 100.0;
-        let drawn = Drawn::of(&plots[0], black_box(&samples), &[], [from, from + 900.0], 1000, true);
+        let drawn = PlotLines::of(&plots[0], black_box(&samples), &[], [from, from + 900.0], 1000, true);
         Figure::of(&plots[0], &drawn, [1060.0, 300.0], &look)
     });
 }
@@ -450,12 +453,12 @@ fn pyramid_of_a_million_samples(bencher: Bencher) {
 }
 
 /// The nine-link machine as bare bars, with discs of steel allowed on each link.
-fn bare() -> (Machine, Weighing) {
+fn bare() -> (Machine, CounterweightSpec) {
     let machine = parse(include_str!("../reference/family/nine-link-bare.toml"), "bare").expect("a machine");
     let parts = machine.resolved_links().iter().enumerate();
     let sites = parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
     let disc = Disc { density: 7850.0, thickness: 0.03 };
-    (machine, Weighing::least(Objective::inertia(), sites, disc))
+    (machine, CounterweightSpec::least(Objective::inertia(), sites, disc))
 }
 
 /// Who brings what to (7) and (8).
@@ -469,43 +472,43 @@ fn breakdown_of_nine_links(bencher: Bencher) {
 #[divan::bench]
 fn nine_links_kept_balanced(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in").set("link.5.com", "-0.05").expect("in range");
-    let mut asked = Keep::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
-    asked.hold(&machine, Parameter::com(4), Hold::Fixed);
+    let mut asked = RebalanceRequest::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
+    asked.hold(&machine, Parameter::com(4), ParameterBounds::Fixed);
     let at = machine.links()[1].com;
-    asked.hold(&machine, Parameter::com(1), Hold::Within([at - 1e-4, at + 1e-4]));
-    bencher.bench_local(|| keep(black_box(&machine), &asked).expect("it can be balanced"));
+    asked.hold(&machine, Parameter::com(1), ParameterBounds::Within([at - 1e-4, at + 1e-4]));
+    bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect("it can be balanced"));
 }
 
 /// The same with all masses free, too.
 #[divan::bench]
 fn nine_links_and_masses_kept_balanced(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in").set("link.5.com", "-0.05").expect("in range");
-    let mut asked = Keep::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
+    let mut asked = RebalanceRequest::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
     for (j, link) in machine.links().iter().enumerate() {
-        let mass = Parameter::new(Body::Link(j), Quantity::Mass);
-        asked.hold(&machine, mass, Hold::Within([0.9 * link.mass, 1.1 * link.mass]));
-        asked.hold(&machine, Parameter::com(j), Hold::Within([link.com - 0.01, link.com + 0.01]));
+        let mass = Parameter::new(Body::Link(j), BodyQuantity::Mass);
+        asked.hold(&machine, mass, ParameterBounds::Within([0.9 * link.mass, 1.1 * link.mass]));
+        asked.hold(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
     }
-    asked.hold(&machine, Parameter::com(4), Hold::Fixed);
-    bencher.bench_local(|| keep(black_box(&machine), &asked).expect("it can be balanced"));
+    asked.hold(&machine, Parameter::com(4), ParameterBounds::Fixed);
+    bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect("it can be balanced"));
 }
 
 /// Bounds that leave no way, named with what would do.
 #[divan::bench]
 fn conflict_of_nine_links(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in").set("payload.mass", "0.3").expect("in range");
-    let mut asked = Keep::coms(&machine, &[1.0; 9]);
+    let mut asked = RebalanceRequest::coms(&machine, &[1.0; 9]);
     for (j, link) in machine.links().iter().enumerate() {
-        asked.hold(&machine, Parameter::com(j), Hold::Within([link.com - 0.01, link.com + 0.01]));
+        asked.hold(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
     }
-    bencher.bench_local(|| keep(black_box(&machine), &asked).expect_err("they are tight"));
+    bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect_err("they are tight"));
 }
 
 /// The counterweights of least inertia.
 #[divan::bench(sample_count = 20, sample_size = 1)]
 fn counterweights_of_least_inertia(bencher: Bencher) {
     let (machine, asked) = bare();
-    bencher.bench_local(|| place(black_box(&machine), &asked).expect("it can be balanced"));
+    bencher.bench_local(|| place_weights(black_box(&machine), &asked).expect("it can be balanced"));
 }
 
 /// From the least mass to the least inertia in 25 steps.

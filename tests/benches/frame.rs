@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use egui::epaint::Primitive;
 use stillbase::app::{AppState, SessionCommand, ViewChange};
-use stillbase::picture::gui::{GuiRenderer, Sheet};
+use stillbase::picture::gui::{GuiRenderer, RenderTarget};
 use stillbase::picture::paint::{draw_drafts, install_fonts};
 use stillbase::picture::render::offscreen::{Gpu, surface};
 use stillbase::picture::render::{Renderer, View};
@@ -163,7 +163,8 @@ impl<'a> Screen<'a> {
         let begun = Instant::now();
         let behind = self.ctx.global_style().visuals.panel_fill;
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let sheet = Sheet { view: &view, size_px: self.size_px, pixels_per_point: self.pixels_per_point, behind };
+        let sheet =
+            RenderTarget { view: &view, size_px: self.size_px, pixels_per_point: self.pixels_per_point, behind };
         self.gui.draw(&sheet, &mut output.textures_delta, &shapes);
         let upload = begun.elapsed();
 

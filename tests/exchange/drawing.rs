@@ -3,7 +3,7 @@
 
 use roxmltree::Document;
 use stillbase::exchange::cut::{Cut, CutError};
-use stillbase::exchange::drawing::{Anchor, Shape, Sheet, dxf, svg};
+use stillbase::exchange::drawing::{Sheet, SheetShape, TextAlign, dxf, svg};
 use stillbase::mechanics::machine::{Counterweight, Machine, builtin, builtins};
 
 /// The machines that come along, some with a disc on each link.
@@ -24,10 +24,10 @@ fn sheet(machine: &Machine) -> Sheet {
 }
 
 /// Left, bottom, right and top of a part that is cut.
-fn extent(shape: &Shape) -> Option<[f64; 4]> {
+fn extent(shape: &SheetShape) -> Option<[f64; 4]> {
     match shape {
-        Shape::Bar { from: [x, y], length, radius: r, .. } => Some([x - r, y - r, x + length + r, y + r]),
-        Shape::Disc { at: [x, y], radius: r, .. } => Some([x - r, y - r, x + r, y + r]),
+        SheetShape::Bar { from: [x, y], length, radius: r, .. } => Some([x - r, y - r, x + length + r, y + r]),
+        SheetShape::Disc { at: [x, y], radius: r, .. } => Some([x - r, y - r, x + r, y + r]),
         _ => None,
     }
 }
@@ -38,9 +38,9 @@ fn every_link_has_a_place_of_its_own() {
     for machine in machines() {
         let (sheet, name) = (sheet(&machine), machine.name());
         // What belongs to a link comes after its bar.
-        let mut pieces: Vec<Vec<&Shape>> = Vec::new();
-        for shape in sheet.shapes.iter().skip_while(|shape| !matches!(shape, Shape::Bar { .. })) {
-            if matches!(shape, Shape::Bar { .. }) {
+        let mut pieces: Vec<Vec<&SheetShape>> = Vec::new();
+        for shape in sheet.shapes.iter().skip_while(|shape| !matches!(shape, SheetShape::Bar { .. })) {
+            if matches!(shape, SheetShape::Bar { .. }) {
                 pieces.push(Vec::new());
             }
             pieces.last_mut().expect("a bar is first").push(shape);
@@ -48,19 +48,20 @@ fn every_link_has_a_place_of_its_own() {
         assert_eq!(pieces.len(), machine.links().len(), "{name}");
         for (j, piece) in pieces.iter().enumerate() {
             let (part, link) = (&machine.resolved_links()[j], &machine.links()[j]);
-            let Shape::Bar { from, length, .. } = piece[0] else { panic!("a bar is first") };
-            let hole = |shape: &&Shape| if let Shape::Hole { at, .. } = shape { Some(at[0]) } else { None };
+            let SheetShape::Bar { from, length, .. } = piece[0] else { panic!("a bar is first") };
+            let hole = |shape: &&SheetShape| if let SheetShape::Hole { at, .. } = shape { Some(at[0]) } else { None };
             let holes: Vec<f64> = piece.iter().filter_map(hole).collect();
             let root = holes[0] - 1e3 * part.pins[0];
             let holes: Vec<f64> = holes.iter().map(|x| x - root).collect();
             assert!(from[0] + length >= root + 1e3 * part.length - 1e-6, "{name} {}", link.name);
             assert_eq!(holes.len(), part.pins.len(), "{name} {}", link.name);
             assert!(holes.iter().zip(&part.pins).all(|(hole, pin)| (hole - 1e3 * pin).abs() < 1e-6), "{holes:?}");
-            let discs = piece.iter().filter_map(|s| if let Shape::Disc { at, .. } = s { Some(at[0]) } else { None });
+            let discs =
+                piece.iter().filter_map(|s| if let SheetShape::Disc { at, .. } = s { Some(at[0]) } else { None });
             for at in discs {
                 assert!(at > from[0] - 1e-6 && at < from[0] + length + 1e-6, "{name} {}: nothing holds it", link.name);
             }
-            let com = piece.iter().find_map(|s| if let Shape::Mark { at, .. } = s { Some(*at) } else { None });
+            let com = piece.iter().find_map(|s| if let SheetShape::Mark { at, .. } = s { Some(*at) } else { None });
             let com = com.expect("a centre of mass");
             assert!((com[0] - root - 1e3 * link.com).abs() < 1e-6, "{name} {}", link.name);
             assert!((com[1] - from[1] - 1e3 * link.com_normal).abs() < 1e-6, "{name} {}", link.name);
@@ -141,7 +142,7 @@ fn dxf_has_what_is_on_the_sheet() {
         let vertices = entities.iter().filter(|(kind, _)| *kind == "VERTEX");
         let vertices: Vec<[f64; 3]> = vertices.map(|(_, of)| ["10", "20", "42"].map(|code| number(of, code))).collect();
         let bars = sheet.shapes.iter().filter_map(|shape| match shape {
-            Shape::Bar { length, radius, .. } => Some((extent(shape).expect("a bar"), *length, *radius)),
+            SheetShape::Bar { length, radius, .. } => Some((extent(shape).expect("a bar"), *length, *radius)),
             _ => None,
         });
         let close = |got: f64, want: f64, what: &str| {
@@ -172,8 +173,8 @@ fn dxf_has_what_is_on_the_sheet() {
             circles.map(|(_, of)| (layer(of), ["10", "20", "40"].map(|code| number(of, code)))).collect::<Vec<_>>();
         for shape in &sheet.shapes {
             let (on, want) = match shape {
-                Shape::Hole { at, radius } => ("HOLES", [at[0], at[1], *radius]),
-                Shape::Disc { at, radius, .. } => ("COUNTERWEIGHT", [at[0], at[1], *radius]),
+                SheetShape::Hole { at, radius } => ("HOLES", [at[0], at[1], *radius]),
+                SheetShape::Disc { at, radius, .. } => ("COUNTERWEIGHT", [at[0], at[1], *radius]),
                 _ => continue,
             };
             let (got_on, got) = circles.remove(0);
@@ -186,11 +187,11 @@ fn dxf_has_what_is_on_the_sheet() {
         let mut drawn = drawn.map(|(_, of)| ["10", "20", "11", "21"].map(|code| number(of, code)));
         for shape in &sheet.shapes {
             match shape {
-                Shape::Line([a, b]) => {
+                SheetShape::Line([a, b]) => {
                     let line = drawn.next().expect("a line");
                     line.iter().zip([a[0], a[1], b[0], b[1]]).for_each(|(got, want)| close(*got, want, "a line"));
                 }
-                Shape::Mark { at: [x, y], radius } => {
+                SheetShape::Mark { at: [x, y], radius } => {
                     for _ in 0..2 {
                         let [ax, ay, bx, by] = drawn.next().expect("half a cross");
                         close(0.5 * (ax + bx), *x, "middle of a mark");
@@ -226,7 +227,7 @@ fn bars_are_as_long_as_what_they_hold() {
         let machine = Machine::new(spec).expect("a machine");
         let sheet = sheet(&machine);
         let bars = sheet.shapes.iter().filter_map(|shape| match shape {
-            Shape::Bar { length, .. } => Some(*length),
+            SheetShape::Bar { length, .. } => Some(*length),
             _ => None,
         });
         for (j, (length, part)) in bars.zip(machine.resolved_links()).enumerate() {
@@ -242,8 +243,11 @@ fn bars_are_as_long_as_what_they_hold() {
 fn strokes_stand_across_their_line() {
     for machine in machines() {
         let sheet = sheet(&machine);
-        let lines: Vec<[[f64; 2]; 2]> =
-            sheet.shapes.iter().filter_map(|s| if let Shape::Line(ends) = s { Some(*ends) } else { None }).collect();
+        let lines: Vec<[[f64; 2]; 2]> = sheet
+            .shapes
+            .iter()
+            .filter_map(|s| if let SheetShape::Line(ends) = s { Some(*ends) } else { None })
+            .collect();
         let near = |x: f64, y: f64| (x - y).abs() < 1e-6;
         let mut strokes = 0;
         for [low, high] in lines.iter().filter(|[a, b]| near(a[0], b[0]) && a[1] != b[1]) {
@@ -263,7 +267,7 @@ fn words_keep_off_parts_and_each_other() {
         let sheet = sheet(&machine);
         // A letter is no wider than it is high.
         let words = sheet.shapes.iter().filter_map(|shape| match shape {
-            Shape::Words { at: [x, y], height, anchor: Anchor::Start, text, .. } => {
+            SheetShape::Words { at: [x, y], height, anchor: TextAlign::Start, text, .. } => {
                 Some(([*x, *y, x + 0.5 * height * text.chars().count() as f64, y + 0.7 * height], text))
             }
             _ => None,

@@ -1,12 +1,12 @@
 //! Machines from other programs: what goes out comes back as the same machine, arms as others write them come in as what
 //! textbooks say, and all else is refused by name.
 
-use stillbase::exchange::import::{Imported, import};
+use stillbase::exchange::import::{ImportedMachine, import};
 use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin, builtins, place_of};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive, Units, Vector};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, UnitVectors, Vector};
 
 use super::arms::{THREE, TWO};
 use crate::support::Noise;
@@ -46,12 +46,12 @@ fn near_point(what: &str, got: Vector, want: Vector) {
 }
 
 /// Centre of mass of a link, m.
-fn com(machine: &Machine, j: usize, e: &Units) -> Vector {
+fn com(machine: &Machine, j: usize, e: &UnitVectors) -> Vector {
     machine.com_chain(j).iter().zip(e).map(|(a, e)| a * *e).sum()
 }
 
 /// Both have the same mass matrix, momentum and places, in poses that are `pose` of the one where the other is at `at`.
-fn same(machine: &Machine, found: &Imported, at: &[f64], noise: &mut Noise, is_urdf: bool) {
+fn same(machine: &Machine, found: &ImportedMachine, at: &[f64], noise: &mut Noise, is_urdf: bool) {
     let (n, other, name) = (machine.drives(), &found.machine, machine.name());
     assert_eq!(other.drives(), n, "{name}");
     for (k, at) in at.iter().enumerate().take(n) {
@@ -96,7 +96,7 @@ fn same(machine: &Machine, found: &Imported, at: &[f64], noise: &mut Noise, is_u
         for (j, link) in machine.links().iter().enumerate().filter(|(j, _)| !is_changed(*j)) {
             let known = other.links().iter().position(|other| other.name == link.name);
             let i = known.unwrap_or_else(|| panic!("{name}: no link {}", link.name));
-            let root = |machine: &Machine, j: usize, e: &Units| place_of(&machine.resolved_links()[j].root, e);
+            let root = |machine: &Machine, j: usize, e: &UnitVectors| place_of(&machine.resolved_links()[j].root, e);
             near_point(&format!("{name}: root of {}", link.name), root(other, i, &f), root(machine, j, &e));
             // A payload comes back as part of what holds it.
             if machine.end_link() != j || machine.spec().payload.mass == 0.0 {

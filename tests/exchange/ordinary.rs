@@ -3,13 +3,13 @@
 
 use std::f64::consts::PI;
 
-use stillbase::exchange::import::{Imported, import};
+use stillbase::exchange::import::{ImportedMachine, import};
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 
 #[track_caller]
-fn read(text: &str) -> Imported {
+fn read(text: &str) -> ImportedMachine {
     import(text).unwrap_or_else(|why| panic!("{why}\n{text}"))
 }
 
@@ -19,7 +19,7 @@ fn near(what: &str, got: f64, want: f64, part: f64) {
 }
 
 /// An arm of one link that is a shape.
-fn of_shape(shape: &str) -> Imported {
+fn of_shape(shape: &str) -> ImportedMachine {
     read(&format!(
         "<mujoco><option gravity=\"0 -9.81 0\"/><worldbody><body name=\"arm\"><joint name=\"hinge\"/>{shape}\
          <site name=\"tool\" pos=\"0.5 0 0\"/></body></worldbody><actuator><motor joint=\"hinge\"/></actuator></mujoco>"

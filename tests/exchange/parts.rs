@@ -1,11 +1,11 @@
 //! Lists of parts.
 
 use stillbase::exchange::cut::Cut;
-use stillbase::exchange::parts::Parts;
+use stillbase::exchange::parts::PartsList;
 use stillbase::mechanics::machine::{Counterweight, Machine, builtin, builtins};
 
-fn parts(machine: &Machine) -> Parts {
-    Parts::of(machine, &Cut::default()).expect("a list")
+fn parts(machine: &Machine) -> PartsList {
+    PartsList::of(machine, &Cut::default()).expect("a list")
 }
 
 /// What the csv crate reads of it.

@@ -2,20 +2,20 @@
 
 use std::path::PathBuf;
 
-use stillbase::files::shards::{Head, ShardError, StudyId, StudyPart, Writer, merge};
-use stillbase::study::tolerance::Outcome;
+use stillbase::files::shards::{ShardError, ShardHeader, StudyId, StudyPart, Writer, merge};
+use stillbase::study::tolerance::SampleOutcome;
 
 use crate::folder::Folder;
 
 const STUDY: StudyId = StudyId { samples: 30, seed: 1, problem: 7 };
 
-fn machine(i: u64) -> Outcome {
+fn machine(i: u64) -> SampleOutcome {
     let x = 0.1 + 1e-3 * i as f64;
-    Outcome { peak_moment: x, peak_force: 2.0 * x, rms_moment: 0.5 * x, rms_force: x }
+    SampleOutcome { peak_moment: x, peak_force: 2.0 * x, rms_moment: 0.5 * x, rms_force: x }
 }
 
 fn write(file: PathBuf, study: StudyId, samples: std::ops::Range<u64>) -> PathBuf {
-    let head = Head::new(study, ["link.5.com m".to_owned()]);
+    let head = ShardHeader::new(study, ["link.5.com m".to_owned()]);
     let mut writer = Writer::create(&file, true, &head).expect("begun");
     for i in samples {
         writer.machine(i, &[-0.02 + 1e-4 * i as f64], &machine(i)).expect("written");

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stillbase::files::table::{SampleTable, Table, TableError, motions, samples};
+use stillbase::files::table::{SampleTable, TableData, TableError, motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::planning::curves::Coordinates;
 use stillbase::study::advice::Remedy;
@@ -91,7 +91,7 @@ fn motions_part_where_time_leaps_or_begins_anew() {
 #[test]
 fn what_a_table_is_of_is_told_by_its_columns() {
     let machine = builtin("nine-link").expect("built in");
-    let of = |head: &str, row: &str| Table::of(&table(head, |t| format!("{t}{row}")), "in.csv", machine, false);
+    let of = |head: &str, row: &str| TableData::of(&table(head, |t| format!("{t}{row}")), "in.csv", machine, false);
     for (head, row, coordinates) in [
         ("t,q1,q2,q3", ",1.7,3.7,2.2", Coordinates::Drives),
         ("\u{feff}t;q1 (rad);q2;q3", ";1.7;3.7;2.2", Coordinates::Drives),
@@ -100,7 +100,10 @@ fn what_a_table_is_of_is_told_by_its_columns() {
         ("t,q1,q2,q3,x,y,tau1", ",1.7,3.7,2.2,0.5,0.5,0", Coordinates::Drives),
     ] {
         let found = of(head, row).expect(head);
-        assert!(matches!(found, Table::Motion(ref motion) if motion.coordinates == coordinates), "{head}: {found:?}");
+        assert!(
+            matches!(found, TableData::Motion(ref motion) if motion.coordinates == coordinates),
+            "{head}: {found:?}"
+        );
     }
     for (head, row) in [
         ("t,q1,q2,q3,fx,fy,nz", ",1.7,3.7,2.2,1,2,3"),
@@ -108,7 +111,7 @@ fn what_a_table_is_of_is_told_by_its_columns() {
         ("t,q1,q2,q3,x,y,fx,fy,nz", ",1.7,3.7,2.2,0.5,0.5,1,2,3"),
     ] {
         let found = of(head, row).expect(head);
-        assert!(matches!(found, Table::Measurement(ref motions) if motions[0].t.len() == 20), "{head}: {found:?}");
+        assert!(matches!(found, TableData::Measurement(ref motions) if motions[0].t.len() == 20), "{head}: {found:?}");
     }
 }
 
@@ -116,7 +119,7 @@ fn what_a_table_is_of_is_told_by_its_columns() {
 #[test]
 fn a_table_that_is_neither_is_refused() {
     let machine = builtin("nine-link").expect("built in");
-    let refused = |text: &str| Table::of(text, "in.csv", machine, false).expect_err("neither").to_string();
+    let refused = |text: &str| TableData::of(text, "in.csv", machine, false).expect_err("neither").to_string();
     let both = "want a header t,q1,q2,q3 (rad) or t,x,y (m) of a motion, or t,q1,q2,q3,fx,fy,nz (s, rad, N, N m) of a \
                 measurement";
     for (text, what) in [
@@ -141,7 +144,7 @@ fn a_table_that_is_neither_is_refused() {
         let why = refused(&table(head, |t| format!("{t}{row}")));
         assert!(why.starts_with(what), "{why}");
     }
-    let why = Table::open("no/such/file.csv".as_ref(), machine, false).expect_err("not there").to_string();
+    let why = TableData::open("no/such/file.csv".as_ref(), machine, false).expect_err("not there").to_string();
     assert!(why.starts_with("no/such/file.csv: ") && why.contains("want a plain file"), "{why}");
 }
 

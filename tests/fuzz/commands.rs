@@ -1,15 +1,15 @@
 //! The same for what only commands read: settings, samples as CSV, states as JSON, parts of a study.
 
 use clap::Parser;
-use stillbase::files::shards::{Head, StudyId, Writer, merge};
+use stillbase::files::shards::{ShardHeader, StudyId, Writer, merge};
 use stillbase::files::table::{motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
-use stillbase::study::trim::{Recording, Rows, fit, identified, next, taken};
+use stillbase::study::trim::{MeasurementSet, Regressor, adopt_parameters, fit, identified_machine, next_excitation};
 
 use crate::commands::dynamics;
 use crate::commands::failure::Failure;
-use crate::commands::input::{Settings, set};
+use crate::commands::input::{Settings, overlay_used};
 use crate::fuzz::{bytes, fuzz, is_short};
 
 fn said(failure: &Failure) -> Result<(), String> {
@@ -41,7 +41,7 @@ fn settings() {
             Err(_) => return Ok(()),
         };
         let name = ["case-1", "case-3", "circle", "change-b"][dice.below(4)];
-        match set(Scenario::builtin(name).expect("built in"), &line.settings) {
+        match overlay_used(Scenario::builtin(name).expect("built in"), &line.settings) {
             Ok(scenario) => match Scenario::parse(&scenario.to_toml(), "again.toml", None) {
                 Ok(again) if again == scenario => Ok(()),
                 Ok(_) => Err("read back as another".into()),
@@ -135,10 +135,10 @@ fn measurements_as_csv() {
     fuzz("measured", &good, 200, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
         let recording = match motions(&text, "in.csv", machine) {
-            Ok(motions) => Recording { motions },
+            Ok(motions) => MeasurementSet { motions },
             Err(why) => return is_short(&why.to_string()),
         };
-        let rows = match Rows::of(machine, &recording, dice.one_in(2)) {
+        let rows = match Regressor::of(machine, &recording, dice.one_in(2)) {
             Ok(rows) => rows,
             Err(why) => return is_short(&why.to_string()),
         };
@@ -149,11 +149,11 @@ fn measurements_as_csv() {
         if !fit.measured.iter().all(|x| x.is_finite()) || !(0..fit.unknowns.count()).all(|i| fit.half_width(i) >= 0.0) {
             return Err("a number that is none".into());
         }
-        let taken = taken(&fit);
-        if let Err(why) = identified(machine, &taken) {
+        let taken = adopt_parameters(&fit);
+        if let Err(why) = identified_machine(machine, &taken) {
             is_short(&why.to_string())?;
         }
-        let told = next(machine, &recording, &rows, &fit, None);
+        let told = next_excitation(machine, &recording, &rows, &fit, None);
         if told.candidates.is_empty() { Err("no next motion".into()) } else { Ok(()) }
     });
 }
@@ -181,7 +181,7 @@ fn parts() {
     for (target, ending) in [("parquet", "parquet"), ("parts", "csv")] {
         let (part, whole) = (named("part", ending), named("whole", ending));
         let study = StudyId { samples: 40, seed: 1, problem: 7 };
-        let head = Head::new(study, ["a".to_owned()]);
+        let head = ShardHeader::new(study, ["a".to_owned()]);
         let mut writer = Writer::create(&part, true, &head).expect("begun");
         for i in 0..40 {
             let x = 0.1 + 1e-3 * i as f64;

@@ -502,7 +502,7 @@ fn sessions() {
 #[cfg(feature = "window")]
 #[test]
 fn journals() {
-    use stillbase::app::LeftOff;
+    use stillbase::app::ResumePoint;
     use stillbase::files::{journal, scenario};
     const LEFT: &str = "#| time = 0.3\n#| [plots]\n#| statistics = true\n#| own = [\"plot 1\"]\n\
                         #| [plots.changes.\"plot 1\"]\n#| added = [\"torque/1\"]\n#| values = [0.0, 1.0]\n";
@@ -511,12 +511,12 @@ fn journals() {
     let headed = format!("{LEFT}{SESSION}");
     fuzz("journal", &bytes(&[SESSION, SESSION_OF_FOUR, &headed]), 40, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        if LeftOff::of(&text).is_some_and(|left| !(left.time >= 0.0 && left.time.is_finite())) {
+        if ResumePoint::of(&text).is_some_and(|left| !(left.time >= 0.0 && left.time.is_finite())) {
             return Err("left off at no instant".into());
         }
         let cut = if dice.one_in(2) { dice.below(bytes.len() + 1) } else { bytes.len() };
         std::fs::write(&file, &bytes[..cut]).map_err(|e| e.to_string())?;
-        let left = journal::left(&folder.0);
+        let left = journal::leftover_journals(&folder.0);
         let [found] = &left[..] else { return Err(format!("{} sessions were left behind", left.len())) };
         match scenario(&found.file.to_string_lossy()) {
             Err(error) => is_short(&error.to_string()),

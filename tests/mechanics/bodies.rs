@@ -1,7 +1,7 @@
 //! A twin of any machine of the family: its bodies one by one, rotors as bodies of their own, and Lagrange's equations by
 //! numeric differentiation. It reads the description alone and shares no formula with the library.
 
-use stillbase::mechanics::machine::{Attach, Length, MachineSpec, PlaceOnLink, Point};
+use stillbase::mechanics::machine::{Attach, Length, LinkPoint, MachineSpec, PlaceOnLink};
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 
 /// A rigid body: its centre is Σ w e(q_k), it turns at Σ r q̇_k.
@@ -196,7 +196,7 @@ fn root(spec: &MachineSpec, name: &str) -> Vec<Vector> {
     }
 }
 
-pub fn point(spec: &MachineSpec, at: &Point) -> Vec<Vector> {
+pub fn point(spec: &MachineSpec, at: &LinkPoint) -> Vec<Vector> {
     let link = spec.links.iter().find(|l| l.name == at.link).expect("a link");
     let length = |l: &Length| match l {
         Length::Metres(m) => *m,

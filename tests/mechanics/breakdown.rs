@@ -1,6 +1,6 @@
 //! What each part of a machine brings to (7) and (8): against sums by hand, and against what a change of it does.
 
-use stillbase::mechanics::balance::{Body, Breakdown, Condition, Term};
+use stillbase::mechanics::balance::{BalanceTerm, Body, Breakdown, Condition};
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
 use stillbase::mechanics::planar::Vector;
 
@@ -18,7 +18,7 @@ pub fn with_counterweights(noise: &mut Noise) -> Machine {
     Machine::new(spec).expect("still a machine")
 }
 
-fn size(term: &Term) -> f64 {
+fn size(term: &BalanceTerm) -> f64 {
     term.gross().max(1e-3)
 }
 

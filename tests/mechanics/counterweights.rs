@@ -1,8 +1,8 @@
 //! Counterweights: against a conic solver of others, against the laws, and what is refused.
 
 use stillbase::mechanics::counterweights::{
-    Bound, Disc, Free, FreeRotor, NoWeights, Objective, Relief, Sites, Tolerance, Weighing, front, off_by,
-    over_payloads, place,
+    Bound, BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, Objective, PlacementTolerance,
+    RotorFreedom, Sites, front, over_payloads, place_weights, worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
@@ -19,8 +19,8 @@ fn anywhere(machine: &Machine) -> Vec<Sites> {
     parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect()
 }
 
-fn weighing(machine: &Machine, objective: Objective) -> Weighing {
-    Weighing::least(objective, anywhere(machine), STEEL)
+fn weighing(machine: &Machine, objective: Objective) -> CounterweightSpec {
+    CounterweightSpec::least(objective, anywhere(machine), STEEL)
 }
 
 fn momenta(machine: &Machine) -> f64 {
@@ -31,20 +31,20 @@ fn momenta(machine: &Machine) -> f64 {
 #[test]
 fn the_known_answers_are_found() {
     let bare = family_machine("nine-link-bare");
-    let light = place(&bare, &weighing(&bare, Objective::mass())).expect("it can be balanced");
+    let light = place_weights(&bare, &weighing(&bare, Objective::mass())).expect("it can be balanced");
     assert!((light.added_mass - 9.572_666_7).abs() < 1e-6, "{}", light.added_mass);
-    let quick = place(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced");
+    let quick = place_weights(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced");
     assert!((momenta(&quick.machine) - 1.798_401_1).abs() < 1e-6, "{}", momenta(&quick.machine));
     assert!((quick.added_mass - 21.9756).abs() < 1e-2, "{}", quick.added_mass);
     for (most, mass) in [(2.0, 10.743_685), (1.9, 12.996_808), (1.85, 14.975_873)] {
-        let asked = Weighing { most_inertia: Some(most), ..weighing(&bare, Objective::mass()) };
-        let found = place(&bare, &asked).expect("it can be balanced");
+        let asked = CounterweightSpec { most_inertia: Some(most), ..weighing(&bare, Objective::mass()) };
+        let found = place_weights(&bare, &asked).expect("it can be balanced");
         assert!((found.added_mass - mass).abs() < 2e-6, "Σ D ≤ {most}: {}", found.added_mass);
         assert!((momenta(&found.machine) - most).abs() < 1e-6);
     }
     let mut near = weighing(&bare, Objective::mass());
     near.sites[0].from = -0.15;
-    let found = place(&bare, &near).expect("it can be balanced");
+    let found = place_weights(&bare, &near).expect("it can be balanced");
     assert!((found.added_mass - 14.526).abs() < 1e-6, "{}", found.added_mass);
 }
 
@@ -54,7 +54,7 @@ fn what_is_found_is_balanced_within_bounds_and_certified() {
     let bare = family_machine("nine-link-bare");
     for objective in [Objective::mass(), Objective::inertia(), Objective { mass: 0.1, ..Objective::inertia() }] {
         let asked = weighing(&bare, objective);
-        let found = place(&bare, &asked).expect("it can be balanced");
+        let found = place_weights(&bare, &asked).expect("it can be balanced");
         let inertia = Inertia::of(&found.machine);
         assert!(inertia.force_residual() < 1e-14 && inertia.invariance_residual() < 1e-14);
         assert!(found.gap < 1e-6, "{}", found.gap);
@@ -67,7 +67,11 @@ fn what_is_found_is_balanced_within_bounds_and_certified() {
         // Again the same, from the file that it is written to.
         let again = parse(&to_toml(&found.machine), "again.toml").expect("a machine");
         assert_eq!(again, found.machine);
-        assert_eq!(place(&again, &asked).expect("it can be balanced"), found, "those it has are taken off first");
+        assert_eq!(
+            place_weights(&again, &asked).expect("it can be balanced"),
+            found,
+            "those it has are taken off first"
+        );
     }
 }
 
@@ -76,8 +80,8 @@ fn what_is_found_is_balanced_within_bounds_and_certified() {
 #[test]
 fn nothing_else_within_the_bounds_is_better() {
     let bare = family_machine("nine-link-bare");
-    let light = place(&bare, &weighing(&bare, Objective::mass())).expect("it can be balanced");
-    let quick = place(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced");
+    let light = place_weights(&bare, &weighing(&bare, Objective::mass())).expect("it can be balanced");
+    let quick = place_weights(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced");
     let mut noise = Noise::of(7);
     let (mut tried, least) = (0, momenta(&quick.machine));
     for _ in 0..60 {
@@ -87,7 +91,7 @@ fn nothing_else_within_the_bounds_is_better() {
             site.from = noise.between(-0.3, -0.12);
             site.most = noise.between(6.0, 30.0);
         }
-        let Ok(found) = place(&bare, &asked) else { continue };
+        let Ok(found) = place_weights(&bare, &asked) else { continue };
         tried += 1;
         assert!(found.added_mass >= light.added_mass - 1e-6);
         assert!(momenta(&found.machine) >= least - 1e-6);
@@ -165,9 +169,9 @@ fn bounds_that_leave_no_way_are_named() {
     let bare = family_machine("nine-link-bare");
     let mut asked = weighing(&bare, Objective::mass());
     asked.sites.iter_mut().for_each(|site| site.most = 1.0);
-    let why = place(&bare, &asked).expect_err("too little");
-    let NoWeights::Conflict { bounds, would } = why else { panic!("{why:?}") };
-    let [Relief::Most(relief)] = would.concat()[..] else { panic!("{would:?}") };
+    let why = place_weights(&bare, &asked).expect_err("too little");
+    let CounterweightError::Conflict { bounds, would } = why else { panic!("{why:?}") };
+    let [BoundRelaxation::Most(relief)] = would.concat()[..] else { panic!("{would:?}") };
     assert!(!bounds.is_empty() && bounds.iter().any(|bound| matches!(bound, Bound::Most(_))), "{bounds:?}");
     // With any of them away there is a way, and so there is with the masses that are proposed.
     let without = |bound: &Bound| {
@@ -189,26 +193,26 @@ fn bounds_that_leave_no_way_are_named() {
             site.from = if kept(Bound::From(name.clone())) { site.from } else { -1e3 };
             site.to = if kept(Bound::To(name)) { site.to } else { 1e3 };
         }
-        place(&bare, &asked)
+        place_weights(&bare, &asked)
     };
     for bound in &bounds {
         assert!(without(bound).is_ok(), "{bound}");
     }
     asked.sites.iter_mut().for_each(|site| site.most = relief);
-    assert!(place(&bare, &asked).is_ok(), "up to {relief} kg");
+    assert!(place_weights(&bare, &asked).is_ok(), "up to {relief} kg");
     asked.sites.iter_mut().for_each(|site| site.most = relief * (1.0 - 1e-3));
-    assert!(place(&bare, &asked).is_err());
+    assert!(place_weights(&bare, &asked).is_err());
 }
 
 #[test]
 fn what_cannot_be_is_refused() {
     let bare = family_machine("nine-link-bare");
     let asked = weighing(&bare, Objective::mass());
-    let words = |asked: &Weighing| place(&bare, asked).expect_err("it cannot be").to_string();
+    let words = |asked: &CounterweightSpec| place_weights(&bare, asked).expect_err("it cannot be").to_string();
     let mut twice = asked.clone();
     twice.sites.push(twice.sites[0]);
     assert!(words(&twice).contains("one a link"));
-    let with = |change: &dyn Fn(&mut Weighing)| {
+    let with = |change: &dyn Fn(&mut CounterweightSpec)| {
         let mut asked = asked.clone();
         change(&mut asked);
         words(&asked)
@@ -226,12 +230,12 @@ fn what_cannot_be_is_refused() {
     assert!(why.contains("more links"), "{why}");
     assert!(with(&|a| a.sites.truncate(1)).contains("drive 2"));
     let slanted = bare.set("link.4.com_normal", "0.02").expect("in range");
-    let why = place(&slanted, &weighing(&slanted, Objective::mass())).expect_err("it cannot be");
-    assert!(matches!(why, NoWeights::OffAxis { .. }), "{why}");
+    let why = place_weights(&slanted, &weighing(&slanted, Objective::mass())).expect_err("it cannot be");
+    assert!(matches!(why, CounterweightError::OffAxis { .. }), "{why}");
     let geared = family_machine("serial-3r");
     let torque = Objective { torque: 1.0, accelerations: vec![1.0; 3], ..Objective::mass() };
-    let why = place(&geared, &weighing(&geared, torque)).expect_err("it cannot be");
-    assert_eq!(why, NoWeights::Coupled);
+    let why = place_weights(&geared, &weighing(&geared, torque)).expect_err("it cannot be");
+    assert_eq!(why, CounterweightError::Coupled);
 }
 
 /// The torque of a motion whose accelerations are known.
@@ -244,7 +248,7 @@ fn the_greatest_torque_is_least() {
         (0..3).map(|k| inertia.diagonal(k) * accelerations[k]).fold(0.0_f64, f64::max)
     };
     let objective = Objective { torque: 1.0, mass: 0.0, accelerations: accelerations.clone(), ..Objective::mass() };
-    let least = place(&bare, &weighing(&bare, objective)).expect("it can be balanced");
+    let least = place_weights(&bare, &weighing(&bare, objective)).expect("it can be balanced");
     assert!(
         (torque(&least.machine) - least.value).abs() < 1e-6 * least.value,
         "{} {}",
@@ -252,7 +256,7 @@ fn the_greatest_torque_is_least() {
         least.value
     );
     for other in [Objective::mass(), Objective::inertia()] {
-        let other = place(&bare, &weighing(&bare, other)).expect("it can be balanced");
+        let other = place_weights(&bare, &weighing(&bare, other)).expect("it can be balanced");
         assert!(torque(&other.machine) >= torque(&least.machine) - 1e-9);
     }
 }
@@ -292,7 +296,7 @@ fn counterweights_are_set_by_key() {
 fn a_balanced_machine_is_left_alone() {
     let machine = builtin("nine-link").expect("built in");
     for objective in [Objective::mass(), Objective::inertia()] {
-        let placed = place(machine, &weighing(machine, objective)).expect("nothing to do");
+        let placed = place_weights(machine, &weighing(machine, objective)).expect("nothing to do");
         assert!(placed.added_mass < 1e-6 && placed.machine.spec().counterweights.is_empty(), "{}", placed.added_mass);
     }
     let points = front(machine, &weighing(machine, Objective::mass()), 5).expect("one point").points;
@@ -314,11 +318,11 @@ fn clear_of_pins(machine: &Machine) -> f64 {
 fn discs_keep_clear_of_pins_at_the_least_cost() {
     let bare = family_machine("nine-link-bare");
     for objective in [Objective::mass(), Objective::inertia(), Objective { mass: 0.05, ..Objective::inertia() }] {
-        let free = place(&bare, &weighing(&bare, objective.clone())).expect("it can be balanced");
+        let free = place_weights(&bare, &weighing(&bare, objective.clone())).expect("it can be balanced");
         let mut last = free.value;
         for clearance in [0.0, 0.01, 0.03] {
-            let asked = Weighing { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
-            let found = place(&bare, &asked).expect("it can be balanced");
+            let asked = CounterweightSpec { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
+            let found = place_weights(&bare, &asked).expect("it can be balanced");
             assert!(clear_of_pins(&found.machine) > clearance - 1e-6, "{}", clear_of_pins(&found.machine));
             assert!(Inertia::of(&found.machine).is_balanced() && found.gap < 1e-6, "{}", found.gap);
             assert!(found.value > last - 1e-7, "{} after {last}", found.value);
@@ -327,8 +331,8 @@ fn discs_keep_clear_of_pins_at_the_least_cost() {
         // Where no disc of the free answer covers a pin, nothing changes.
         let clear = clear_of_pins(&free.machine);
         if clear > 0.0 {
-            let asked = Weighing { clearance: Some(0.99 * clear), ..weighing(&bare, objective) };
-            assert!((place(&bare, &asked).expect("the same").value - free.value).abs() < 1e-7);
+            let asked = CounterweightSpec { clearance: Some(0.99 * clear), ..weighing(&bare, objective) };
+            assert!((place_weights(&bare, &asked).expect("the same").value - free.value).abs() < 1e-7);
         }
     }
 }
@@ -344,8 +348,8 @@ fn a_search_round_the_pins_finds_what_trying_all_ways_finds() {
     let mut compared = 0;
     for _ in 0..12 {
         let clearance = noise.between(0.0, 0.03);
-        let asked = Weighing { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
-        let found = place(&bare, &asked).ok();
+        let asked = CounterweightSpec { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
+        let found = place_weights(&bare, &asked).ok();
         // In every room of every link the widest disc that fits in with its centre on a grid of places.
         let rooms: Vec<Vec<[f64; 2]>> = (0..links)
             .map(|j| {
@@ -370,14 +374,14 @@ fn a_search_round_the_pins_finds_what_trying_all_ways_finds() {
             // Radii are not known before: they are found by going round, from none.
             let mut radii = vec![0.0; links];
             for _ in 0..60 {
-                let mut tried = Weighing { clearance: None, ..asked.clone() };
+                let mut tried = CounterweightSpec { clearance: None, ..asked.clone() };
                 for (site, radius) in tried.sites.iter_mut().zip(&radii) {
                     let [from, to] = room[site.link];
                     site.from = site.from.max(from + clearance + radius);
                     site.to = site.to.min(to - clearance - radius);
                 }
                 tried.sites.retain(|site| site.from <= site.to);
-                let Ok(placed) = place(&bare, &tried) else { break };
+                let Ok(placed) = place_weights(&bare, &tried) else { break };
                 for radius in &mut radii {
                     *radius *= 0.5;
                 }
@@ -425,7 +429,7 @@ fn a_disc_between_two_pins_touches_where_the_closed_form_says() {
         // In the second case no further than the pin at the tip.
         asked.sites.iter_mut().for_each(|site| (site.from, site.to) = (-0.45, if from_behind { 1.0 } else { length }));
         asked.clearance = Some(clearance);
-        let found = place(&machine, &asked).expect("it can be balanced");
+        let found = place_weights(&machine, &asked).expect("it can be balanced");
         let mut at = 0.25;
         for _ in 0..200 {
             let radius = spread * (moment / at).sqrt();
@@ -441,11 +445,11 @@ fn a_disc_between_two_pins_touches_where_the_closed_form_says() {
 #[test]
 fn a_clearance_that_leaves_no_way_says_which_would_do() {
     let bare = family_machine("nine-link-bare");
-    let asked = Weighing { clearance: Some(0.25), ..weighing(&bare, Objective::mass()) };
-    let why = place(&bare, &asked).expect_err("too far");
-    let NoWeights::Reaches { would, .. } = why else { panic!("{why}") };
-    let [Relief::Clearance(would)] = would.concat()[..] else { panic!("{would:?}") };
-    let with = |clearance| place(&bare, &Weighing { clearance: Some(clearance), ..asked.clone() });
+    let asked = CounterweightSpec { clearance: Some(0.25), ..weighing(&bare, Objective::mass()) };
+    let why = place_weights(&bare, &asked).expect_err("too far");
+    let CounterweightError::Reaches { would, .. } = why else { panic!("{why}") };
+    let [BoundRelaxation::Clearance(would)] = would.concat()[..] else { panic!("{would:?}") };
+    let with = |clearance| place_weights(&bare, &CounterweightSpec { clearance: Some(clearance), ..asked.clone() });
     assert!(with(would).is_ok() && with(would + 1e-4).is_err(), "{would}");
 }
 
@@ -454,8 +458,8 @@ fn a_clearance_that_leaves_no_way_says_which_would_do() {
 fn a_range_of_payloads_leaves_the_least_worst_residual() {
     let bare = family_machine("nine-link-bare");
     let range = [0.0, 0.3];
-    let asked = Weighing { payload: Some(range), ..weighing(&bare, Objective::mass()) };
-    let found = place(&bare, &asked).expect("it can be balanced");
+    let asked = CounterweightSpec { payload: Some(range), ..weighing(&bare, Objective::mass()) };
+    let found = place_weights(&bare, &asked).expect("it can be balanced");
     let curve = over_payloads(&found.machine, range, 7).expect("it holds them");
     // A payload of half the range on links of lengths L_k: half the range times the longest, and the two longest.
     let lengths: Vec<f64> = bare.end_effector().iter().take(3).map(|length| length.abs()).collect();
@@ -464,7 +468,8 @@ fn a_range_of_payloads_leaves_the_least_worst_residual() {
         assert!(end.force < 0.15 * longest + 1e-7, "{end:?}");
     }
     // Balance in the middle has the same worst residual, and is dearer.
-    let alone = place(&bare.set("payload.mass", "0.15").expect("in range"), &weighing(&bare, Objective::mass()));
+    let alone =
+        place_weights(&bare.set("payload.mass", "0.15").expect("in range"), &weighing(&bare, Objective::mass()));
     let alone = alone.expect("it can be balanced");
     assert!(found.added_mass < alone.added_mass - 0.1, "{} and {}", found.added_mass, alone.added_mass);
     let middle = over_payloads(&alone.machine, range, 7).expect("it holds them");
@@ -475,7 +480,7 @@ fn a_range_of_payloads_leaves_the_least_worst_residual() {
     for most in [0.4, 0.8, 1.6, 3.2, 20.0] {
         let mut tight = asked.clone();
         tight.sites.iter_mut().for_each(|site| site.most = most);
-        let found = place(&bare, &tight).expect("as near as it can be");
+        let found = place_weights(&bare, &tight).expect("as near as it can be");
         let reach: f64 = lengths.iter().sum();
         let worst = over_payloads(&found.machine, range, 2).expect("it holds them");
         let worst = worst.iter().map(|at| at.force.max(at.coupling / reach)).fold(0.0, f64::max);
@@ -505,47 +510,48 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
     let with = bare.set("drive.1.rotor.inertia", "0.01").and_then(|m| m.set("drive.1.rotor.ratio", "-20"));
     let geared = with.expect("in range");
     let objective = || Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
-    let free = |free| Weighing { rotors: vec![FreeRotor { drive: 0, free }], ..weighing(&geared, objective()) };
-    let alone = place(&bare, &weighing(&bare, objective())).expect("it can be balanced");
-    for freedom in [Free::Inertia([0.0, 1.0]), Free::Ratio([-1000.0, 0.0])] {
-        let found = place(&geared, &free(freedom)).expect("it can be balanced");
+    let free =
+        |free| CounterweightSpec { rotors: vec![FreeRotor { drive: 0, free }], ..weighing(&geared, objective()) };
+    let alone = place_weights(&bare, &weighing(&bare, objective())).expect("it can be balanced");
+    for freedom in [RotorFreedom::Inertia([0.0, 1.0]), RotorFreedom::Ratio([-1000.0, 0.0])] {
+        let found = place_weights(&geared, &free(freedom)).expect("it can be balanced");
         let inertia = Inertia::of(&found.machine);
         assert!(inertia.is_balanced() && found.gap < 1e-6, "{}", found.gap);
         assert!(inertia.momentum(0).abs() < 1e-6, "{:?}: {}", freedom, inertia.momentum(0));
         let rotor = found.machine.spec().drives[0].rotor.expect("one");
         match freedom {
-            Free::Inertia(_) => assert!(rotor.ratio == -20.0),
-            Free::Ratio(_) => assert!(rotor.inertia == 0.01),
+            RotorFreedom::Inertia(_) => assert!(rotor.ratio == -20.0),
+            RotorFreedom::Ratio(_) => assert!(rotor.inertia == 0.01),
         }
         assert!(found.value < alone.value);
     }
     // At its bound, and no further.
-    let found = place(&geared, &free(Free::Inertia([0.0, 0.004]))).expect("it can be balanced");
+    let found = place_weights(&geared, &free(RotorFreedom::Inertia([0.0, 0.004]))).expect("it can be balanced");
     assert!((found.machine.spec().drives[0].rotor.expect("one").inertia - 0.004).abs() < 1e-7);
     // What only its gear makes heavy is not wanted: the least that drives turn is none of it.
-    let least = Weighing { objective: Objective::inertia(), ..free(Free::Inertia([0.0, 1.0])) };
-    let found = place(&geared, &least).expect("it can be balanced");
+    let least = CounterweightSpec { objective: Objective::inertia(), ..free(RotorFreedom::Inertia([0.0, 1.0])) };
+    let found = place_weights(&geared, &least).expect("it can be balanced");
     assert!(found.machine.spec().drives[0].rotor.is_none_or(|rotor| rotor.inertia < 1e-8));
     // One with its stator on another drive.
     let serial = family_machine("serial-3r");
-    let asked = Weighing {
-        rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([-300.0, 300.0]) }],
+    let asked = CounterweightSpec {
+        rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([-300.0, 300.0]) }],
         ..weighing(&serial, objective())
     };
-    let found = place(&serial, &asked).expect("it can be balanced");
+    let found = place_weights(&serial, &asked).expect("it can be balanced");
     assert!(Inertia::of(&found.machine).is_balanced() && found.gap < 1e-6, "{}", found.gap);
     for ratio in [-290.0, -50.0, -1.0, 50.0, 290.0] {
-        let fixed = Weighing {
-            rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([ratio, ratio]) }],
+        let fixed = CounterweightSpec {
+            rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([ratio, ratio]) }],
             ..weighing(&serial, objective())
         };
-        assert!(place(&serial, &fixed).expect("it can be balanced").value > found.value - 1e-6);
+        assert!(place_weights(&serial, &fixed).expect("it can be balanced").value > found.value - 1e-6);
     }
-    let none = Weighing {
-        rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([-3.0, 3.0]) }],
+    let none = CounterweightSpec {
+        rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([-3.0, 3.0]) }],
         ..weighing(&bare, Objective::mass())
     };
-    assert_eq!(place(&bare, &none).expect_err("it has none"), NoWeights::NoRotor("2".into()));
+    assert_eq!(place_weights(&bare, &none).expect_err("it has none"), CounterweightError::NoRotor("2".into()));
 }
 
 /// What is said to do does, and a little less does not: Σ D_k, and all masses together.
@@ -553,32 +559,32 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
 fn what_would_do_does() {
     let bare = family_machine("nine-link-bare");
     let with = |most_mass, most_inertia| {
-        place(&bare, &Weighing { most_mass, most_inertia, ..weighing(&bare, Objective::mass()) })
+        place_weights(&bare, &CounterweightSpec { most_mass, most_inertia, ..weighing(&bare, Objective::mass()) })
     };
     let would = |why| match why {
-        Err(NoWeights::Conflict { would, .. }) => would.concat(),
+        Err(CounterweightError::Conflict { would, .. }) => would.concat(),
         other => panic!("{other:?}"),
     };
-    let [Relief::Inertia(least)] = would(with(None, Some(1.5)))[..] else { panic!("not of inertia") };
+    let [BoundRelaxation::Inertia(least)] = would(with(None, Some(1.5)))[..] else { panic!("not of inertia") };
     assert!((least - 1.798_401_1).abs() < 2e-6 && with(None, Some(least)).is_ok());
-    let [Relief::Mass(least)] = would(with(Some(5.0), None))[..] else { panic!("not of mass") };
+    let [BoundRelaxation::Mass(least)] = would(with(Some(5.0), None))[..] else { panic!("not of mass") };
     assert!((least - 9.572_666_7).abs() < 2e-6 && with(Some(least), None).is_ok());
-    assert!(Relief::Inertia(least).to_string().contains(&format!("{least:.6}")));
+    assert!(BoundRelaxation::Inertia(least).to_string().contains(&format!("{least:.6}")));
 }
 
 /// A question with what would do in the place of its own bounds, as it is printed.
-fn relieved(asked: &Weighing, together: &[Relief]) -> Weighing {
+fn relieved(asked: &CounterweightSpec, together: &[BoundRelaxation]) -> CounterweightSpec {
     let mut asked = asked.clone();
     for relief in together {
         let said = relief.to_string();
         let number = said.split(' ').find_map(|word| word.parse::<f64>().ok()).expect("a number");
         match relief {
-            Relief::Most(_) => {
+            BoundRelaxation::Most(_) => {
                 asked.sites.iter_mut().filter(|site| site.most.is_finite()).for_each(|site| site.most = number);
             }
-            Relief::Mass(_) => asked.most_mass = Some(number),
-            Relief::Inertia(_) => asked.most_inertia = Some(number),
-            Relief::Clearance(_) => asked.clearance = Some(number),
+            BoundRelaxation::Mass(_) => asked.most_mass = Some(number),
+            BoundRelaxation::Inertia(_) => asked.most_inertia = Some(number),
+            BoundRelaxation::Clearance(_) => asked.clearance = Some(number),
         }
     }
     asked
@@ -617,15 +623,15 @@ fn bounds_of_several_kinds(count: usize, seed: u64) -> [usize; 2] {
         asked.most_inertia = inertia.then(|| size * noise.between(0.3, 2.5));
         asked.clearance = (clearance && i % 2 == 1).then(|| noise.between(0.0, 0.2));
         asked.payload = payload.then(|| [0.0, size * noise.between(0.1, 0.5)]);
-        let would = match place(&bare, &asked) {
+        let would = match place_weights(&bare, &asked) {
             Ok(_) => continue,
-            Err(NoWeights::Conflict { would, .. } | NoWeights::Reaches { would, .. }) => would,
+            Err(CounterweightError::Conflict { would, .. } | CounterweightError::Reaches { would, .. }) => would,
             Err(why) => panic!("{why}"),
         };
         assert!(!would.is_empty(), "{asked:?}");
         for together in &would {
             let with = relieved(&asked, together);
-            if let Err(why) = place(&bare, &with) {
+            if let Err(why) = place_weights(&bare, &with) {
                 panic!("{together:?}: {why}");
             }
         }
@@ -648,7 +654,7 @@ fn momenta_below_zero_are_the_least_there_are() {
         let with = [("drive.1.rotor.inertia", "0.002"), ("drive.1.rotor.ratio", ratio)];
         let geared = bare.set_all(with).expect("in range");
         let objective = Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
-        let found = place(&geared, &weighing(&geared, objective)).expect("it can be balanced");
+        let found = place_weights(&geared, &weighing(&geared, objective)).expect("it can be balanced");
         assert!(found.is_certified(), "{}", found.gap);
         let worth = |machine: &Machine, added: f64| {
             Inertia::of(machine).momenta().iter().map(|d| d.abs()).sum::<f64>() + 1e-3 * added
@@ -662,7 +668,7 @@ fn momenta_below_zero_are_the_least_there_are() {
                 site.to = site.from + noise.between(0.0, site.to - site.from);
             }
             // More than is needed, as heavy as it comes.
-            let Ok(other) = place(&geared, &asked) else { continue };
+            let Ok(other) = place_weights(&geared, &asked) else { continue };
             tried += 1;
             assert!(worth(&other.machine, other.added_mass) > found.value - 1e-6, "{ratio}");
         }
@@ -674,9 +680,9 @@ fn momenta_below_zero_are_the_least_there_are() {
 #[test]
 fn counterweights_that_are_off_leave_at_worst_what_the_worst_corner_leaves() {
     let bare = family_machine("two-drive");
-    let machine = place(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced").machine;
-    let tolerance = Tolerance { mass: 1e-5, place: 1e-7 };
-    let said = off_by(&machine, &tolerance);
+    let machine = place_weights(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced").machine;
+    let tolerance = PlacementTolerance { mass: 1e-5, place: 1e-7 };
+    let said = worst_residual(&machine, &tolerance);
     let n = machine.spec().counterweights.len();
     let (mut force, mut coupling) = (0.0_f64, 0.0_f64);
     for corner in 0..1_usize << (2 * n) {
@@ -727,7 +733,7 @@ fn the_value_is_that_of_the_machine() {
         [[0.3, 0.0, 0.0, 0.0], [2.5, 0.7, 0.0, 0.0], [0.4, 0.0, 1.5, 0.0], [0.2, 0.3, 0.0, 0.05]]
     {
         let objective = Objective { mass, inertia, momentum, torque, accelerations: accelerations.clone() };
-        let found = place(&bare, &weighing(&bare, objective)).expect("it can be balanced");
+        let found = place_weights(&bare, &weighing(&bare, objective)).expect("it can be balanced");
         let (q, still) = (PerDrive::from_fn(3, |k| 0.4 + k as f64), PerDrive::from_fn(3, |_| 0.0));
         let (h, _) = mass_matrix(&Inertia::of(&found.machine), &DriveAngles(q).units(), &still);
         let added: f64 = found.machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
@@ -748,9 +754,12 @@ fn no_other_gear_comes_to_less() {
     let serial = family_machine("serial-3r");
     let asked = |ratios: [f64; 2]| {
         let objective = Objective { momentum: 1.0, mass: 1e-2, inertia: 0.1, ..Objective::mass() };
-        Weighing { rotors: vec![FreeRotor { drive: 1, free: Free::Ratio(ratios) }], ..weighing(&serial, objective) }
+        CounterweightSpec {
+            rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio(ratios) }],
+            ..weighing(&serial, objective)
+        }
     };
-    let found = place(&serial, &asked([-300.0, 300.0])).expect("it can be balanced");
+    let found = place_weights(&serial, &asked([-300.0, 300.0])).expect("it can be balanced");
     let inertia = Inertia::of(&found.machine);
     assert!(found.gap < 1e-4 && inertia.is_balanced(), "{}", found.gap);
     let added: f64 = found.machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
@@ -760,7 +769,7 @@ fn no_other_gear_comes_to_less() {
     let want = momenta + 1e-2 * added + 0.1 * (0..3).map(|k| h.get(k, k)).sum::<f64>();
     assert!((found.value - want).abs() < 1e-6 * want, "{}, want {want}", found.value);
     for ratio in [-200.0, 1.0, 100.0] {
-        let other = place(&serial, &asked([ratio; 2])).expect("it can be balanced");
+        let other = place_weights(&serial, &asked([ratio; 2])).expect("it can be balanced");
         let least = found.value - found.gap - 1e-9;
         assert!(other.value > least, "{ratio}: {} below {}", other.value, found.value);
     }

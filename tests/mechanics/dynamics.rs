@@ -7,13 +7,13 @@ use stillbase::mechanics::dynamics::{
 };
 use stillbase::mechanics::kinematics::{end_effector, least_transmission, velocity};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, UnitVectors, Vector, cross, dot};
 
 use crate::mechanics::nine_body::NineBody;
 use crate::support::{State, angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};
 
 impl State {
-    fn e(&self) -> Units {
+    fn e(&self) -> UnitVectors {
         self.q.units()
     }
 

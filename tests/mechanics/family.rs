@@ -9,7 +9,7 @@ use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtins, parse, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::session::design::Brief;
+use stillbase::session::design::DesignBrief;
 
 use super::bodies::Bodies;
 use crate::support::random::{a_chain, a_machine};
@@ -115,7 +115,7 @@ fn machines_of_the_gallery_are_their_bodies() {
     for machine in builtins() {
         let machine = machine.set("gravity", "1.5,-9.81").expect("in range");
         as_bodies(machine.name(), &machine, &mut noise);
-        let front = Brief::default().front(&machine, 2).expect("it can be balanced");
+        let front = DesignBrief::default().front(&machine, 2).expect("it can be balanced");
         for placed in front.points.iter().filter(|placed| placed.added_mass > 0.0) {
             as_bodies(&format!("{} with counterweights", machine.name()), &placed.machine, &mut noise);
             weighed += 1;

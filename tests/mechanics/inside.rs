@@ -8,7 +8,7 @@ use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{
-    AngleDefinition, AngleLimit, Boundary, BoundaryCurve, BoundaryLine, PlaneMap, Vertex,
+    AngleDefinition, AngleLimit, Boundary, BoundaryCurve, BoundaryLine, BoundaryVertex, PlaneMap,
 };
 
 use crate::support::{limits, machines};
@@ -129,11 +129,11 @@ fn from_chord(a: Vector, b: Vector, p: Vector) -> f64 {
 /// Distance of p from all curves across which the number of poses changes: from the true curve where it is near.
 pub fn from_curves(map: &PlaneMap, boundary: &Boundary, p: Vector) -> f64 {
     let lines = boundary.fold_curves().into_iter().chain(boundary.inner_limits());
-    let mut all: Vec<Vec<Vertex>> = lines.map(|l| l.vertices().to_vec()).collect();
+    let mut all: Vec<Vec<BoundaryVertex>> = lines.map(|l| l.vertices().to_vec()).collect();
     for l in boundary.loops() {
         all.push(l.vertices().iter().chain(&l.vertices()[..1]).copied().collect());
     }
-    let near = |w: &[Vertex]| {
+    let near = |w: &[BoundaryVertex]| {
         let coarse = from_chord(w[0].at, w[1].at, p);
         if coarse > 2e-5 {
             return coarse;
@@ -215,7 +215,7 @@ fn areas_by_poses_match_a_raster() {
 }
 
 /// A point of a curve between two of its vertices: on folds brought back to det = 0 across the fold.
-fn between(map: &PlaneMap, [from, to]: [Vertex; 2], t: f64) -> [f64; 2] {
+fn between(map: &PlaneMap, [from, to]: [BoundaryVertex; 2], t: f64) -> [f64; 2] {
     let mut a = [0, 1].map(|j| from.a[j] + t * (to.a[j] - from.a[j]));
     if from.curve == BoundaryCurve::Fold {
         for _ in 0..6 {

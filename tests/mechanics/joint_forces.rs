@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::{
-    AxialMoments, FLAT, Forces, Inside, Joints, JointsError, KEPT, Pin, PinLoads, PinPeak, ahead, nearest,
+    AxialMoments, FLAT_SINE, InternalLoads, Joints, JointsError, MAX_FRAME_PINS, Pin, PinForces, PinLoads, PinPeak,
+    nearest_change_point, next_change_point,
 };
 use stillbase::mechanics::kinematics::{acceleration, least_transmission};
 use stillbase::mechanics::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
@@ -14,7 +15,7 @@ use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cr
 use crate::support::{State, any_body, close, machine_of, three, xy};
 
 impl State {
-    fn forces(&self, machine: &Machine, around: &Surroundings) -> Forces {
+    fn forces(&self, machine: &Machine, around: &Surroundings) -> PinForces {
         let joints = Joints::of(machine).expect("determinate");
         joints.forces(&self.q.units(), &self.qd, &self.qdd, around)
     }
@@ -54,7 +55,7 @@ fn around(machine: &Machine, force: Vector) -> Surroundings {
     Surroundings { gravity: machine.gravity(), force }
 }
 
-fn all(forces: &Forces) -> Vec<f64> {
+fn all(forces: &PinForces) -> Vec<f64> {
     forces.bounded().iter().flat_map(|f| xy(*f)).collect()
 }
 
@@ -257,7 +258,7 @@ proptest! {
     /// Along a straight line in joint space the change point ahead is where sin vanishes, and there is none before.
     #[test]
     fn the_change_point_ahead_is_the_first(s in any_state()) {
-        let (least, first) = (nearest(&s.q, &s.qd).expect("pairs"), ahead(&s.q, &s.qd).expect("rates differ"));
+        let (least, first) = (nearest_change_point(&s.q, &s.qd).expect("pairs"), next_change_point(&s.q, &s.qd).expect("rates differ"));
         let sines = |t: f64| Inertia::pairs(3).map(move |(k, l)| (s.q[k] - s.q[l] + t * (s.qd[k] - s.qd[l])).sin());
         let time = first.time.expect("it has one");
         let (k, l) = first.drives;
@@ -276,7 +277,7 @@ proptest! {
 /// The nine-link machine as another file may describe it.
 fn recut() -> Machine {
     let mut spec = builtin("nine-link").expect("built in").spec().clone();
-    let toml = |text: &str| -> stillbase::mechanics::machine::Point { toml::from_str(text).expect("a point") };
+    let toml = |text: &str| -> stillbase::mechanics::machine::LinkPoint { toml::from_str(text).expect("a point") };
     // Turned round, so that roots are where the links now hang: 8 keeps its root, 9 hangs on 8, 5 on 9.
     let metres = |name: &str| spec.lengths[name];
     let (l2, l3, l5, l9) = (metres("l2"), metres("l3"), metres("l5"), metres("l9"));
@@ -351,8 +352,8 @@ fn at_a_change_point_some_forces_are_undefined() {
     assert_eq!(named([1.6, 1.6, 2.5]), ["B-1", "B-2", "2-4", "1-5", "4-5"]);
     // 8-9 moves 5 and 7 too, so both others depend on it.
     assert_eq!(named([1.6, 3.9, 3.9]).len(), 12);
-    assert_eq!(named([1.6, 3.9, 1.6 + 0.5 * FLAT]).len(), 5);
-    assert!(named([1.6, 3.9, 1.6 + 2.0 * FLAT]).is_empty());
+    assert_eq!(named([1.6, 3.9, 1.6 + 0.5 * FLAT_SINE]).len(), 5);
+    assert!(named([1.6, 3.9, 1.6 + 2.0 * FLAT_SINE]).is_empty());
     // What is undefined does not touch what is not: the others are the limits from either side.
     let s = |gap: f64| State::new([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let (on, near) =
@@ -431,8 +432,8 @@ fn machines_of_any_number_of_drives() {
         close("f_B", &xy(joints.on_base(&forces)), &xy(exact.1.total().force), 1e-12);
         // A frame keeps the first of them, and the worst of all.
         let inside = PinLoads::of(&machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
-        assert_eq!((inside.pins(), inside.worst), (joints.pins().len().min(KEPT), forces.worst().0));
-        assert!((0..20).all(|i| inside.pin(i) == forces.get(i).filter(|_| i < KEPT)));
+        assert_eq!((inside.pins(), inside.worst), (joints.pins().len().min(MAX_FRAME_PINS), forces.worst().0));
+        assert!((0..20).all(|i| inside.pin(i) == forces.get(i).filter(|_| i < MAX_FRAME_PINS)));
     }
     let many = Joints::of(&fan(5)).map(|_| ()).expect_err("35 pins");
     assert_eq!(many, JointsError::TooMany { count: 35 });
@@ -502,7 +503,7 @@ fn a_frame_keeps_what_the_joints_say() {
     let see = |machine: &Machine, s: &State| PinLoads::of(machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
     let (inside, forces) = (see(&machine, &s), s.forces(&machine, &around));
     assert_eq!(inside.pins(), 12);
-    for i in 0..KEPT {
+    for i in 0..MAX_FRAME_PINS {
         assert_eq!(inside.pin(i), forces.get(i));
         assert!(inside.size(i) <= inside.worst);
     }
@@ -515,7 +516,7 @@ fn a_frame_keeps_what_the_joints_say() {
     assert_eq!(open.tilt, inside.tilt);
     assert_eq!((open.pins(), open.worst_pin(), open.worst), (0, None, 0.0));
     // A session holds 180,000 frames.
-    assert!(size_of::<Inside>() <= 320, "{} bytes", size_of::<Inside>());
+    assert!(size_of::<InternalLoads>() <= 320, "{} bytes", size_of::<InternalLoads>());
 }
 
 #[test]
@@ -535,9 +536,9 @@ fn angles_of_parallelograms_fold_at_a_right_angle() {
         assert!((angle([0.0, q2, 1.0]) - want).abs() < 1e-12, "{q2}");
     }
     let still = PerDrive::zeros(3);
-    assert_eq!(ahead(&[0.0, 1.0, 2.0], &still), None);
-    assert_eq!(nearest(&[0.0], &PerDrive::zeros(1)), None);
-    let least = nearest(&[0.0, 1.0, 3.0], &PerDrive::from([0.0, 0.0, 0.5])).expect("pairs");
+    assert_eq!(next_change_point(&[0.0, 1.0, 2.0], &still), None);
+    assert_eq!(nearest_change_point(&[0.0], &PerDrive::zeros(1)), None);
+    let least = nearest_change_point(&[0.0, 1.0, 3.0], &PerDrive::from([0.0, 0.0, 0.5])).expect("pairs");
     assert_eq!(least.drives, (0, 2));
     assert!(
         (least.distance - (PI - 3.0)).abs() < 1e-12 && (least.time.expect("towards") - 2.0 * (PI - 3.0)).abs() < 1e-12

@@ -159,7 +159,7 @@ fn a_name_that_steers_a_terminal_is_refused() {
         assert!(matches!(error, MachineError::Unprintable { .. }), "{to}: {error}");
         let said = error.to_string();
         assert!(said.contains("U+") && said.contains("want"), "{said}");
-        assert_eq!(stillbase::settings::text::steering(&said), None);
+        assert_eq!(stillbase::settings::text::control_character(&said), None);
     }
 }
 

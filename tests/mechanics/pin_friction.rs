@@ -10,7 +10,7 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{Each, Friction};
+use stillbase::simulation::plant::{DriveValues, Friction};
 
 use crate::mechanics::nine_body::{Answer, DRIVE, NineBody};
 use crate::support::{any_body, body_of, close, machine_of, three};
@@ -97,8 +97,8 @@ fn any_way() -> impl Strategy<Value = Way> {
     let amount = |most: f64| prop_oneof![Just(0.0), 0.0..0.1 * most, 0.0..most];
     let friction = (amount(0.4), amount(0.4), amount(0.1), amount(0.2)).prop_map(
         |(viscous, coulomb, pin_viscous, pin_coulomb)| Friction {
-            viscous: Each::All(viscous),
-            coulomb: Each::All(coulomb),
+            viscous: DriveValues::All(viscous),
+            coulomb: DriveValues::All(coulomb),
             pin_viscous,
             pin_coulomb,
         },

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::study::trim::{Motion, Recording, Rows, fit};
+use stillbase::study::trim::{MeasuredMotion, MeasurementSet, Regressor, fit};
 
 use super::python::answers;
 use crate::Test;
@@ -23,13 +23,13 @@ impl Noise {
     }
 }
 
-fn measured(machine: &Machine, noise: &mut Noise) -> Recording {
+fn measured(machine: &Machine, noise: &mut Noise) -> MeasurementSet {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
     let motion = |noise: &mut Noise| {
         let waves: Vec<[f64; 3]> =
             (0..n).map(|_| [0.4 + 0.2 * noise.next(), 5.0 + 3.0 * noise.next(), 3.0 * noise.next()]).collect();
-        let mut motion = Motion::default();
+        let mut motion = MeasuredMotion::default();
         for i in 0..250 {
             let t = 0.01 * f64::from(i);
             let each = |f: &dyn Fn(&[f64; 3]) -> f64| PerDrive::from_fn(n, |k| f(&waves[k]));
@@ -46,12 +46,12 @@ fn measured(machine: &Machine, noise: &mut Noise) -> Recording {
         }
         motion
     };
-    Recording { motions: (0..3).map(|_| motion(noise)).collect() }
+    MeasurementSet { motions: (0..3).map(|_| motion(noise)).collect() }
 }
 
-fn asked(machine: &Machine, recording: &Recording) -> Value {
+fn asked(machine: &Machine, recording: &MeasurementSet) -> Value {
     let list = |all: &[PerDrive]| all.iter().map(|x| x.to_vec()).collect::<Vec<_>>();
-    let motion = |m: &Motion| {
+    let motion = |m: &MeasuredMotion| {
         let force: Vec<[f64; 2]> = m.force.iter().map(|f| [f.re, f.im]).collect();
         json!({ "t": m.t, "q": list(&m.q), "qd": list(&m.qd), "qdd": list(&m.qdd), "force": force, "moment": m.moment })
     };
@@ -64,12 +64,12 @@ fn scipy_finds_the_same() {
     let still = ["two-drive", "nine-link", "four-drive"].map(|name| builtin(name).expect("built in").clone());
     let heavy = still.clone().map(|machine| machine.set("gravity", "1.5,-9.81").expect("a machine"));
     let machines: Vec<Machine> = still.into_iter().chain(heavy).collect();
-    let recordings: Vec<Recording> = machines.iter().map(|machine| measured(machine, &mut noise)).collect();
+    let recordings: Vec<MeasurementSet> = machines.iter().map(|machine| measured(machine, &mut noise)).collect();
     let lines: Vec<String> = machines.iter().zip(&recordings).map(|(m, r)| asked(m, r).to_string()).collect();
     let theirs = answers(SCRIPT, &lines);
     assert_eq!(theirs.len(), machines.len());
     for ((machine, recording), theirs) in machines.iter().zip(&recordings).zip(theirs) {
-        let ours = fit(machine, &Rows::of(machine, recording, false).expect("rows")).expect("a fit");
+        let ours = fit(machine, &Regressor::of(machine, recording, false).expect("rows")).expect("a fit");
         let found = theirs["found"].as_array().expect("a list");
         assert_eq!(found.len(), ours.unknowns.count());
         // Weights, which both find from what is left, matter with weight only, and end within a thousandth.

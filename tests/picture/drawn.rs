@@ -111,7 +111,7 @@ fn every_layer_of_a_shell_counts() {
     scene.solids[0].mesh = 0;
     scene.solids[0].colour = [1.0, 1.0, 1.0, 0.2];
     scene.model =
-        std::sync::Arc::new(stillbase::picture::scene::Model { meshes: vec![Wall::of(&[circle], 0.0).mesh(2.0)] });
+        std::sync::Arc::new(stillbase::picture::scene::MeshSet { meshes: vec![Wall::of(&[circle], 0.0).mesh(2.0)] });
     use stillbase::picture::scene::camera::Orbit;
     let camera = Camera::Orbit(Orbit { centre: [0.0, 0.0, 1.0], distance: 12.0, yaw: 0.0, pitch: 0.0 });
     let mut levels = Vec::new();

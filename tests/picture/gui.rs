@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::epaint::{ImageData, ImageDelta};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TextureOptions, TexturesDelta, pos2, vec2};
-use stillbase::picture::gui::{GuiRenderer, Sheet};
+use stillbase::picture::gui::{GuiRenderer, RenderTarget};
 use stillbase::picture::render::offscreen::{Picture, surface};
 
 use crate::Test;
@@ -44,7 +44,7 @@ fn drawn(format: wgpu::TextureFormat, scale: u32, shapes: Vec<Clipped>) -> Pictu
     ctx.tessellation_options_mut(|o| o.feathering = false);
     let list = shapes.into_iter().map(|(clip, shape)| egui::epaint::ClippedShape::new(clip, shape)).collect();
     let list = ctx.tessellate(list, scale as f32);
-    let sheet = Sheet { view: &view, size_px, pixels_per_point: scale as f32, behind: BEHIND };
+    let sheet = RenderTarget { view: &view, size_px, pixels_per_point: scale as f32, behind: BEHIND };
     gui.draw(&sheet, &mut output.textures_delta, &list);
     gpu.readback(&texture).expect("it reads")
 }
@@ -85,7 +85,7 @@ fn a_texture_is_taken_over_changed_in_part_and_freed() {
     let mut gui = GuiRenderer::new(gpu.device(), gpu.queue(), format);
     let texture = surface(gpu.device(), SIZE, format);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let sheet = Sheet { view: &view, size_px: SIZE, pixels_per_point: 1.0, behind: BEHIND };
+    let sheet = RenderTarget { view: &view, size_px: SIZE, pixels_per_point: 1.0, behind: BEHIND };
     let id = TextureId::User(7);
     let mut mesh = egui::Mesh::with_texture(id);
     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));

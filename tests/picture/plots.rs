@@ -2,19 +2,19 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
-use stillbase::picture::charts::choice::{Change, Choice};
-use stillbase::picture::charts::drawn::Drawn;
-use stillbase::picture::charts::figure::{Figure, Item, Look};
-use stillbase::picture::charts::range::Extent;
+use stillbase::picture::charts::choice::{PlotChange, PlotChoice};
+use stillbase::picture::charts::drawn::PlotLines;
+use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext};
+use stillbase::picture::charts::range::TimeExtent;
 use stillbase::picture::charts::search::search;
 use stillbase::picture::charts::svg::svg;
-use stillbase::picture::charts::thin::thinned;
-use stillbase::picture::numbers::{at_step, spaced, ticks};
+use stillbase::picture::charts::thin::simplify_line;
+use stillbase::picture::numbers::{at_step, round_ticks, ticks};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::signals::{Signal, signals};
-use stillbase::study::samples::Samples;
+use stillbase::study::samples::SignalSamples;
 
 fn table() -> Vec<Signal> {
     signals(builtin("nine-link").expect("built in"))
@@ -56,19 +56,19 @@ fn signals_are_found_by_name_symbol_path_and_unit() {
 #[test]
 fn plots_are_what_was_chosen_and_remembered() {
     let (scenario, table) = (Scenario::builtin("case-3").expect("built in"), table());
-    let mut choice = Choice::default();
-    let names = |choice: &Choice| -> Vec<String> {
+    let mut choice = PlotChoice::default();
+    let names = |choice: &PlotChoice| -> Vec<String> {
         choice.plots(&scenario, &table, false).into_iter().map(|plot| plot.name).collect()
     };
     assert_eq!(names(&choice), ["Torque", "Base moment", "Base force", "Drive angles", "Pose constant"]);
     let plot = |name: &str| name.to_owned();
-    choice.change(Change::Show(plot("Torque"), plot("torque/2"), false));
-    choice.change(Change::Plot(plot("tip/y")));
-    choice.change(Change::Against(plot("plot 1"), Some(plot("tip/x"))));
-    choice.change(Change::Add(plot("Pose constant"), plot("pose/b_reference")));
-    choice.change(Change::Close(plot("Base force")));
-    choice.change(Change::Range(Some([0.2, 0.4])));
-    choice.change(Change::Range(Some([0.4, f64::NAN])));
+    choice.change(PlotChange::Show(plot("Torque"), plot("torque/2"), false));
+    choice.change(PlotChange::Plot(plot("tip/y")));
+    choice.change(PlotChange::Against(plot("plot 1"), Some(plot("tip/x"))));
+    choice.change(PlotChange::Add(plot("Pose constant"), plot("pose/b_reference")));
+    choice.change(PlotChange::Close(plot("Base force")));
+    choice.change(PlotChange::Range(Some([0.2, 0.4])));
+    choice.change(PlotChange::Range(Some([0.4, f64::NAN])));
     assert_eq!(names(&choice), ["Torque", "Base moment", "Drive angles", "Pose constant", "plot 1"]);
     let plots = choice.plots(&scenario, &table, false);
     let on = |i: usize| -> Vec<&str> { plots[i].shown().map(|c| c.signal.path.as_str()).collect() };
@@ -76,18 +76,18 @@ fn plots_are_what_was_chosen_and_remembered() {
     assert_eq!(plots[4].heading(), "End effector, y against x");
     assert_eq!((choice.range, choice.closed()), (None, 1));
     // Plain data: kept in a file, it is the same.
-    choice.change(Change::Range(Some([0.2, 0.4])));
+    choice.change(PlotChange::Range(Some([0.2, 0.4])));
     let kept = serde_json::to_string(&choice).expect("plain data");
-    assert_eq!(serde_json::from_str::<Choice>(&kept).expect("itself"), choice);
+    assert_eq!(serde_json::from_str::<PlotChoice>(&kept).expect("itself"), choice);
     // And all of it can be taken back.
-    choice.change(Change::Show(plot("Torque"), plot("torque/2"), true));
-    choice.change(Change::Remove(plot("Pose constant"), plot("pose/b_reference")));
-    choice.change(Change::Close(plot("plot 1")));
-    choice.change(Change::Reopen);
-    choice.change(Change::Range(None));
-    assert_eq!(choice, Choice::default());
+    choice.change(PlotChange::Show(plot("Torque"), plot("torque/2"), true));
+    choice.change(PlotChange::Remove(plot("Pose constant"), plot("pose/b_reference")));
+    choice.change(PlotChange::Close(plot("plot 1")));
+    choice.change(PlotChange::Reopen);
+    choice.change(PlotChange::Range(None));
+    assert_eq!(choice, PlotChoice::default());
     // A plot of what another machine has is kept, and not shown.
-    choice.change(Change::Plot(plot("torque/9")));
+    choice.change(PlotChange::Plot(plot("torque/9")));
     assert!(!names(&choice).contains(&plot("plot 1")) && choice.own.len() == 1);
 }
 
@@ -97,7 +97,7 @@ proptest! {
     #[test]
     fn a_clock_that_runs_on_squeezes_nothing(planned in 0.05..60.0_f64, start in 0.0..3.0_f64) {
         let width = |now: f64| {
-            let [from, to] = Extent::open_ended(planned, now, now).shown(None);
+            let [from, to] = TimeExtent::open_ended(planned, now, now).shown(None);
             assert!(from >= 0.0 && from <= now && now <= to + 1e-12, "{from} to {to} at {now}");
             to - from
         };
@@ -115,7 +115,7 @@ proptest! {
         now in 0.0..1.0_f64,
         doings in prop::collection::vec((0..4_u8, 0.0..1.0_f64, 0.0..1.0_f64), 1..20),
     ) {
-        let extent = Extent::of(end, now * end);
+        let extent = TimeExtent::of(end, now * end);
         let mut chosen = None;
         for (what, a, b) in doings {
             let shown = extent.shown(chosen);
@@ -147,7 +147,7 @@ proptest! {
     #[test]
     fn numbers_of_an_axis_differ(low in -1e3..1e3_f64, power in -9.0..6.0_f64, count in 2.0..9.0_f64) {
         let high = low + 10f64.powf(power);
-        let (values, step) = spaced(low, high, count);
+        let (values, step) = round_ticks(low, high, count);
         prop_assert!(values.len() <= count as usize + 1, "{values:?}");
         prop_assert!(values.iter().all(|v| *v >= low - 1e-5 * step && *v <= high + 1e-5 * step));
         let words: Vec<String> = values.iter().map(|v| at_step(*v, step)).collect();
@@ -163,16 +163,17 @@ fn a_drawing_holds_what_the_plot_shows() {
     let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
     session.seek(1.0);
     let table = signals(&session.scenario().machine);
-    let mut choice = Choice::default();
-    choice.change(Change::Show("Torque".into(), "torque/2".into(), false));
-    choice.change(Change::Plot("transmission/12".into()));
+    let mut choice = PlotChoice::default();
+    choice.change(PlotChange::Show("Torque".into(), "torque/2".into(), false));
+    choice.change(PlotChange::Plot("transmission/12".into()));
     let plots = choice.plots(session.scenario(), &table, false);
     let wanted: Vec<Signal> = plots.iter().flat_map(|plot| plot.curves.iter().map(|c| c.signal.clone())).collect();
-    let samples: Samples = stillbase::query::grown(&wanted, session.frames());
+    let samples: SignalSamples = stillbase::query::answer_sequence(&wanted, session.frames());
     let p = palette(Theme::Light);
-    let look = Look { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
+    let look =
+        PlotContext { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
     for plot in [&plots[0], plots.last().expect("one's own")] {
-        let drawn = Drawn::of(plot, &samples, &[], [0.0, 1.0], 600, true);
+        let drawn = PlotLines::of(plot, &samples, &[], [0.0, 1.0], 600, true);
         let figure = Figure::of(plot, &drawn, [720.0, 320.0], &look);
         let text = svg(&figure);
         let opened = text.matches("<text").count();
@@ -180,7 +181,8 @@ fn a_drawing_holds_what_the_plot_shows() {
         assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count());
         assert!(text.contains(&plot.title.replace('&', "&amp;")) && text.ends_with("</svg>\n"), "{text}");
         assert!(!text.contains("NaN") && !text.contains("inf"));
-        let curves = figure.items.iter().filter(|i| matches!(i, Item::Line { points, .. } if points.len() > 2)).count();
+        let curves =
+            figure.items.iter().filter(|i| matches!(i, FigureItem::Line { points, .. } if points.len() > 2)).count();
         assert_eq!(curves, plot.shown().count());
         for curve in &plot.curves {
             assert_eq!(text.contains(&curve.signal.symbol), curve.on, "{}", curve.signal.symbol);
@@ -188,7 +190,7 @@ fn a_drawing_holds_what_the_plot_shows() {
         // Every curve stays within its axes, which hold the greatest value of all samples.
         let [left, top, right, bottom] = figure.axes.sides;
         for item in &figure.items {
-            if let Item::Line { points, .. } = item {
+            if let FigureItem::Line { points, .. } = item {
                 assert!(
                     points
                         .iter()
@@ -233,7 +235,7 @@ proptest! {
     /// What is left out lies on the line that is left, in its order, and the ends stay.
     #[test]
     fn a_thinned_line_passes_all_its_points(points in walk(), tolerance in 0.01..0.5f32) {
-        let thin = thinned(&points, tolerance);
+        let thin = simplify_line(&points, tolerance);
         prop_assert_eq!((thin.first(), thin.last()), (points.first(), points.last()));
         prop_assert!(thin.len() <= points.len());
         let mut stretch = 0;
@@ -251,11 +253,14 @@ proptest! {
 #[test]
 fn a_thinned_line_is_as_long_as_its_shape_needs() {
     let wave: Vec<[f32; 2]> = (0..1000).map(|i| [0.3 * i as f32, 40.0 * (0.02 * i as f32).sin()]).collect();
-    let count = thinned(&wave, 0.1).len();
+    let count = simplify_line(&wave, 0.1).len();
     assert!(count < 100, "{count}");
     let hair: Vec<[f32; 2]> = (0..1000).map(|i| [0.3 * i as f32, if i % 2 == 0 { 0.0 } else { 30.0 }]).collect();
-    assert_eq!(thinned(&hair, 0.1), hair);
-    assert_eq!(thinned(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]], 0.1), [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]]);
+    assert_eq!(simplify_line(&hair, 0.1), hair);
+    assert_eq!(
+        simplify_line(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]], 0.1),
+        [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]]
+    );
 }
 
 /// The numbers of an axis fit beside a small plot, however large or small they are, and differ.

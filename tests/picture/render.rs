@@ -5,7 +5,7 @@ use std::sync::Arc;
 use stillbase::picture::render::offscreen::{NoPicture, Picture, surface};
 use stillbase::picture::render::{Quality, Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
-use stillbase::picture::scene::{Area, Changes, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
+use stillbase::picture::scene::{Area, ItemChanges, Marker, Mesh, MeshSet, Polyline, Rgba, Scene, Solid, mesh};
 
 use crate::Test;
 use crate::gpu::{fresh, gpu};
@@ -84,11 +84,11 @@ fn placed(angle: f32, [x, y, z]: [f32; 3]) -> [[f32; 4]; 4] {
 
 fn solid(mesh: usize, world_from_mesh: [[f32; 4]; 4], colour: Rgba) -> Solid {
     let name = format!("solid/{mesh}").into();
-    Solid { name, mesh, world_from_item: world_from_mesh, colour, changes: Changes::Nothing }
+    Solid { name, mesh, world_from_item: world_from_mesh, colour, changes: ItemChanges::Nothing }
 }
 
-fn line(points: &[[f32; 3]], width: f32, colour: Rgba) -> Line {
-    Line::new("line", [points.to_vec()], width, colour)
+fn line(points: &[[f32; 3]], width: f32, colour: Rgba) -> Polyline {
+    Polyline::new("line", [points.to_vec()], width, colour)
 }
 
 fn disc(at: [f32; 3], radius: f32, fill: Rgba, stroke: Rgba, stroke_width: f32) -> Marker {
@@ -150,7 +150,7 @@ fn an_empty_scene_is_its_background() {
 fn a_solid_from_above_keeps_its_colour() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.02)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.02)] });
     for theme in [Theme::Dark, Theme::Light] {
         for colour in palette(theme).drives.into_iter().chain([RED]) {
             scene.solids = vec![solid(0, placed(0.4, [0.0; 3]), colour)];
@@ -164,7 +164,7 @@ fn a_solid_from_above_keeps_its_colour() {
 fn bevels_are_darker_than_tops_but_keep_their_hue() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.6, 0.2)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.8, 0.6, 0.2)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
     let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 100)).unwrap();
     let red = |x, y| picture.pixel(x, y).unwrap()[0];
@@ -176,7 +176,8 @@ fn bevels_are_darker_than_tops_but_keep_their_hue() {
 fn the_nearer_solid_hides_the_other_whatever_the_order() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0), mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.0)] });
+    scene.model =
+        Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0), mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.0)] });
     let (low, high) = (solid(0, placed(0.0, [0.0; 3]), RED), solid(1, placed(0.0, [0.0, 0.0, 0.2]), WHITE));
     for solids in [[low.clone(), high.clone()], [high, low]] {
         scene.solids = solids.to_vec();
@@ -189,7 +190,7 @@ fn the_nearer_solid_hides_the_other_whatever_the_order() {
 fn a_hairline_of_background_sets_solids_off() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.9, 0.1, 0.0), mesh::cylinder(0.4, 0.1, 0.02)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.9, 0.1, 0.0), mesh::cylinder(0.4, 0.1, 0.02)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), WHITE), solid(1, placed(0.0, [0.0, 0.0, 0.2]), WHITE)];
     let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap();
     // Leaving the upper disc of 40 px to the right: 1.25 px of background, then the lower disc.
@@ -203,7 +204,7 @@ fn a_hairline_of_background_sets_solids_off() {
 fn an_area_lies_over_what_is_behind_it() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(2.0, 0.1, 0.0)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(2.0, 0.1, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
     for (z, seen) in [(-0.5, RED), (0.5, [0.9, 0.6, 0.55, 1.0])] {
         scene.areas = vec![Area { z, colour: faded(WHITE, 0.5), ..nine_link(2.4) }];
@@ -215,7 +216,7 @@ fn an_area_lies_over_what_is_behind_it() {
 fn a_ghost_shows_what_lies_behind_it_through_one_layer() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0)] });
     let ghost = solid(0, placed(0.0, [0.0, 0.0, 0.2]), faded(WHITE, 0.5));
     scene.solids = vec![ghost.clone(), solid(0, placed(0.0, [0.0; 3]), RED)];
     let view = flat([0.0; 2], 1.0, 65);
@@ -231,7 +232,7 @@ fn a_model_is_uploaded_when_it_changes() {
     let mut scene = empty(BLACK);
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), WHITE)];
     for radius in [0.5, 0.25, 0.75] {
-        scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(radius, 0.1, 0.0)] });
+        scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(radius, 0.1, 0.0)] });
         let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap();
         let area = coverage(all(&picture)) / 100.0f64.powi(2);
         // A polygon of so many chords.
@@ -297,7 +298,7 @@ fn dashes_take_their_share_and_go_round_corners() {
     let cut: Vec<_> = (0..=40).map(|k| [-0.8 + 0.04 * k as f32, 0.0, 0.0]).collect();
     let mut pictures = Vec::new();
     for points in [&straight[..], &cut] {
-        scene.lines = vec![Line { dash: Some([10.0, 6.0]), ..line(points, 1.0, WHITE) }];
+        scene.lines = vec![Polyline { dash: Some([10.0, 6.0]), ..line(points, 1.0, WHITE) }];
         pictures.push(gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap());
     }
     // 160 px hold ten periods of sixteen.
@@ -314,7 +315,8 @@ fn dashes_take_their_share_and_go_round_corners() {
 fn dashes_as_long_as_wide_are_dots() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.lines = vec![Line { dash: Some([10.0, 30.0]), ..line(&[[-0.8, 0.0, 0.0], [0.8, 0.0, 0.0]], 10.0, WHITE) }];
+    scene.lines =
+        vec![Polyline { dash: Some([10.0, 30.0]), ..line(&[[-0.8, 0.0, 0.0], [0.8, 0.0, 0.0]], 10.0, WHITE) }];
     let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap();
     let got = coverage(all(&picture)) / (4.0 * 25.0 * f64::from(PI));
     assert!((got - 1.0).abs() < 0.02, "{got}");
@@ -323,14 +325,14 @@ fn dashes_as_long_as_wide_are_dots() {
 fn solids_hide_lines_below_and_not_those_on_top() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.5, 0.1, 0.0)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.5, 0.1, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
     let below = line(&[[-0.9, 0.0, 0.0], [0.9, 0.0, 0.0]], 5.0, WHITE);
     for (line, seen) in [
         (below.clone(), RED),
-        (Line { on_top: true, ..below.clone() }, WHITE),
+        (Polyline { on_top: true, ..below.clone() }, WHITE),
         // On the very face of the solid: the bias decides for the line.
-        (Line { strips: [vec![[-0.9, 0.0, 0.1], [0.9, 0.0, 0.1]]].into(), ..below }, WHITE),
+        (Polyline { strips: [vec![[-0.9, 0.0, 0.1], [0.9, 0.0, 0.1]]].into(), ..below }, WHITE),
     ] {
         scene.lines = vec![line];
         let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 65)).unwrap();
@@ -401,7 +403,7 @@ fn overlapping_sheets_gather() {
 fn markers_are_round_and_may_be_hollow() {
     let mut gpu = gpu();
     let mut scene = empty(BLACK);
-    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.9, 0.5, 0.0)] });
+    scene.model = Arc::new(MeshSet { meshes: vec![mesh::cylinder(0.9, 0.5, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), BLACK)];
     for (fill, area) in [([0.0; 4], 20.0f64.powi(2) - 16.0f64.powi(2)), (WHITE, 20.0f64.powi(2))] {
         scene.markers = vec![disc([0.0, 0.0, -1.0], 20.0, fill, WHITE, 4.0)];
@@ -495,7 +497,7 @@ fn nonsense_is_survived() {
         triangles: vec![[0, 1, 2], [7, 8, 9]],
         shell: false,
     };
-    scene.model = Arc::new(Model { meshes: vec![bad, Mesh::default()] });
+    scene.model = Arc::new(MeshSet { meshes: vec![bad, Mesh::default()] });
     scene.solids = (0..4).map(|k| solid(k, [[f32::NAN; 4]; 4], RED)).collect();
     scene.lines = vec![
         line(&[], 1.0, WHITE),
@@ -503,8 +505,8 @@ fn nonsense_is_survived() {
         line(&[[0.0; 3], [0.0; 3]], 1.0, WHITE),
         line(&[nan, [f32::INFINITY; 3], nan], 1.0, WHITE),
         line(&[[0.0; 3], [1.0; 3]], f32::NAN, WHITE),
-        Line { dash: Some([0.0, 0.0]), ..line(&[[0.0; 3], [0.0, 0.0, 1.0]], -1.0, WHITE) },
-        Line { dash: Some([f32::NAN, -1.0]), ..line(&[[0.0; 3], [0.0, 0.0, 1.0]], 2.0, RED) },
+        Polyline { dash: Some([0.0, 0.0]), ..line(&[[0.0; 3], [0.0, 0.0, 1.0]], -1.0, WHITE) },
+        Polyline { dash: Some([f32::NAN, -1.0]), ..line(&[[0.0; 3], [0.0, 0.0, 1.0]], 2.0, RED) },
     ];
     scene.areas = vec![Area { a_max: [f32::NAN; 2], ..nine_link(2.4) }];
     scene.markers = vec![disc(nan, -1.0, WHITE, WHITE, f32::NAN)];
@@ -539,7 +541,7 @@ fn demo() -> Vec<(Scene, View)> {
         mesh::ring(0.15, 0.14, 0.004),
         mesh::bar(-0.3, 0.5, 0.02, 0.02, 0.005),
     ];
-    let model = Arc::new(Model { meshes });
+    let model = Arc::new(MeshSet { meshes });
     let scene = |theme| {
         let colours = palette(theme);
         let [q1, q2, q3] = [1.5727f32, 4.045, 2.77];
@@ -593,14 +595,14 @@ fn demo() -> Vec<(Scene, View)> {
             scene.lines.push(line(&[[-1.2, x, 0.0], [1.2, x, 0.0]], 1.0, colours.line));
         }
         let turned: Vec<_> = boundary.iter().map(|p| [-0.9 * p[0], -p[1] * 0.6, 0.0]).collect();
-        scene.lines.push(Line { dash: Some([5.0, 4.0]), ..line(&turned, 1.0, faded(colours.dim, 0.6)) });
+        scene.lines.push(Polyline { dash: Some([5.0, 4.0]), ..line(&turned, 1.0, faded(colours.dim, 0.6)) });
         scene.lines.push(line(&boundary, 2.0, colours.amber));
         let path: Vec<_> =
             (0..=60).map(|k| k as f32 / 60.0).map(|t| [0.5 + 0.06 * (3.1 * t).sin(), 0.5 + 0.4 * t, 0.0]).collect();
-        scene.lines.push(Line { dash: Some([2.0, 4.0]), on_top: true, ..line(&path, 2.0, colours.ink) });
+        scene.lines.push(Polyline { dash: Some([2.0, 4.0]), on_top: true, ..line(&path, 2.0, colours.ink) });
         let arc: Vec<_> =
             (0..=64).map(|k| k as f32 / 64.0 * 1.93).map(|t| [0.15 * t.cos(), 0.15 * t.sin(), 0.0]).collect();
-        scene.lines.push(Line { on_top: true, ..line(&arc, 5.0, colours.amber) });
+        scene.lines.push(Polyline { on_top: true, ..line(&arc, 5.0, colours.amber) });
         scene.areas = vec![Area { colour: faded(colours.amber, 0.12), ..area }];
         for (p, z) in [(p1, 0.11), (elbow, 0.14), (p2, 0.08), (p3, 0.07), (p7, 0.11), (p8, 0.14), (add(p1, p2), 0.11)] {
             scene.markers.push(disc(at(p, z), 5.0, colours.background, colours.ink, 1.6));

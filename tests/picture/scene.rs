@@ -7,13 +7,13 @@ use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::machine::{Machine, builtin, builtins, parse, place_of, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase::picture::numbers::round_up;
-use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
-use stillbase::picture::scene::exaggeration::{Exaggeration, Shown, exaggeration};
-use stillbase::picture::scene::linkage::Linkage;
-use stillbase::picture::scene::options::{Handle, Other, ViewOptions};
+use stillbase::picture::scene::camera::{Camera, FlatCamera, Orbit};
+use stillbase::picture::scene::exaggeration::{DrawnFrame, Exaggeration, exaggeration};
+use stillbase::picture::scene::linkage::LinkageModel;
+use stillbase::picture::scene::options::{Handle, OtherRun, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::stage::Stage;
-use stillbase::picture::scene::{Label, Line, Scene, Solid, place};
+use stillbase::picture::scene::{Label, Polyline, Scene, Solid, place};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::frame::Reach;
@@ -197,7 +197,7 @@ fn counterweights_are_drawn_to_scale() {
         let case_1 = Scenario::builtin("case-1").expect("built in");
         let session = Session::open(Scenario { machine: machine.clone(), ..case_1 }).expect("it runs");
         let scene = scene_of(&session);
-        let mesh = &scene.model.meshes[Linkage::of(machine).bars()[0].mesh];
+        let mesh = &scene.model.meshes[LinkageModel::of(machine).bars()[0].mesh];
         let least = mesh.positions.iter().map(|p| f64::from(p[0])).fold(f64::MAX, f64::min);
         [least, mesh.positions.iter().map(|p| f64::from(p[1])).fold(0.0, f64::max)]
     };
@@ -323,7 +323,7 @@ fn nothing_drawn_is_lost() {
             for dexterity in [Some(stillbase::picture::scene::Measure::Det), None] {
                 let options = ViewOptions { theme, dexterity, ..ViewOptions::default() };
                 let scene = Stage::of(session.run()).scene(session.frame(), &options);
-                let points = scene.lines.iter().flat_map(Line::points).chain(scene.markers.iter().map(|m| m.at));
+                let points = scene.lines.iter().flat_map(Polyline::points).chain(scene.markers.iter().map(|m| m.at));
                 let points = points.chain(scene.labels.iter().map(|l| l.at));
                 assert!(points.flatten().all(f32::is_finite));
                 assert!(scene.solids.iter().all(|s| s.world_from_item.iter().flatten().all(|x| x.is_finite())));
@@ -346,7 +346,7 @@ proptest! {
     #[test]
     fn bars_are_where_the_machine_has_them(q in prop::array::uniform4(-7.0..7.0), which in 0..builtins().len()) {
         let machine = &builtins()[which];
-        let linkage = Linkage::of(machine);
+        let linkage = LinkageModel::of(machine);
         let e = DriveAngles(PerDrive::from_fn(machine.drives(), |k| q[k])).units();
         let solids = linkage.solids(&e, Pose2::default(), false, &palette(Theme::Dark));
         for (part, link) in machine.resolved_links().iter().zip(machine.links()) {
@@ -429,7 +429,7 @@ proptest! {
         factor in 0.5..2.0,
         aspect in 0.4..3.0,
     ) {
-        let before = Camera::Flat(Flat { centre, half_height });
+        let before = Camera::Flat(FlatCamera { centre, half_height });
         let world = |c: &Camera, place| c.ray(place, aspect).and_then(|r| r.at_height(0.0)).expect("flat");
         let mut zoomed = before;
         zoomed.zoom(factor, place, aspect);
@@ -446,7 +446,7 @@ proptest! {
 
 fn any_camera() -> impl Strategy<Value = Camera> {
     let flat = (prop::array::uniform2(-0.5..0.5), 0.2..3.0)
-        .prop_map(|(centre, half_height)| Camera::Flat(Flat { centre, half_height }));
+        .prop_map(|(centre, half_height)| Camera::Flat(FlatCamera { centre, half_height }));
     // The eye stays above the plane and outside the machine.
     let orbit = (prop::array::uniform2(-0.3..0.3), 2.5..6.0, -3.0..6.0, 0.3..1.55)
         .prop_map(|([x, y], distance, yaw, pitch)| Camera::Orbit(Orbit { centre: [x, y, 0.0], distance, yaw, pitch }));
@@ -559,9 +559,9 @@ proptest! {
     fn exaggeration_moves_all_alike(times in 1.0..100.0f64) {
         let session = floating();
         let frame = session.frame();
-        let once = Shown::from(frame);
+        let once = DrawnFrame::from(frame);
         prop_assert_eq!((once.base, once.q, once.end_effector, once.com), (frame.base, frame.q, frame.end_effector, frame.com));
-        let more = Shown::of(frame, Exaggeration::Times(times));
+        let more = DrawnFrame::of(frame, Exaggeration::Times(times));
         prop_assert!((more.in_base(more.end_effector) - frame.in_base(frame.end_effector)).norm() < 1e-12);
         prop_assert!((more.in_base(more.com) - frame.in_base(frame.com)).norm() < 1e-12);
         for k in 0..3 {
@@ -615,7 +615,7 @@ fn words_are_of_the_frame_however_it_is_drawn() {
             for step in [0, 137, 263, 400, 600] {
                 session.tick(step);
                 let (stage, frame) = (Stage::of(session.run()), session.frame());
-                let others = vec![Other { name: "1".into(), frame: *frame }];
+                let others = vec![OtherRun { name: "1".into(), frame: *frame }];
                 let options = ViewOptions {
                     pin_forces: true,
                     limits: true,
@@ -637,7 +637,7 @@ fn words_are_of_the_frame_however_it_is_drawn() {
                     Exaggeration::Mount(-0.4),
                 ] {
                     assert_eq!(texts(exaggeration), plain, "{case}, {base:?}, {} s, {exaggeration:?}", frame.time);
-                    let shown = Shown::of(frame, exaggeration);
+                    let shown = DrawnFrame::of(frame, exaggeration);
                     let [x, y, _] = stage.handle(Handle::Ring, &shown).expect("three drives");
                     let b = stage.ring_b([x, y], frame.b_reference, &shown).expect("three drives");
                     assert!((b - frame.b_reference).abs() < 1e-11, "{b} {exaggeration:?}");

@@ -7,7 +7,7 @@ use naga::{AddressSpace, TypeInner, valid};
 use stillbase::picture::{gui, render};
 
 /// All structs that Rust shares with a shader.
-fn twins() -> Vec<render::Twin> {
+fn twins() -> Vec<render::SharedLayout> {
     render::TWINS.into_iter().chain(gui::TWINS).collect()
 }
 

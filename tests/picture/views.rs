@@ -2,18 +2,18 @@
 //! pulled at is what is meant.
 
 use stillbase::mechanics::planar::Vector;
-use stillbase::picture::scene::axes::{Axis, sliding};
+use stillbase::picture::scene::axes::{Axis, sliding_range};
 use stillbase::picture::scene::camera::Camera;
-use stillbase::picture::scene::joints::Joints;
+use stillbase::picture::scene::joints::JointSpace;
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
-use stillbase::picture::scene::pick::{Aim, Pick};
+use stillbase::picture::scene::pick::{DragAction, Pick};
 use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::stage::Stage;
 use stillbase::picture::scene::tower::Tower;
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
-use stillbase::picture::scene::{Line, Measure, Scene, place};
+use stillbase::picture::scene::{Measure, Polyline, Scene, place};
 use stillbase::planning::reactionless::AngleLimit;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Run, Session};
@@ -23,7 +23,7 @@ fn open(case: &str) -> Session {
     Session::open(Scenario::builtin(case).expect("built in")).expect("it can start")
 }
 
-fn lines<'a>(scene: &'a Scene, name: &'a str) -> impl Iterator<Item = &'a Line> {
+fn lines<'a>(scene: &'a Scene, name: &'a str) -> impl Iterator<Item = &'a Polyline> {
     scene.lines.iter().filter(move |l| l.name == name)
 }
 
@@ -55,8 +55,8 @@ fn tower_of(session: &Session) -> (Tower, Scene) {
     (tower, scene)
 }
 
-fn joints_of(session: &Session) -> (Joints, Scene) {
-    let space = Joints::of(session.run()).expect("three drives");
+fn joints_of(session: &Session) -> (JointSpace, Scene) {
+    let space = JointSpace::of(session.run()).expect("three drives");
     let scene = space.scene(session.frame(), &ViewOptions::default(), &space.camera());
     (space, scene)
 }
@@ -209,10 +209,10 @@ fn bars_end_where_b_stops_reaching_the_point() {
 fn the_window_of_b_slides() {
     let tower = raised(open("case-3").run());
     assert_eq!(tower.window(2.4), [0.0, 5.0]);
-    let mut last = sliding(-20.0, 2.5, 5.0, 0.4);
+    let mut last = sliding_range(-20.0, 2.5, 5.0, 0.4);
     for i in -2000..2000 {
         let b = f64::from(i) * 0.01;
-        let [low, high] = sliding(b, 2.5, 5.0, 0.4);
+        let [low, high] = sliding_range(b, 2.5, 5.0, 0.4);
         assert!(b >= low + 0.4 - 1e-12 && b <= high - 0.4 + 1e-12);
         assert!((high - low - 5.0).abs() < 1e-12 && (low - last[0]).abs() < 0.0100001);
         last = [low, high];
@@ -310,11 +310,11 @@ fn pulling_the_slice_asks_for_the_b_under_the_pointer() {
         let grip = tower.pick(frame, &pointer(camera, at(frame.b_reference))).expect("the slice");
         assert_eq!(grip.handle, Handle::Plane);
         for b in [0.3, 1.7, 2.4, 3.9, 4.8] {
-            let Some(Aim::B(asked)) = tower.aim(&grip, frame, &pointer(camera, at(b))) else { panic!("b") };
+            let Some(DragAction::B(asked)) = tower.aim(&grip, frame, &pointer(camera, at(b))) else { panic!("b") };
             assert!((asked - b).abs() < 1e-6, "{asked} for {b}");
         }
         // Far above, no farther than a little past the top.
-        let Some(Aim::B(asked)) = tower.aim(&grip, frame, &pointer(camera, at(9.0))) else { panic!("b") };
+        let Some(DragAction::B(asked)) = tower.aim(&grip, frame, &pointer(camera, at(9.0))) else { panic!("b") };
         assert!(asked > 5.0 && asked < 5.5, "{asked}");
         // Beside the tower there is nothing.
         let out = planes.map().forward([2.2, 0.8], frame.b_reference) * -3.0;
@@ -331,7 +331,7 @@ fn a_bar_gives_the_b_at_the_pointer_within_reach() {
     let grip = tower.pick(frame, &over(1.9)).expect("the bar of A");
     assert_eq!(grip.handle, Handle::Bar);
     for (b, want) in [(1.9, 1.9), (2.8, 2.8), (0.4, 1.6495370969), (4.4, 2.9012991061)] {
-        let Some(Aim::B(asked)) = tower.aim(&grip, frame, &over(b)) else { panic!("b") };
+        let Some(DragAction::B(asked)) = tower.aim(&grip, frame, &over(b)) else { panic!("b") };
         assert!((asked - want).abs() < 1e-6, "{asked} for {b}");
     }
     // On the slice the dot comes first.
@@ -339,7 +339,7 @@ fn a_bar_gives_the_b_at_the_pointer_within_reach() {
     let grip = tower.pick(frame, &dot).expect("the dot");
     assert_eq!(grip.handle, Handle::Target);
     let to = [0.62, 0.55, 2.4 * tower.rise()];
-    let Some(Aim::Target([x, y])) = tower.aim(&grip, frame, &pointer(camera, to)) else { panic!("a place") };
+    let Some(DragAction::Target([x, y])) = tower.aim(&grip, frame, &pointer(camera, to)) else { panic!("a place") };
     assert!((x - 0.62).hypot(y - 0.55) < 1e-6);
 }
 
@@ -347,7 +347,7 @@ fn a_bar_gives_the_b_at_the_pointer_within_reach() {
 #[test]
 fn pulling_in_joint_space_asks_for_what_is_seen() {
     let session = open("case-3");
-    let (frame, space) = (session.frame(), Joints::of(session.run()).expect("three drives"));
+    let (frame, space) = (session.frame(), JointSpace::of(session.run()).expect("three drives"));
     let map = *session.run().planes().expect("three drives").map();
     let b = frame.b_reference;
     let seen = |a: [f64; 2], b_of: f64| {
@@ -358,7 +358,9 @@ fn pulling_in_joint_space_asks_for_what_is_seen() {
         let grip = space.pick(frame, &pointer(camera, pose)).expect("the dot");
         assert_eq!(grip.handle, Handle::Target);
         for a in [[0.4, 0.6], [1.0, 2.9], [2.7, 1.4]] {
-            let Some(Aim::Target([x, y])) = space.aim(&grip, frame, &pointer(camera, seen(a, b))) else { panic!("p") };
+            let Some(DragAction::Target([x, y])) = space.aim(&grip, frame, &pointer(camera, seen(a, b))) else {
+                panic!("p")
+            };
             assert!((map.forward(a, b) - Vector::new(x, y)).norm() < 1e-6);
         }
         let start = seen([2.4, 0.5], b);
@@ -369,7 +371,7 @@ fn pulling_in_joint_space_asks_for_what_is_seen() {
             // Along the normal, in the order of the scene's axes.
             let way = (want - b) / lambda.iter().map(|l| l * l).sum::<f64>();
             let at: [f64; 3] = std::array::from_fn(|i| start[i] + way * lambda[(i + 1) % 3]);
-            let Some(Aim::B(asked)) = space.aim(&grip, frame, &pointer(camera, at)) else { panic!("b") };
+            let Some(DragAction::B(asked)) = space.aim(&grip, frame, &pointer(camera, at)) else { panic!("b") };
             assert!((asked - want).abs() < 1e-6, "{asked} for {want}");
         }
         assert_eq!(space.pick(frame, &pointer(camera, seen([-0.3, 1.0], b))), None, "outside the limits");
@@ -388,8 +390,8 @@ fn the_machines_handles_are_found_in_both_views() {
             let here = pointer(camera, at);
             assert_eq!(views.pick(kind, &frame.into(), &here), Some(Pick::of(handle, at)));
             match views.aim(kind, &Pick::of(handle, at), &frame.into(), &here, 2.4) {
-                Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
-                Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
+                Some(DragAction::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
+                Some(DragAction::B(b)) => assert!((b - 2.4).abs() < 1e-6),
                 other => panic!("{handle:?} asks for {other:?}"),
             }
         }
@@ -398,7 +400,7 @@ fn the_machines_handles_are_found_in_both_views() {
         assert_eq!(ends.len(), 4, "two angles with two ends each");
         for pick in ends {
             let here = pointer(camera, pick.at);
-            let Some(Aim::Limit { angle, end, ends }) = views.aim(kind, &pick, &frame.into(), &here, 2.4) else {
+            let Some(DragAction::Limit { angle, end, ends }) = views.aim(kind, &pick, &frame.into(), &here, 2.4) else {
                 panic!("{pick:?} is pulled")
             };
             assert_eq!(pick.handle, Handle::Limit(angle, end));
@@ -423,7 +425,7 @@ fn nothing_drawn_is_lost() {
             for (theme, camera) in [Theme::Dark, Theme::Light].into_iter().zip(cameras(views.camera(kind))) {
                 let options = ViewOptions { theme, ..ViewOptions::default() };
                 let scene = views.scene(kind, session.frame(), &options, &camera);
-                let points = scene.lines.iter().flat_map(Line::points).chain(scene.markers.iter().map(|m| m.at));
+                let points = scene.lines.iter().flat_map(Polyline::points).chain(scene.markers.iter().map(|m| m.at));
                 let points = points.chain(scene.labels.iter().map(|l| l.at));
                 assert!(points.flatten().all(f32::is_finite));
                 assert!(scene.solids.iter().all(|s| s.mesh < scene.model.meshes.len()));

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Matrix2x3};
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::reactionless::{Boundary, BoundaryCurve, PAIRS, PlaneMap, PlanePoint};
+use stillbase::planning::reactionless::{Boundary, BoundaryCurve, DRIVE_PAIRS, PlaneMap, PlanePoint};
 
 use crate::mechanics::inside::{B, CASES, check_line, from_curves, share, size, spread, within};
 
@@ -17,7 +17,7 @@ fn parts_of_the_default_workspace_on_either_side() {
     assert_eq!([0, 1, 2].map(|pair| whole.sides(pair)), [0..=0, -1..=-1, -1..=0]);
     let curves = whole.change_curves();
     let [curve] = &curves[..] else { panic!("{} curves", curves.len()) };
-    assert_eq!((PAIRS[curve.pair], curve.half_turns), ([0, 2], 0));
+    assert_eq!((DRIVE_PAIRS[curve.pair], curve.half_turns), ([0, 2], 0));
     let [near, far] = [-1, 0].map(|m| Boundary::on_sides(&map, [None, None, Some(m)]).unwrap());
     assert!((near.area() + far.area() - whole.area()).abs() < 1e-13, "one sheet, cut in two");
     let parts = [near.area(), far.area()].map(|a| (a * 1000.0).round() / 1000.0);

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::common::{common, middle, no_common};
+use stillbase::planning::common::{common_b_set, middle_b, no_common};
 use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posed::{carried, nearest_poses, serve};
+use stillbase::planning::posed::{carried_points, nearest_poses, poses_of_points};
 
 use crate::support::Noise;
 use crate::support::random::{a_chain, a_pose, a_space};
@@ -29,8 +29,8 @@ fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) 
     let points = points(noise, space, count);
     let n = space.drives();
     let Some(why) = no_common(map, &points) else {
-        assert!(common(map, &points).is_some(), "{n} drives: {points:?}");
-        let b = middle(map, &points).expect("some");
+        assert!(common_b_set(map, &points).is_some(), "{n} drives: {points:?}");
+        let b = middle_b(map, &points).expect("some");
         assert!(points.iter().all(|p| map.reach(*p).expect("within reach").near(b).nearest(b).is_some()), "{n} drives");
         return 0;
     };
@@ -43,13 +43,13 @@ fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) 
     let moved = |share: f64| {
         let mut points = points.clone();
         points[mend.point] = was + share * (mend.to - was);
-        common(map, &points).is_some()
+        common_b_set(map, &points).is_some()
     };
     assert!((mend.distance - (mend.to - was).norm()).abs() < 1e-9 * space.farthest(), "{n} drives: {mend:?}");
     assert!(moved(1.0) || moved(1.0 + 1e-6), "{n} drives: {points:?} {mend:?}");
     assert!(mend.distance < 1e-3 * space.farthest() || !moved(0.995), "{n} drives: {points:?} {mend:?}");
     // No pose at a b of the others is nearer.
-    let shared = common(map, &others).expect("the others share some b");
+    let shared = common_b_set(map, &others).expect("the others share some b");
     for _ in 0..poses {
         let a = a_pose(noise, space);
         for [low, high] in &shared.intervals {
@@ -160,7 +160,7 @@ fn points_have_a_pose_each_and_turn_where_b_does_not_serve_them() {
         for space in [&own, &general] {
             let (n, b) = (space.drives(), noise.between(-3.0, 3.0));
             let points: Vec<Vector> = (0..2).map(|_| space.forward(&a_pose(&mut noise, space), b)).collect();
-            let poses = serve(space, &points, b).expect("both are reached");
+            let poses = poses_of_points(space, &points, b).expect("both are reached");
             assert_eq!(poses.len(), 2);
             for (pose, p) in poses.iter().zip(&points) {
                 assert!((space.place(&pose.q) - p).norm() < 1e-6 * space.farthest(), "{n} drives: {pose:?} off {p}");
@@ -170,9 +170,9 @@ fn points_have_a_pose_each_and_turn_where_b_does_not_serve_them() {
             let apart = nearest_poses(space, [points[0], points[1]], [b, b]).expect("both are reached");
             let ways = [apart, [poses[0], poses[1]]].map(|[from, to]| from.way(space, &to));
             assert!(space.planes().is_err() || ways[0] <= ways[1] + 1e-9, "{n} drives: {ways:?}");
-            assert_eq!(carried(space, &points, [b, b]), points, "where b serves them they stay");
+            assert_eq!(carried_points(space, &points, [b, b]), points, "where b serves them they stay");
             let other = b + noise.between(1.0, 3.0);
-            let there = carried(space, &points, [b, other]);
+            let there = carried_points(space, &points, [b, other]);
             turned += usize::from(there != points);
             for (p, at) in points.iter().zip(&there) {
                 assert!((p.norm() - at.norm()).abs() < 1e-6 * space.farthest(), "{n} drives: {p} goes to {at}");

@@ -11,7 +11,7 @@ use stillbase::planning::curves::low_pass::LowPass;
 use stillbase::planning::curves::spline::{Knots, NOISE_GAIN};
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::Rule;
-use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned};
+use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned_to_plane};
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::timing::Profile;
 use stillbase::planning::{Motion, Reference};
@@ -393,11 +393,11 @@ proptest! {
         let given = samples(&uneven(100), of);
         let mean = {
             let f = stillbase::planning::forecast::Forecast::at(&motion(&given), &model, &Default::default(),
-                &stillbase::planning::timing::Limits::of(machine()), 20_000);
+                &stillbase::planning::timing::DriveLimits::of(machine()), 20_000);
             f.b_mean
         };
         let distance = |b: f64| {
-            let moved = turned(&lambda, &given, b).expect("finite");
+            let moved = turned_to_plane(&lambda, &given, b).expect("finite");
             Deviation::between(machine().end_effector(), &model, &motion(&given), &motion(&moved), 20_000)
         };
         let best = distance(mean);
@@ -408,7 +408,7 @@ proptest! {
             let want = (best.rms.powi(2) + (off / lambda.iter().sum::<f64>()).powi(2)).sqrt();
             prop_assert!((other.rms - want).abs() < 1e-6, "{} {want}", other.rms);
         }
-        let quiet = motion(&turned(&lambda, &given, mean).expect("finite"));
+        let quiet = motion(&turned_to_plane(&lambda, &given, mean).expect("finite"));
         for i in 0..=100 {
             let t = f64::from(i) / 100.0;
             let (r, g) = (quiet.at(t), of(t));
@@ -703,7 +703,7 @@ mod commands {
             &clean,
             &Inertia::of(machine()),
             &Default::default(),
-            &stillbase::planning::timing::Limits::of(machine()),
+            &stillbase::planning::timing::DriveLimits::of(machine()),
             4000,
         );
         assert!(

@@ -8,7 +8,7 @@ use stillbase::planning::curves::CurvePoint;
 use stillbase::planning::off_plane::b_course::BCourse;
 use stillbase::planning::off_plane::corridor::CorridorError;
 use stillbase::planning::off_plane::inverse::pose_along;
-use stillbase::planning::off_plane::least_reaction::{FixedB, Goal, LeastReactionError};
+use stillbase::planning::off_plane::least_reaction::{FixedB, LeastReactionError, ReactionNorm};
 use stillbase::planning::off_plane::{Corridor, LeastReaction};
 use stillbase::planning::pose_space::plane_map;
 use stillbase::planning::reactionless::{AngleLimit, NoReach, PlaneMap, PlanePoint};
@@ -41,12 +41,12 @@ fn pose(map: &PlaneMap, p: Vector, b: f64) -> PlanePoint {
     map.poses(p, b)[0]
 }
 
-fn plan(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: Goal) -> LeastReaction {
+fn plan(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: ReactionNorm) -> LeastReaction {
     let (map, model) = parts();
     LeastReaction::plan(&map, &model, line(from, to), pose(&map, from, b), end, goal).expect("it can")
 }
 
-fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: Goal, spaces: usize) -> LeastReaction {
+fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: ReactionNorm, spaces: usize) -> LeastReaction {
     let (map, model) = parts();
     let start = pose(&map, from, b);
     LeastReaction::plan_in(&map, &model, line(from, to), start, end, goal, spaces).expect("it can")
@@ -111,7 +111,7 @@ fn the_corridor_keeps_to_its_sheet() {
 /// A free corridor: the least ∫ b̈² from rest to rest is the cubic, b″ = Δb (6 − 12 u).
 #[test]
 fn the_unconstrained_course_is_the_cubic() {
-    let plan = plan(A, A, 2.0, Some(2.4), Goal::Rms);
+    let plan = plan(A, A, 2.0, Some(2.4), ReactionNorm::Rms);
     for i in 0..=200 {
         let u = f64::from(i) / 200.0;
         let [b, first, second] = plan.course().at(u);
@@ -129,7 +129,7 @@ fn the_unconstrained_course_is_the_cubic() {
 fn the_unconstrained_least_peak_is_bang_bang() {
     let d = parts().1.diagonal(0);
     for spaces in [8, 32, 96] {
-        let plan = in_spaces(A, A, 2.0, Some(2.4), Goal::Peak, spaces);
+        let plan = in_spaces(A, A, 2.0, Some(2.4), ReactionNorm::Peak, spaces);
         let h = 1.0 / spaces as f64;
         let want = 4.0 * 0.4 / (1.0 - 4.0 * h * h / 3.0) * d;
         assert!((plan.reaction(1.0).peak - want).abs() < 1e-5 * want, "{spaces}: {:?}", plan.reaction(1.0));
@@ -141,7 +141,7 @@ fn the_unconstrained_least_peak_is_bang_bang() {
 #[test]
 fn a_feasible_b_stays() {
     for b in [2.25, 2.4, 2.65] {
-        for goal in [Goal::Rms, Goal::Peak] {
+        for goal in [ReactionNorm::Rms, ReactionNorm::Peak] {
             let plan = plan(A, B, b, None, goal);
             assert!(plan.course().is_constant());
             assert_eq!((plan.reaction(1.0).peak, plan.reaction(1.0).rms), (0.0, 0.0));
@@ -164,7 +164,7 @@ fn the_course_keeps_its_corridor() {
     for (from, to, b, end) in
         [(A, B, 1.75, None), (A, B, 2.8, None), (A, B, 1.75, Some(2.6)), (B, A * unit(1.0), 2.3, None)]
     {
-        for goal in [Goal::Rms, Goal::Peak] {
+        for goal in [ReactionNorm::Rms, ReactionNorm::Peak] {
             let plan = in_spaces(from, to, b, end, goal, 48);
             assert!(!plan.course().is_constant());
             let felt = plan.reaction(1.0);
@@ -199,7 +199,7 @@ fn the_course_keeps_its_corridor() {
 /// With a free end and little to change, the course ends just inside the corridor, by the cubic to there.
 #[test]
 fn a_free_end_stops_where_the_corridor_begins() {
-    let plan = plan(A, B, 2.2, None, Goal::Rms);
+    let plan = plan(A, B, 2.2, None, ReactionNorm::Rms);
     let [end, ..] = plan.course().at(1.0);
     let last = &plan.corridor().stations()[plan.corridor().stations().len() - 1];
     // A hair inside it, which costs no more than 0.5 % of the least.
@@ -211,11 +211,11 @@ fn a_free_end_stops_where_the_corridor_begins() {
 /// Finer pieces change ever less; no feasible change of the course makes it better.
 #[test]
 fn the_course_converges_and_is_least() {
-    let rms = |spaces| in_spaces(A, B, 1.75, None, Goal::Rms, spaces).reaction(1.0).rms;
+    let rms = |spaces| in_spaces(A, B, 1.75, None, ReactionNorm::Rms, spaces).reaction(1.0).rms;
     let [coarse, middle, fine, finest] = [4, 8, 24, 96].map(rms);
     let errors = [coarse, middle, fine].map(|x| (x - finest).abs());
     assert!(errors[2] < 5e-5 * finest && errors[2] < 0.5 * errors[0], "{errors:?} of {finest}");
-    let least = in_spaces(A, B, 1.75, None, Goal::Rms, 24);
+    let least = in_spaces(A, B, 1.75, None, ReactionNorm::Rms, 24);
     let base: Vec<[f64; 3]> = least.course().nodes().to_vec();
     let square =
         |second: &[f64]| -> f64 { second.windows(2).map(|w| (w[0] * w[0] + w[0] * w[1] + w[1] * w[1]) / 72.0).sum() };
@@ -253,7 +253,7 @@ fn the_course_converges_and_is_least() {
 #[test]
 fn least_is_less_than_the_others() {
     for (b, to) in [(1.75, B), (2.8, B)] {
-        let [rms, peak] = [Goal::Rms, Goal::Peak].map(|goal| in_spaces(A, to, b, None, goal, 48));
+        let [rms, peak] = [ReactionNorm::Rms, ReactionNorm::Peak].map(|goal| in_spaces(A, to, b, None, goal, 48));
         let (x, y) = (rms.reaction(1.0), peak.reaction(1.0));
         assert!(x.rms <= y.rms * (1.0 + 1e-5) && y.peak <= x.peak * (1.0 + 1e-5), "{x:?} {y:?}");
         assert!(y.peak < 0.99 * x.peak, "the goals differ: {x:?} {y:?}");
@@ -263,7 +263,7 @@ fn least_is_less_than_the_others() {
         assert!(x.rms < other.reaction.rms && y.peak < other.reaction.peak, "{x:?} {y:?} {other:?}");
         // The same end as minimum norm has costs no more either.
         if other.keeps_limits {
-            let same = in_spaces(A, to, b, Some(other.end_b), Goal::Rms, 48).reaction(1.0);
+            let same = in_spaces(A, to, b, Some(other.end_b), ReactionNorm::Rms, 48).reaction(1.0);
             assert!(same.rms <= other.reaction.rms, "{same:?} {other:?}");
         }
     }
@@ -272,7 +272,7 @@ fn least_is_less_than_the_others() {
 /// Case 1 itself: peak of the minimum-norm motion from independent software.
 #[test]
 fn minimum_norm_is_that_of_case_1() {
-    let plan = plan(A, B, 2.4, None, Goal::Rms);
+    let plan = plan(A, B, 2.4, None, ReactionNorm::Rms);
     let other = plan.compare(nine_link().end_effector(), line(A, B), 1.0).minimum_norm.expect("regular");
     assert!((other.reaction.peak - 1.0891).abs() < 1e-4, "{other:?}");
     assert!(other.keeps_limits);
@@ -300,7 +300,7 @@ fn the_inverse_has_its_own_derivatives() {
 fn courses_are_cubic_between_nodes() {
     let course = BCourse::constant(1.5);
     assert_eq!(course.at(0.3), [1.5, 0.0, 0.0]);
-    let plan = plan(A, B, 1.75, None, Goal::Rms);
+    let plan = plan(A, B, 1.75, None, ReactionNorm::Rms);
     for i in 1..100 {
         let (u, h) = (f64::from(i) / 100.0, 1e-5);
         let [back, on, ahead] = [u - h, u, u + h].map(|u| plan.course().at(u));
@@ -313,7 +313,7 @@ fn courses_are_cubic_between_nodes() {
 fn what_cannot_be_planned_says_why() {
     let (map, model) = parts();
     let start = pose(&map, A, 2.4);
-    let goal = Goal::Rms;
+    let goal = ReactionNorm::Rms;
     let refusal = |curve: &dyn Fn(f64) -> CurvePoint, start, end| {
         LeastReaction::plan(&map, &model, curve, start, end, goal).expect_err("refused")
     };
@@ -359,7 +359,7 @@ fn any_line_is_planned_or_refused() {
         let start = PlanePoint { a: [next(a1.min, a1.max), next(a2.min, a2.max)], b: next(-3.0, 9.0) };
         let from = map.forward(start.a, start.b);
         let curve = line(from, from + Vector::new(next(-0.3, 0.3), next(-0.3, 0.3)));
-        let goal = if k % 3 == 0 { Goal::Peak } else { Goal::Rms };
+        let goal = if k % 3 == 0 { ReactionNorm::Peak } else { ReactionNorm::Rms };
         match LeastReaction::plan_in(&map, &model, &curve, start, None, goal, 24) {
             Err(error) => {
                 let far = matches!(error, LeastReactionError::Corridor(CorridorError::Unreachable { .. }));
@@ -464,7 +464,7 @@ fn excess(cases: usize, seed: u64) -> Vec<f64> {
         let from = map.forward(start.a, start.b);
         let size = [0.5, 0.2, 0.05][done % 3];
         let curve = line(from, from + Vector::new(noise.between(-size, size), noise.between(-size, size)));
-        let goal = if done % 2 == 0 { Goal::Rms } else { Goal::Peak };
+        let goal = if done % 2 == 0 { ReactionNorm::Rms } else { ReactionNorm::Peak };
         let Ok(plan) = LeastReaction::plan(&map, &model, &curve, start, None, goal) else { continue };
         if plan.course().is_constant() {
             continue;
@@ -473,10 +473,10 @@ fn excess(cases: usize, seed: u64) -> Vec<f64> {
         let least = |corridor: &Corridor, every: usize| {
             let stations = corridor.stations().iter().step_by(every);
             let (low, high): (Vec<f64>, Vec<f64>) = stations.map(|s| (s.low, s.high)).unzip();
-            twin(&low, &high, start.b, goal == Goal::Peak)
+            twin(&low, &high, start.b, goal == ReactionNorm::Peak)
         };
         let felt = plan.reaction(1.0);
-        let got = if goal == Goal::Peak { felt.peak } else { felt.rms } / d;
+        let got = if goal == ReactionNorm::Peak { felt.peak } else { felt.rms } / d;
         // A twin of few stations finds too little, as it does not know what is between: then more of them.
         let mut want = least(plan.corridor(), 4);
         if got > 1.01 * want {
@@ -526,7 +526,8 @@ fn corners_between_stations_cost_no_more_than_a_hundredth() {
     ] {
         let from = map.forward(a, b);
         let curve = line(from, from + Vector::new(by[0], by[1]));
-        let plan = LeastReaction::plan(&map, &model, &curve, PlanePoint { a, b }, None, Goal::Peak).expect("it can");
+        let plan =
+            LeastReaction::plan(&map, &model, &curve, PlanePoint { a, b }, None, ReactionNorm::Peak).expect("it can");
         let over = plan.reaction(1.0).peak / d / least - 1.0;
         assert!((0.0..0.01).contains(&over), "{over} from {a:?}");
     }

@@ -8,9 +8,9 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Samples;
 use stillbase::planning::following::Rule;
-use stillbase::planning::following::nearest::{NoneClose, NotMoved, nearest_b, same_tip};
+use stillbase::planning::following::nearest::{NoClosestMotion, NotMoved, nearest_b, same_tip};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::session::scenario::{Change, Scenario};
+use stillbase::session::scenario::{Scenario, TaskChange};
 use stillbase::session::{Run, replay};
 
 use crate::support::Noise;
@@ -19,7 +19,7 @@ use crate::support::random::{a_pose, a_space};
 /// A scenario of a machine with a task as it stands in a file.
 fn scenario(machine: &Machine, task: &str) -> Scenario {
     let base = Scenario::builtin("two-drive").expect("built in");
-    let change: Change = toml::from_str(task).expect("keys and values");
+    let change: TaskChange = toml::from_str(task).expect("keys and values");
     let task = base.task.with(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
     Scenario { machine: machine.clone(), task, ..base }
 }
@@ -416,7 +416,7 @@ fn the_closest_motion_of_a_b_is_found() {
         }
         assert!(matches!(
             same_tip(&space, &model, &samples, 60.0, Rule::default()),
-            Err(NotMoved::NoneClose(NoneClose::Pose { .. } | NoneClose::Limit { .. }))
+            Err(NotMoved::NoneClose(NoClosestMotion::Pose { .. } | NoClosestMotion::Limit { .. }))
         ));
     }
     assert!(moved_some >= 3, "{moved_some}");

@@ -4,7 +4,7 @@ use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{DriveAngles, Vector};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posture::{Posture, Postures};
+use stillbase::planning::posture::{Posture, PostureWeights};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Refusal, Run};
@@ -58,7 +58,7 @@ fn the_last_link_keeps_its_orientation() {
 fn joints_stay_near_the_middle_of_their_ranges() {
     let machine = builtin("four-drive").expect("built in");
     let space = PoseSpace::of(machine).expect("balanced");
-    let postures = Postures::of(machine, &space);
+    let postures = PostureWeights::of(machine, &space);
     let own = poses(Posture::MidRange);
     for other in [Posture::LeastRates, Posture::Orientation, Posture::LeastTorque] {
         let Ok(_) = run(other) else { continue };

@@ -5,11 +5,11 @@ use stillbase::mechanics::dynamics::{Surroundings, inverse};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
-use stillbase::planning::common::common;
+use stillbase::planning::common::common_b_set;
 use stillbase::planning::curves::path::least_rate_curve;
 use stillbase::planning::curves::{Curve, Path};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posture::{Asked, NoWay, Posture, Postures};
+use stillbase::planning::posture::{NoPosturePath, Posture, PostureRequest, PostureWeights};
 use stillbase::planning::timing::TimeLaw;
 
 use crate::support::Noise;
@@ -39,10 +39,10 @@ fn a_case(noise: &mut Noise, n: usize) -> Case {
 }
 
 impl Case {
-    fn path(&self, posture: Posture) -> Result<Path, NoWay> {
+    fn path(&self, posture: Posture) -> Result<Path, NoPosturePath> {
         let hand = self.machine.resolved_links()[self.machine.end_link()].drive;
         let curve = Curve::line(self.ends[0], self.ends[1]);
-        let asked = Asked {
+        let asked = PostureRequest {
             machine: &self.machine,
             space: &self.space,
             b: self.b,
@@ -58,7 +58,7 @@ impl Case {
     fn costs(&self, path: &Path) -> [f64; 3] {
         const SAMPLES: usize = 4000;
         let (inertia, around) = (Inertia::of(&self.machine), Surroundings::default());
-        let postures = Postures::of(&self.machine, &self.space);
+        let postures = PostureWeights::of(&self.machine, &self.space);
         let motion = Motion::new(path.clone(), TimeLaw::Quintic, 1.0);
         let mut sums = [0.0; 3];
         for i in 0..SAMPLES {
@@ -184,8 +184,8 @@ fn tally(n: usize, lines: usize, seed: u64) -> Tally {
                 }
                 Err(why) if posture == Posture::LeastRates => {
                     tally.refused += 1;
-                    tally.abrupt += usize::from(*why == NoWay::Abrupt);
-                    if locally || *why == NoWay::Abrupt {
+                    tally.abrupt += usize::from(*why == NoPosturePath::Abrupt);
+                    if locally || *why == NoPosturePath::Abrupt {
                         println!("line {line}: {why}, locally {locally}");
                     }
                 }
@@ -283,7 +283,7 @@ fn goes_near_the_ends(lines: usize, share: f64, seed: u64) -> [usize; 2] {
         let mut case = a_case(&mut noise, 4);
         let way = case.ends[1] - case.ends[0];
         let points: Vec<Vector> = (0..=400).map(|i| case.ends[0] + f64::from(i) / 400.0 * way).collect();
-        let Some(serving) = common(&case.space, &points) else { continue };
+        let Some(serving) = common_b_set(&case.space, &points) else { continue };
         let Some([low, high]) = serving.intervals.first().copied() else { continue };
         if high - low > 0.999 * case.space.period() {
             continue;

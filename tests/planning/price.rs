@@ -10,7 +10,7 @@ use stillbase::planning::off_plane::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, nearest_planes,
 };
 use stillbase::planning::pose_space::{PoseSpace, plane_map};
-use stillbase::planning::posed::Posed;
+use stillbase::planning::posed::PoseAngles;
 use stillbase::planning::reactionless::{BSet, PlaneMap};
 use stillbase::planning::timing::TimeLaw;
 
@@ -25,8 +25,8 @@ fn space() -> PoseSpace {
     PoseSpace::of(builtin("nine-link").expect("built in")).expect("a b")
 }
 
-fn lifted(space: &PoseSpace, a: [f64; 2], b: f64) -> Posed {
-    Posed::lifted(space, PerDrive::from(a), b)
+fn lifted(space: &PoseSpace, a: [f64; 2], b: f64) -> PoseAngles {
+    PoseAngles::lifted(space, PerDrive::from(a), b)
 }
 
 /// n_B of the dynamics, N m, without gravity.

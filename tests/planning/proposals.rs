@@ -1,7 +1,7 @@
 //! What a refusal proposes works as printed: typed back, it is accepted.
 
 use stillbase::planning::pose_space::Planes;
-use stillbase::session::scenario::{Change, Scenario};
+use stillbase::session::scenario::{Scenario, TaskChange};
 use stillbase::session::{Refusal, Run};
 
 use crate::support::Noise;
@@ -15,7 +15,7 @@ fn number(text: &str, before: &str) -> Option<f64> {
 }
 
 fn with(scenario: &Scenario, change: &str) -> Scenario {
-    let change: Change = toml::from_str(change).expect("keys");
+    let change: TaskChange = toml::from_str(change).expect("keys");
     Scenario { task: scenario.task.with(&change, &scenario.machine).expect("a task"), ..scenario.clone() }
 }
 

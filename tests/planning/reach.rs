@@ -8,7 +8,9 @@ use proptest::prelude::*;
 use serde_json::Value;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, BSet, NoReach, PlaneMap, PlanePoint, SLACK};
+use stillbase::planning::reactionless::{
+    AngleDefinition, AngleLimit, BSet, LIMIT_SLACK, NoReach, PlaneMap, PlanePoint,
+};
 
 fn planning() -> Value {
     serde_json::from_str(include_str!("../reference/planning.json")).unwrap()
@@ -479,7 +481,7 @@ fn limits_without_room_leave_points() {
     for bounds in [[1.1, 1.1, 0.0, PI], [0.0, PI, 2.0, 2.0], [1.1, 1.1, 2.0, 2.0]] {
         let fixed = map.with_limits(limits(bounds)).unwrap();
         let set = fixed.reach(p).unwrap();
-        assert!(set.intervals.iter().all(|[low, high]| high - low < 10.0 * SLACK), "{set:?}");
+        assert!(set.intervals.iter().all(|[low, high]| high - low < 10.0 * LIMIT_SLACK), "{set:?}");
         assert!(set.contains(2.4), "{set:?}");
         let poses = fixed.poses(p, 2.4);
         assert_eq!(poses.len(), 1);

@@ -2,8 +2,8 @@
 
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::common;
-use stillbase::planning::following::Stop;
-use stillbase::session::scenario::{Change, Scenario, Task};
+use stillbase::planning::following::SheetEnd;
+use stillbase::session::scenario::{Scenario, Task, TaskChange};
 use stillbase::session::{Edit, Refusal, Run, Session, curves, replay};
 use stillbase::simulation::frame::{Frame, Phase};
 
@@ -14,7 +14,7 @@ fn scenario() -> Scenario {
 /// Case 3 with keys of its task as they stand in a file.
 fn task(text: &str) -> Scenario {
     let base = scenario();
-    let change: Change = toml::from_str(text).expect("keys and values");
+    let change: TaskChange = toml::from_str(text).expect("keys and values");
     Scenario { task: base.task.with(&change, &base.machine).expect("a task"), ..base }
 }
 
@@ -86,7 +86,7 @@ fn what_cannot_be_followed_is_refused_before_it_moves() {
     // Through the inner edge of the workspace: both ends are inside, the middle is not.
     let hole = task("shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]");
     let Err(Refusal::Blocked(blocked)) = Run::new(&hole) else { panic!("the middle is outside") };
-    assert!(blocked.leaves_workspace && matches!(blocked.stop, Stop::Limit { .. }), "{blocked:?}");
+    assert!(blocked.leaves_workspace && matches!(blocked.stop, SheetEnd::Limit { .. }), "{blocked:?}");
     let at = hole.task.points()[0] + (hole.task.points()[1] - hole.task.points()[0]) * blocked.s;
     assert!((at - blocked.at).norm() < 1e-9);
     // A joint line joins the same two points.
@@ -114,7 +114,7 @@ fn the_least_move_mends() {
             let mut points = points.to_vec();
             let was = points[mend.point];
             points[mend.point] = was + share * (mend.to - was);
-            common::common(space, &points)
+            common::common_b_set(space, &points)
         };
         assert!(moved(1.0 + 1e-6).is_some(), "{mend:?}");
         assert!(moved(0.999).is_none(), "{mend:?}");
@@ -126,7 +126,8 @@ fn the_least_move_mends() {
 #[test]
 fn waypoints_are_edited_as_lists() {
     let Scenario { task, machine, .. } = scenario();
-    let with = |task: &Task, change: Option<Change>| task.with(&change.expect("possible"), &machine).expect("a task");
+    let with =
+        |task: &Task, change: Option<TaskChange>| task.with(&change.expect("possible"), &machine).expect("a task");
     let p = Vector::new(0.6, 0.7);
     let three = with(&task, task.adding(p));
     assert_eq!(three.points(), [Vector::new(0.5, 0.5), p, Vector::new(0.55, 0.9)]);

@@ -11,12 +11,14 @@ use stillbase::planning::curves::path::SameTip;
 use stillbase::planning::curves::{Curve, Path, PathPoint, PathTable};
 use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posed::serve;
+use stillbase::planning::posed::poses_of_points;
 use stillbase::planning::timing::fastest::{fastest_at, stations};
 use stillbase::planning::timing::limits::{DriveLimit, LimitedQuantity};
-use stillbase::planning::timing::profile::Span;
-use stillbase::planning::timing::usage::ACTIVE;
-use stillbase::planning::timing::{Fastest, Limits, Profile, Progress, TimeError, TimeLaw, Usage, fastest, s_curve};
+use stillbase::planning::timing::profile::JerkPhase;
+use stillbase::planning::timing::usage::ACTIVE_SHARE;
+use stillbase::planning::timing::{
+    DriveLimits, FastestMotion, PathProgress, Profile, TimeError, TimeLaw, Usage, fastest, s_curve,
+};
 use stillbase::session::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
 use stillbase::settings::word::Choice;
@@ -72,14 +74,14 @@ fn curves() -> Vec<(&'static str, Path)> {
     ]
 }
 
-fn limits(torque: [f64; 3], speed: [f64; 3], acceleration: [f64; 3], jerk: [f64; 3]) -> Limits {
-    Limits { torque: torque.into(), speed: speed.into(), acceleration: acceleration.into(), jerk: jerk.into() }
+fn limits(torque: [f64; 3], speed: [f64; 3], acceleration: [f64; 3], jerk: [f64; 3]) -> DriveLimits {
+    DriveLimits { torque: torque.into(), speed: speed.into(), acceleration: acceleration.into(), jerk: jerk.into() }
 }
 
 const FREE: [f64; 3] = [f64::INFINITY; 3];
 
 /// 20, 5 and 5 N m.
-fn by_torque() -> Limits {
+fn by_torque() -> DriveLimits {
     limits([20.0, 5.0, 5.0], FREE, FREE, FREE)
 }
 
@@ -98,12 +100,12 @@ fn even(n: usize) -> Vec<f64> {
     (0..=n).map(|i| i as f64 / n as f64).collect()
 }
 
-fn timed(path: &Path, machine: &Machine, limits: &Limits, n: usize) -> Fastest {
+fn timed(path: &Path, machine: &Machine, limits: &DriveLimits, n: usize) -> FastestMotion {
     let (model, around) = of(machine);
     fastest_at(path, &model, &around, limits, false, &stations(n)).expect("a motion")
 }
 
-fn usage(path: &Path, found: &Fastest, machine: &Machine, limits: &Limits, samples: usize) -> Usage {
+fn usage(path: &Path, found: &FastestMotion, machine: &Machine, limits: &DriveLimits, samples: usize) -> Usage {
     let (model, around) = of(machine);
     let motion = Motion { path: path.clone(), profile: found.profile.clone() };
     Usage::of(&motion, &model, &around, limits, samples)
@@ -116,7 +118,7 @@ fn slope(f: impl Fn(f64) -> f64, t: f64, h: f64) -> f64 {
 
 /// That each derivative of a timing is that of what stands before it.
 #[track_caller]
-fn derivatives_agree(what: &str, at: impl Fn(f64) -> Progress, t: f64, h: f64, tolerance: f64) {
+fn derivatives_agree(what: &str, at: impl Fn(f64) -> PathProgress, t: f64, h: f64, tolerance: f64) {
     let (p, scale) = (at(t), 1.0 / (h * 1e4));
     for (i, (got, want)) in [
         (p.rate, slope(|t| at(t).s, t, h)),
@@ -177,10 +179,10 @@ fn laws_have_their_peaks() {
 fn laws_begin_and_end_at_rest() {
     for &law in TimeLaw::ALL {
         for t in [-1.0, -1e-300] {
-            assert_eq!(law.at(t, 2.0), Progress::still(0.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::still(0.0), "{law:?}");
         }
         for t in [2.0, 2.1, f64::INFINITY] {
-            assert_eq!(law.at(t, 2.0), Progress::still(1.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::still(1.0), "{law:?}");
         }
         let (first, last) = (law.at(0.0, 2.0), law.at(2.0 - 1e-9, 2.0));
         assert_eq!((first.s, first.rate), (0.0, 0.0), "{law:?}");
@@ -190,7 +192,7 @@ fn laws_begin_and_end_at_rest() {
         assert_eq!(first.acceleration == 0.0 && last.acceleration.abs() < 1e-6, !steps, "{law:?}");
         assert_eq!(first.jerk == 0.0 && last.jerk.abs() < 1e-6, steps || law == TimeLaw::Septic, "{law:?}");
         // No time at all is at the end.
-        assert_eq!(law.at(0.0, 0.0), Progress::still(1.0));
+        assert_eq!(law.at(0.0, 0.0), PathProgress::still(1.0));
     }
 }
 
@@ -198,7 +200,7 @@ fn laws_begin_and_end_at_rest() {
 #[test]
 fn spans_make_the_laws() {
     let third = 2.0 / 3.0;
-    let span = |time, acceleration, jerk| Span { time, acceleration, jerk };
+    let span = |time, acceleration, jerk| JerkPhase { time, acceleration, jerk };
     for (law, spans) in [
         (
             TimeLaw::Trapezoidal,
@@ -431,7 +433,7 @@ fn a_path_may_turn_back() {
         let usage = usage(&path, &found, machine, &by_torque(), 10_000);
         assert!(usage.active > 0.97 && (usage.most - 1.0) < 1e-3, "{usage:?}");
     }
-    let limits = Limits { jerk: [3000.0; 3].into(), ..by_torque() };
+    let limits = DriveLimits { jerk: [3000.0; 3].into(), ..by_torque() };
     let smooth = fastest(&path, &model, &around, &limits, true).expect("limits");
     let motion = Motion { path, profile: smooth.profile };
     let usage = Usage::of(&motion, &model, &around, &limits, 10_000);
@@ -454,9 +456,9 @@ fn usage_tells_violations() {
     let quintic = Profile::of(TimeLaw::Quintic, best.duration() * (10.0 / 3f64.sqrt() / 4.0).sqrt());
     let usage = Usage::of(&Motion { path: line(), profile: quintic }, &model, &around, &limits, 10_000);
     assert!((usage.most - 1.0).abs() < 1e-6 && usage.active < 0.1, "{usage:?}");
-    let free = Usage::of(&Motion { path: line(), profile: best }, &model, &around, &Limits::none(3), 100);
+    let free = Usage::of(&Motion { path: line(), profile: best }, &model, &around, &DriveLimits::none(3), 100);
     assert_eq!((free.active, free.most, free.limit), (0.0, 0.0, None));
-    const { assert!(ACTIVE < 1.0 && ACTIVE >= 0.999) }
+    const { assert!(ACTIVE_SHARE < 1.0 && ACTIVE_SHARE >= 0.999) }
 }
 
 /// T of the fastest way from 0 to 1 over all phase durations, by search: up, constant, down to a rate; the same or
@@ -600,15 +602,15 @@ fn jerk_alone_is_enough() {
 #[test]
 fn what_cannot_be_timed_is_refused() {
     let (model, around) = of(nine_link());
-    let refused = |path: &Path, limits: Limits, smooth| {
+    let refused = |path: &Path, limits: DriveLimits, smooth| {
         fastest(path, &model, &around, &limits, smooth).expect_err("nothing to go by")
     };
     let speed = limits(FREE, [2.0; 3], FREE, FREE);
     for path in [line(), tip_path()] {
-        assert!(matches!(refused(&path, Limits::none(3), false), TimeError::Unlimited { .. }));
+        assert!(matches!(refused(&path, DriveLimits::none(3), false), TimeError::Unlimited { .. }));
         assert_eq!(refused(&path, speed, false), TimeError::SpeedOnly);
         assert_eq!(refused(&path, by_torque(), true), TimeError::NoJerkLimit);
-        let two = Limits::none(2);
+        let two = DriveLimits::none(2);
         assert_eq!(refused(&path, two, false), TimeError::Drives { path: 3, model: 3, limits: 2 });
     }
     // Only a drive that stands still is limited.
@@ -624,7 +626,7 @@ fn what_cannot_be_timed_is_refused() {
     let (model, around) = of(&machine);
     let weak = limits([20.0, 0.5, 5.0], FREE, FREE, FREE);
     for smooth in [false, true] {
-        let weak = Limits { jerk: [300.0; 3].into(), ..weak };
+        let weak = DriveLimits { jerk: [300.0; 3].into(), ..weak };
         let error = fastest(&tip_path(), &model, &around, &weak, smooth).expect_err("too heavy");
         let TimeError::Static { drive, s, torque, limit } = error.clone() else { panic!("{error}") };
         assert!((drive, limit) == (2, 0.5) && torque.abs() > 0.5, "{error}");
@@ -664,7 +666,7 @@ fn nowhere_takes_no_time() {
     let nodes = [0.0, 1.0].map(|s| Path::Rest(Q_A.into()).at(s)).to_vec();
     let table = Path::Table(PathTable::even(nodes).expect("nodes"));
     for path in [Path::Rest(Q_A.into()), Path::JointLine { from: Q_A.into(), to: Q_A.into() }, table] {
-        let limits = Limits { jerk: [300.0; 3].into(), ..by_torque() };
+        let limits = DriveLimits { jerk: [300.0; 3].into(), ..by_torque() };
         for smooth in [false, true] {
             let found = fastest(&path, &model, &around, &limits, smooth).expect("it is there");
             assert_eq!((found.profile.duration(), found.profile.at(0.0).s), (0.0, 1.0));
@@ -740,7 +742,7 @@ proptest! {
 /// A path through random points on the plane b = 2.4: straight lines with rounded or sharp corners, an arc, a spline.
 fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
     let space = PoseSpace::of(nine_link()).expect("three drives");
-    let start = serve(&space, points, 2.4).ok()?[0].a;
+    let start = poses_of_points(&space, points, 2.4).ok()?[0].a;
     let curves = match shape {
         0 => Curve::polyline(points, false, blend).ok()?,
         1 => vec![Curve::arc([points[0], points[1], points[2]], false).ok()?],
@@ -764,7 +766,7 @@ fn converged(path: &Path, parts: usize) -> Vec<f64> {
 }
 
 /// Random limits of the nine-link machine's drives, those on torque as they are.
-fn drives(speed: Option<f64>, jerk: f64) -> Limits {
+fn drives(speed: Option<f64>, jerk: f64) -> DriveLimits {
     let speed = speed.map_or(FREE, |v| [v, 2.0 * v, 2.0 * v]);
     limits([20.0, 5.0, 5.0], speed, FREE, [jerk, 2.0 * jerk, 3.0 * jerk])
 }
@@ -774,10 +776,10 @@ fn anywhere(count: usize) -> impl Strategy<Value = Vec<Vector>> {
 }
 
 /// What must be true of every fastest motion along lines with rounded corners, arcs and splines.
-fn judge(points: &[Vector], shape: usize, blend: f64, limits: &Limits, smooth: bool) -> Result<(), TestCaseError> {
+fn judge(points: &[Vector], shape: usize, blend: f64, limits: &DriveLimits, smooth: bool) -> Result<(), TestCaseError> {
     let Some(paths) = drawn(points, shape, blend) else { return Ok(()) };
     let (model, around) = of(nine_link());
-    let without = Limits { jerk: FREE.into(), ..*limits };
+    let without = DriveLimits { jerk: FREE.into(), ..*limits };
     let asked = if smooth { limits } else { &without };
     for path in &paths {
         let found = fastest(path, &model, &around, limits, smooth).expect("a motion");

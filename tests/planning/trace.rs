@@ -7,7 +7,7 @@ use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector};
 use stillbase::planning::curves::{Curve, PathTable};
-use stillbase::planning::following::{Blocked, Rule, Stop, trace};
+use stillbase::planning::following::{Blocked, Rule, SheetEnd, trace};
 use stillbase::planning::pose_space::Planes;
 
 const B: f64 = 2.4;
@@ -99,7 +99,7 @@ fn a_line_out_of_the_workspace_stops_at_the_boundary() {
     let stillbase::planning::reactionless::BoundaryCurve::Limit { angle, upper } = at.curve else {
         panic!("no folds here")
     };
-    assert_eq!(blocked.stop, Stop::Limit { angle, upper });
+    assert_eq!(blocked.stop, SheetEnd::Limit { angle, upper });
     let longest = blocked.longest.expect("a part is inside");
     assert!(longest[0] == 0.0 && (longest[1] - blocked.s).abs() < 1e-6, "{longest:?}");
     // (1.2, 0.9) is 1.5 m away; the arms are 1.2 m long.
@@ -132,7 +132,7 @@ fn folds_stop_a_curve_inside_the_workspace() {
         let angle = f64::from(i) * 0.0628;
         let curve = Curve::line(v(0.50, 0.50), v(0.50, 0.50) + 0.9 * v(angle.cos(), angle.sin()));
         let Err(blocked) = follow(&planes, std::slice::from_ref(&curve), B) else { continue };
-        if blocked.stop != Stop::Fold {
+        if blocked.stop != SheetEnd::Fold {
             continue;
         }
         folds += 1;
@@ -153,7 +153,7 @@ fn change_points_stop_only_who_keeps_off_them() {
     assert!(trace::follow(map, &line, B, None, Rule::default()).is_ok());
     let rule = Rule { keep_off_change_points: true };
     let blocked = trace::follow(map, &line, B, None, rule).expect_err("crosses it");
-    assert_eq!(blocked.stop, Stop::ChangePoint { drives: [0, 2] });
+    assert_eq!(blocked.stop, SheetEnd::ChangePoint { drives: [0, 2] });
     let a = map.poses(line[0].at(blocked.s).p, B)[0].a;
     assert!((a[0] + a[1] - std::f64::consts::PI).abs() < 1e-7, "{a:?}");
 }
@@ -228,7 +228,7 @@ fn a_graze_of_a_limit_is_noticed() {
         limits[0].max = extreme - below;
         let narrow = map.with_limits(limits).expect("limits");
         let blocked = trace::follow(&narrow, &line, B, None, Rule::default()).expect_err("it passes the limit");
-        assert_eq!(blocked.stop, Stop::Limit { angle: 0, upper: true });
+        assert_eq!(blocked.stop, SheetEnd::Limit { angle: 0, upper: true });
         assert!((a(blocked.s)[0] - limits[0].max).abs() < 1e-6, "{below}: {}", blocked.s);
     }
     let mut limits = map.limits();

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_space::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap, WIDEST};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, MAX_LIMIT_RANGE, PlaneMap};
 
 use crate::support::Noise;
 
@@ -27,8 +27,8 @@ fn any_map(noise: &mut Noise) -> PlaneMap {
 
 fn any_limits(noise: &mut Noise, turns: [f64; 2]) -> [AngleLimit; 2] {
     turns.map(|turns| {
-        let width = (TAU * noise.between(0.1, turns)).min(WIDEST);
-        let min = noise.between(-0.5 * WIDEST, 0.5 * WIDEST - width);
+        let width = (TAU * noise.between(0.1, turns)).min(MAX_LIMIT_RANGE);
+        let min = noise.between(-0.5 * MAX_LIMIT_RANGE, 0.5 * MAX_LIMIT_RANGE - width);
         AngleLimit { min, max: min + width }
     })
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use stillbase::files::text::read;
 use stillbase::files::{NewFile, WriteError, finish_all, made, write_new};
-use stillbase::settings::text::{MOST_BYTES, brief, plain};
+use stillbase::settings::text::{MAX_TEXT_BYTES, plain, shorten_message};
 
 use crate::folder::Folder;
 
@@ -37,10 +37,10 @@ fn nothing_steers_a_terminal_and_long_messages_keep_both_ends() {
     assert_eq!(plain("a\u{1b}[2Jb\n\u{9b}31m\u{202e}c\r"), "a\\u{1b}[2Jb\n\\u{9b}31m\\u{202e}c\\r");
     assert_eq!(plain("τ₁ N m − 2\n"), "τ₁ N m − 2\n");
     let long = format!("begin {} end", "é".repeat(5000));
-    let kept = brief(&long);
+    let kept = shorten_message(&long);
     assert!(kept.starts_with("begin é") && kept.ends_with("é end") && kept.chars().count() < 1700, "{kept}");
     assert!(kept.contains("(3410 characters left out)"), "{kept}");
-    assert_eq!(brief("short"), "short");
+    assert_eq!(shorten_message("short"), "short");
 }
 
 /// Of many who write under one name, one has it; what it wrote stands there, and the others are told.
@@ -471,7 +471,7 @@ fn only_plain_files_of_a_bounded_size_are_read() {
     let made = Command::new("mkfifo").arg(folder.path("pipe")).status().expect("mkfifo");
     assert!(made.success());
     let large = fs::File::create(folder.path("large")).expect("a file");
-    large.set_len(MOST_BYTES + 1).expect("a file with a hole");
+    large.set_len(MAX_TEXT_BYTES + 1).expect("a file with a hole");
     let scenario = |machine: &str| {
         format!(
             "machine = {machine:?}\n[task]\nkind = \"reactionless\"\nfrom = [0.5, 0.5]\nto = [0.55, 0.9]\nb = 2.4\n"

@@ -4,15 +4,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use stillbase::query::{
-    Asked, Growing, Grown, Portion, Queries, Query, Quick, Same, Sequence, Shared, State, Watch, Whole, Work, Workers,
-    answered,
+    ByIdentity, IncrementalAnswer, IncrementalQuery, Portion, ProgressCallback, Queries, Query, QueryResult,
+    QueryStatus, QuickQuery, QuickWork, Sequence, Shared, Work, Workers, answer_now,
 };
 
 /// How often something was made: each test has its own.
-type Counter = Same<AtomicUsize>;
+type Counter = ByIdentity<AtomicUsize>;
 
 fn counter() -> Counter {
-    Same(Arc::new(AtomicUsize::new(0)))
+    ByIdentity(Arc::new(AtomicUsize::new(0)))
 }
 
 fn count(counter: &Counter) -> usize {
@@ -22,7 +22,7 @@ fn count(counter: &Counter) -> usize {
 /// A number squared.
 struct Square;
 
-impl Quick for Square {
+impl QuickQuery for Square {
     type Input = (Counter, i64);
     type Answer = i64;
 
@@ -48,7 +48,7 @@ impl Query for Sum {
         Self { counter, n, at: 0, sum: 0 }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<u64> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<u64> {
         self.counter.0.fetch_add(1, Ordering::Relaxed);
         assert!(self.n != 13, "this one breaks off");
         if self.at == self.n {
@@ -85,20 +85,20 @@ fn with_later() -> (Queries, Later) {
     (queries, later)
 }
 
-fn known<A: Copy>(asked: &Asked<A>) -> Option<A> {
+fn known<A: Copy>(asked: &QueryResult<A>) -> Option<A> {
     asked.known().map(|answer| **answer)
 }
 
 #[test]
 fn an_answer_is_made_once_for_each_input() {
     let (queries, made) = (Queries::default(), counter());
-    let ask = |x: i64| *queries.ask::<Whole<Square>>(&(made.clone(), x));
+    let ask = |x: i64| *queries.ask::<QuickWork<Square>>(&(made.clone(), x));
     assert_eq!((ask(3), ask(3), ask(4), ask(4)), (9, 9, 16, 16));
     assert_eq!(count(&made), 2);
     // Copies ask the same store.
-    assert_eq!((*queries.clone().ask::<Whole<Square>>(&(made.clone(), 4)), count(&made)), (16, 2));
+    assert_eq!((*queries.clone().ask::<QuickWork<Square>>(&(made.clone(), 4)), count(&made)), (16, 2));
     assert_eq!((ask(3), count(&made)), (9, 3), "only the newest is kept");
-    queries.forget::<Whole<Square>>();
+    queries.forget::<QuickWork<Square>>();
     assert_eq!((ask(3), count(&made)), (9, 4));
 }
 
@@ -114,7 +114,7 @@ fn work_beside_shows_the_last_answer_meanwhile() {
     });
     let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
     let first = ask(4);
-    assert!(first.last.is_none() && matches!(first.state, State::UnderWay(_)) && queries.is_busy());
+    assert!(first.last.is_none() && matches!(first.state, QueryStatus::UnderWay(_)) && queries.is_busy());
     assert_eq!((later.work(), count(&woken)), (1, 1));
     assert_eq!((known(&ask(4)), queries.is_busy()), (Some(10), false));
     let next = ask(5);
@@ -144,12 +144,12 @@ fn the_newest_asking_counts() {
 
 /// A number after some waiting in many portions; tells how many of its kind work at the same time, at most.
 struct Slow {
-    input: (Same<[AtomicUsize; 2]>, u64),
+    input: (ByIdentity<[AtomicUsize; 2]>, u64),
     left: u32,
 }
 
 impl Query for Slow {
-    type Input = (Same<[AtomicUsize; 2]>, u64);
+    type Input = (ByIdentity<[AtomicUsize; 2]>, u64);
     type Answer = u64;
 
     fn begin(input: Self::Input) -> Self {
@@ -159,7 +159,7 @@ impl Query for Slow {
         Self { input, left: 20 }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<u64> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<u64> {
         std::thread::sleep(std::time::Duration::from_millis(1));
         self.left -= 1;
         if self.left > 0 { Portion::More(0.5) } else { Portion::Done(self.input.1) }
@@ -185,7 +185,7 @@ impl Workers for OnThreads {
 fn work_begins_when_what_it_replaces_has_stopped() {
     let queries = Queries::default();
     queries.hire(Arc::new(OnThreads));
-    let counts = Same(Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]));
+    let counts = ByIdentity(Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]));
     let ask = |n: u64| queries.ask_beside::<Slow>(&(counts.clone(), n));
     for n in 0..40 {
         ask(n);
@@ -204,7 +204,7 @@ fn work_begins_when_what_it_replaces_has_stopped() {
 #[test]
 fn short_work_ends_while_the_input_changes_all_the_time() {
     let ((queries, later), made) = (with_later(), counter());
-    let ask = |x: i64| queries.ask_beside::<Whole<Square>>(&(made.clone(), x));
+    let ask = |x: i64| queries.ask_beside::<QuickWork<Square>>(&(made.clone(), x));
     let mut seen = Vec::new();
     for x in 1..=6 {
         seen.push(ask(x).last.map(|answer| *answer));
@@ -224,8 +224,8 @@ fn what_was_stopped_or_broke_off_is_not_begun_again() {
     let _ = ask(6);
     queries.stop::<Sum>();
     later.work();
-    assert_eq!((ask(6).state, later.work()), (State::Stopped, 0));
-    assert_eq!(queries.newest::<Sum>().map(|asked| asked.state), Some(State::Stopped));
+    assert_eq!((ask(6).state, later.work()), (QueryStatus::Stopped, 0));
+    assert_eq!(queries.newest::<Sum>().map(|asked| asked.state), Some(QueryStatus::Stopped));
     let _ = ask(7);
     assert_eq!((later.work(), known(&ask(7))), (1, Some(28)));
     let _ = ask(6);
@@ -234,7 +234,7 @@ fn what_was_stopped_or_broke_off_is_not_begun_again() {
     let broke = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| later.work()));
     assert!(broke.is_err());
     let asked = ask(13);
-    assert_eq!((asked.state, asked.last.as_deref(), queries.is_busy()), (State::Broken, Some(&21), false));
+    assert_eq!((asked.state, asked.last.as_deref(), queries.is_busy()), (QueryStatus::Broken, Some(&21), false));
     assert_eq!(later.work(), 0);
 }
 
@@ -245,41 +245,41 @@ fn without_threads_work_is_done_in_portions() {
     let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
     for i in 1..=4 {
         let asked = ask(4);
-        assert_eq!((asked.state, count(&made)), (State::UnderWay(f64::from(i) / 4.0), i as usize));
+        assert_eq!((asked.state, count(&made)), (QueryStatus::UnderWay(f64::from(i) / 4.0), i as usize));
     }
     assert_eq!((known(&ask(4)), count(&made), queries.is_busy()), (Some(10), 5, false));
     assert_eq!((known(&ask(4)), count(&made)), (Some(10), 5));
     // What is new begins anew.
-    assert_eq!(ask(2).state, State::UnderWay(0.5));
-    assert_eq!(ask(8).state, State::UnderWay(0.125));
+    assert_eq!(ask(2).state, QueryStatus::UnderWay(0.5));
+    assert_eq!(ask(8).state, QueryStatus::UnderWay(0.125));
 }
 
 /// An answer may be asked for while another is made.
 struct Twice;
 
-impl Quick for Twice {
-    type Input = (Same<Queries>, i64);
+impl QuickQuery for Twice {
+    type Input = (ByIdentity<Queries>, i64);
     type Answer = i64;
 
     fn answer((queries, x): &Self::Input) -> i64 {
-        2 * *queries.0.ask::<Whole<Square>>(&(counter(), *x))
+        2 * *queries.0.ask::<QuickWork<Square>>(&(counter(), *x))
     }
 }
 
 #[test]
 fn answers_build_on_others() {
     let queries = Queries::default();
-    let same = Same(Arc::new(queries.clone()));
-    assert_eq!(*queries.ask::<Whole<Twice>>(&(same.clone(), 5)), 50);
-    assert_eq!(known(&queries.ask_beside::<Whole<Twice>>(&(same.clone(), 6))), Some(72));
-    assert_eq!(answered::<Whole<Twice>>((same, 7)), 98);
+    let same = ByIdentity(Arc::new(queries.clone()));
+    assert_eq!(*queries.ask::<QuickWork<Twice>>(&(same.clone(), 5)), 50);
+    assert_eq!(known(&queries.ask_beside::<QuickWork<Twice>>(&(same.clone(), 6))), Some(72));
+    assert_eq!(answer_now::<QuickWork<Twice>>((same, 7)), 98);
 }
 
 #[test]
 fn shared_inputs_are_compared_by_what_they_hold_and_same_ones_are_not() {
     let [one, other] = [(); 2].map(|()| Arc::new(vec![1.0, 2.0]));
     assert!(Shared(one.clone()) == Shared(other.clone()) && Shared(one.clone()) != Shared(Arc::new(vec![1.0])));
-    assert!(Same(one.clone()) == Same(one.clone()) && Same(one) != Same(other));
+    assert!(ByIdentity(one.clone()) == ByIdentity(one.clone()) && ByIdentity(one) != ByIdentity(other));
 }
 
 /// Sums of the first so many numbers, with an input that they are multiplied by; how many it was given in all.
@@ -289,7 +289,7 @@ struct Sums {
     sums: Vec<u64>,
 }
 
-impl Growing for Sums {
+impl IncrementalQuery for Sums {
     type Item = u64;
     type Input = (Counter, u64);
 
@@ -314,7 +314,7 @@ impl Growing for Sums {
     }
 }
 
-fn sums(grown: &Grown<Sums>) -> Vec<u64> {
+fn sums(grown: &IncrementalAnswer<Sums>) -> Vec<u64> {
     grown.answer().expect("it was not let go").sums.clone()
 }
 
@@ -394,8 +394,8 @@ fn grown_sums(items: &[u64]) -> Vec<u64> {
 /// The largest sum, which depends on a growing answer.
 struct Largest;
 
-impl Quick for Largest {
-    type Input = (Counter, Grown<Sums>);
+impl QuickQuery for Largest {
+    type Input = (Counter, IncrementalAnswer<Sums>);
     type Answer = u64;
 
     fn answer((counter, grown): &Self::Input) -> u64 {
@@ -416,7 +416,7 @@ fn answers_build_on_growing_ones_without_keeping_them() {
     let largest = |items: &Sequence<u64>| {
         let grown = queries.grow::<Sums>(&input, items, usize::MAX);
         let place = Arc::as_ptr(grown.answer().expect("it was not let go"));
-        (*queries.ask::<Whole<Largest>>(&(made.clone(), grown)), place)
+        (*queries.ask::<QuickWork<Largest>>(&(made.clone(), grown)), place)
     };
     let (first, place) = largest(&items);
     assert_eq!((first, largest(&items).0, count(&made)), (55, 55, 1));
@@ -454,7 +454,7 @@ fn whatever_becomes_of_a_sequence_its_answer_is_that_made_afresh() {
             }
             let want: Vec<u64> = all[at].iter().map(|x| times * x).collect();
             prop_assert_eq!(sums(&grown), grown_sums(&want));
-            prop_assert_eq!(sums(&grown), stillbase::query::grown::<Sums>(&input, &all[at]).sums);
+            prop_assert_eq!(sums(&grown), stillbase::query::answer_sequence::<Sums>(&input, &all[at]).sums);
         }
         for sequence in &all {
             let _ = queries.grow::<Sums>(&(made.clone(), 1), sequence, 100);

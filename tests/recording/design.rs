@@ -2,9 +2,9 @@
 
 use super::*;
 use stillbase::mechanics::balance::Condition;
-use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
 use stillbase::mechanics::machine::{Inertia, builtin};
-use stillbase::session::{Designed, designs};
+use stillbase::session::{DesignVersion, designs};
 
 /// A session that changes its machine four times before it begins and once in motion, there in a drag of three steps.
 fn session() -> Scenario {
@@ -30,9 +30,9 @@ fn session() -> Scenario {
 /// The nine bars with the counterweights of least inertia, on a plane that reaches both ends.
 fn heavy() -> Scenario {
     let bare = builtin("nine-link-bare").expect("built in");
-    let asked = Weighing::least(Objective::inertia(), Sites::anywhere(bare), Disc::STEEL);
+    let asked = CounterweightSpec::least(Objective::inertia(), Sites::anywhere(bare), Disc::STEEL);
     let mut scenario = short("nine-link-bare");
-    scenario.machine = place(bare, &asked).expect("it can be balanced").machine;
+    scenario.machine = place_weights(bare, &asked).expect("it can be balanced").machine;
     scenario.task.b = 3.4;
     scenario
 }
@@ -129,7 +129,7 @@ fn every_state_of_a_session_is_a_row() {
     {
         assert!(said[i].2.contains(words), "{words:?} in {:?}", said[i].2);
     }
-    let all: Vec<Designed> = designs(&scenario).expect("states");
+    let all: Vec<DesignVersion> = designs(&scenario).expect("states");
     let run = replay(&scenario, |_, _| {}).expect("it runs");
     assert_eq!(all.last().expect("the last").machine, run.scenario().machine, "the last is what the run ends with");
     // What links bring sums to what is left of each line.

@@ -150,9 +150,9 @@ fn edits_on_the_way_are_recorded() {
 /// A recording tells what the time line of the window has marks for, in the same words.
 #[test]
 fn the_window_and_a_recording_tell_the_same() {
-    use stillbase::query::{Queries, grown};
+    use stillbase::query::{Queries, answer_sequence};
     use stillbase::session::Session;
-    use stillbase::session::events::{Gestures, Watched, bookmarked, gestures};
+    use stillbase::session::events::{EventLog, Gestures, bookmarked, gestures};
     use stillbase::session::scenario::Bookmark;
 
     let folder = Folder::new("same");
@@ -167,9 +167,9 @@ fn the_window_and_a_recording_tell_the_same() {
     let told = Contents::of(&folder.path("one.rrd")).texts("/case-1/events", "TextLog:text");
     let session = Session::open(scenario).expect("it opens");
     let of = (session.scenario().step, session.machines().clone());
-    let watched: Watched = grown(&of, session.frames());
+    let watched: EventLog = answer_sequence(&of, session.frames());
     let mut all = gestures(&session.script().to_vec(), 0.001);
-    let grown: Gestures = grown(&0.001, session.script());
+    let grown: Gestures = answer_sequence(&0.001, session.script());
     assert!(grown.told().eq(all.iter().cloned()));
     all.extend_from_slice(watched.events());
     all.extend(bookmarked(session.bookmarks(), 0.001));
@@ -190,9 +190,9 @@ fn the_window_and_a_recording_tell_the_same() {
     }
     // Read in portions, and once more after a frame has changed, they are the same.
     let (queries, mut frames) = (Queries::default(), session.frames().clone());
-    while !queries.grow::<Watched>(&of, &frames, 7).is_whole {}
+    while !queries.grow::<EventLog>(&of, &frames, 7).is_whole {}
     frames.replace_last(frames[frames.len() - 1]);
-    let portions = queries.grow::<Watched>(&of, &frames, 1);
+    let portions = queries.grow::<EventLog>(&of, &frames, 1);
     assert!(portions.is_whole, "only the last is read again");
     let portions = portions.answer().expect("just asked");
     assert_eq!((portions.events(), portions.peak()), (watched.events(), watched.peak()));

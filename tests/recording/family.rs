@@ -5,7 +5,7 @@ use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::session::Run;
-use stillbase::session::scenario::Change;
+use stillbase::session::scenario::TaskChange;
 
 use crate::support::Noise;
 use crate::support::random::{a_chain, a_pose, a_space};
@@ -13,7 +13,7 @@ use crate::support::random::{a_chain, a_pose, a_space};
 /// A scenario of a machine with a task as it stands in a file, if it is one.
 fn scenario(machine: &Machine, task: &str) -> Scenario {
     let base = Scenario::builtin("two-drive").expect("built in");
-    let change: Change = toml::from_str(task).expect("keys and values");
+    let change: TaskChange = toml::from_str(task).expect("keys and values");
     let task = base.task.with(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
     Scenario { machine: machine.clone(), task, compare_b: None, duration: None, ..base }
 }

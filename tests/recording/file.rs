@@ -29,7 +29,7 @@ fn recording_again_gives_the_same_recording() {
     }
     assert_eq!(data(&folder.path("a.rrd")), data(&folder.path("b.rrd")));
     let mut other = short("case-2");
-    other.control.kp = stillbase::simulation::plant::Each::All(100.0);
+    other.control.kp = stillbase::simulation::plant::DriveValues::All(100.0);
     record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
     let ids = |name: &str| Contents::of(&folder.path(name)).stores.into_keys().collect::<Vec<_>>();
     assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");

@@ -26,7 +26,7 @@ use rerun::{EntityPath, StoreKind, TimelineName};
 use stillbase::files::WriteError;
 use stillbase::mechanics::planar::{Vector, unit};
 use stillbase::planning::timing::TimeLaw;
-use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::simulation::frame::Frame;
@@ -225,7 +225,7 @@ fn short(name: &str) -> Scenario {
     scenario
 }
 
-fn quietly(_: Progress) -> bool {
+fn quietly(_: RecordingProgress) -> bool {
     true
 }
 

@@ -5,8 +5,8 @@ use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posture::{Posture, Postures};
-use stillbase::session::scenario::{Scenario, Shape};
+use stillbase::planning::posture::{Posture, PostureWeights};
+use stillbase::session::scenario::{PathShape, Scenario};
 use stillbase::session::{Edit, Session, replay};
 use stillbase::simulation::frame::{Frame, Reach};
 
@@ -153,7 +153,7 @@ fn a_hand_leads_as_the_task_uses_its_freedoms() {
         let mut scenario = scenario("four-drive");
         scenario.task.posture = posture;
         // Joint lines begin at one pose, whatever the posture.
-        scenario.task.shape = Some(Shape::JointLine);
+        scenario.task.shape = Some(PathShape::JointLine);
         let mut session = open(scenario);
         let before = session.frame().q;
         session.apply(drag(at[0], at[1])).expect("it follows");
@@ -167,7 +167,7 @@ fn a_hand_leads_as_the_task_uses_its_freedoms() {
     let machine = builtin("four-drive").expect("built in");
     let inertia = Inertia::of(machine);
     let space = PoseSpace::of(machine).expect("balanced");
-    let middle = Postures::of(machine, &space);
+    let middle = PostureWeights::of(machine, &space);
     for at in [[0.57, 0.53], [0.62, 0.42], [0.45, 0.65]] {
         let others = [Posture::LeastRates, Posture::Orientation].map(|posture| led_to(posture, at));
         // What the motors turn from pose to pose is what they need for the straight way there.
@@ -209,7 +209,7 @@ fn point_of(session: &Session, link: &str, along: f64) -> Vector {
 fn a_link_is_pulled_while_the_tip_stays() {
     let mut scenario = scenario("four-drive");
     // Joint lines begin near the middle of the ranges, where there is room.
-    scenario.task.shape = Some(Shape::JointLine);
+    scenario.task.shape = Some(PathShape::JointLine);
     let mut session = open(scenario);
     let link = session.scenario().machine.links()[0].name.clone();
     let (tip, b, space) = (session.frame().end_effector, session.frame().b, space(&session));

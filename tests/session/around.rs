@@ -2,12 +2,12 @@
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtins, parse};
 use stillbase::session::scenario::TaskKind;
-use stillbase::session::{Run, around, replay};
+use stillbase::session::{Run, gentle_motion, replay};
 
 /// Every machine gets a task that it can do: within its limits, with no limit of a drive passed, and some way long.
 fn does_its_task(machine: &Machine) -> TaskKind {
     let name = machine.name();
-    let scenario = around(machine).expect("a scenario");
+    let scenario = gentle_motion(machine).expect("a scenario");
     assert_eq!((scenario.name.as_str(), &scenario.machine), (name, machine));
     let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{name}: {why}"));
     assert_eq!(run.plan().forecast.over, None, "{name}");
@@ -24,7 +24,7 @@ fn does_its_task(machine: &Machine) -> TaskKind {
         assert!(last.peaks.arm_moment < 1e-6 * last.peaks.torque.max_abs(), "{name}: {}", last.peaks.arm_moment);
     }
     // The same machine gets the same task.
-    assert_eq!(around(machine).expect("a scenario"), scenario);
+    assert_eq!(gentle_motion(machine).expect("a scenario"), scenario);
     scenario.task.kind
 }
 

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::{MAX_STEPS, MAX_TIME, Scenario};
 use stillbase::session::{Edit, Refusal, Run, Session, TimedEdit, replay, replay_if};
-use stillbase::settings::number::Short;
+use stillbase::settings::number::ShortNumber;
 
 const CASE_3: &str = include_str!("../../assets/scenarios/case-3.toml");
 
@@ -75,7 +75,7 @@ proptest! {
         let (text, line) = with(key, table, &format!("{value:e}"));
         let error = Scenario::parse(&text, "own.toml", None).expect_err("out of range").to_string();
         let named = if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") };
-        let head = format!("own.toml:{line}: {named} is {}: want ", Short(value));
+        let head = format!("own.toml:{line}: {named} is {}: want ", ShortNumber(value));
         prop_assert!(error.starts_with(&head), "{error}, not {head}");
         prop_assert!(error.len() < 200 && !error.contains("NaN"), "{error}");
     }

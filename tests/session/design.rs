@@ -2,7 +2,7 @@
 
 use stillbase::mechanics::balance::{Preset, design};
 use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::session::design::{Brief, weights_of};
+use stillbase::session::design::{DesignBrief, counterweights_edit};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
@@ -32,7 +32,7 @@ fn of(key: &str, value: f64) -> toml::Table {
 #[test]
 fn what_is_changed_stays_and_the_rest_follows() {
     let mut noise = Noise::of(81);
-    let brief = Brief { keep_balanced: true, ..Brief::default() };
+    let brief = DesignBrief { keep_balanced: true, ..DesignBrief::default() };
     let (mut kept, mut refused) = (0, 0);
     for _ in 0..60 {
         let n = 2 + (noise.between(0.0, 3.0) as usize);
@@ -67,7 +67,7 @@ fn what_is_changed_stays_and_the_rest_follows() {
 #[test]
 fn what_follows_does_not_depend_on_the_way() {
     let start = stillbase::mechanics::machine::builtin("nine-link").expect("built in");
-    let brief = Brief { keep_balanced: true, ..Brief::default() };
+    let brief = DesignBrief { keep_balanced: true, ..DesignBrief::default() };
     let step = |machine: &Machine, com: f64| {
         changed(machine, &brief.edit(machine, start, &of("link.1.com", com)).expect("it is kept"))
     };
@@ -77,7 +77,7 @@ fn what_follows_does_not_depend_on_the_way() {
         assert!((a.com - b.com).abs() < 1e-12, "link {}: {} and {}", a.name, a.com, b.com);
     }
     // Where other links are dear, others move: balanced all the same.
-    let dear = Brief { penalties: Preset::Table1, ..brief.clone() };
+    let dear = DesignBrief { penalties: Preset::Table1, ..brief.clone() };
     let other = changed(start, &dear.edit(start, start, &of("link.1.com", -0.24)).expect("it is kept"));
     assert!(
         is_balanced(&other) && straight.links().iter().zip(other.links()).any(|(a, b)| (a.com - b.com).abs() > 1e-4)
@@ -88,12 +88,12 @@ fn what_follows_does_not_depend_on_the_way() {
 #[test]
 fn counterweights_are_edits_like_all_others() {
     let bare = family_machine("nine-link-bare");
-    let brief = Brief { behind_root: Some(0.3), ..Brief::default() };
+    let brief = DesignBrief { behind_root: Some(0.3), ..DesignBrief::default() };
     let front = brief.front(&bare, 5).expect("it can be balanced");
     let case = Scenario::builtin("case-1").expect("built in");
     let mut session = Session::open(Scenario { machine: bare.clone(), ..case }).expect("it opens");
     for placed in [&front.points[0], &front.points[2]] {
-        session.apply(weights_of(session.scenario(), &placed.machine)).expect("they are taken");
+        session.apply(counterweights_edit(session.scenario(), &placed.machine)).expect("they are taken");
         session.end_gesture();
         assert_eq!(session.scenario().machine.spec().counterweights, placed.machine.spec().counterweights);
     }
@@ -118,7 +118,7 @@ fn counterweights_are_edits_like_all_others() {
 #[test]
 fn what_follows_stays_at_its_link() {
     let bare = stillbase::mechanics::machine::builtin("space-arm").expect("built in");
-    let brief = Brief { keep_balanced: true, ..Brief::default() };
+    let brief = DesignBrief { keep_balanced: true, ..DesignBrief::default() };
     let start = brief.front(bare, 3).expect("it can be balanced").points[0].machine.clone();
     let (mut machine, mut kept) = (start.clone(), 0);
     for step in 0..40 {

@@ -1,7 +1,7 @@
 //! What happens in a run, in words.
 
-use stillbase::query::{Queries, grown};
-use stillbase::session::events::{Event, Kind, Watched, gestures};
+use stillbase::query::{Queries, answer_sequence};
+use stillbase::session::events::{Event, EventKind, EventLog, gestures};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Run, Session, TimedEdit, replay};
 use stillbase::simulation::frame::Frame;
@@ -9,8 +9,8 @@ use stillbase::simulation::frame::Frame;
 use super::{coarse, do_it, drag, open, settle, slide};
 
 /// What its frames tell, read afresh.
-fn afresh(session: &Session) -> Watched {
-    grown(&(session.scenario().step, session.machines().clone()), session.frames())
+fn afresh(session: &Session) -> EventLog {
+    answer_sequence(&(session.scenario().step, session.machines().clone()), session.frames())
 }
 
 fn watched(session: &Session) -> Vec<Event> {
@@ -58,9 +58,9 @@ fn payload_limits_and_reach_are_told() {
     settle(&mut session);
     let events = watched(&session);
     for (words, kind) in [
-        ("the payload is picked up", Kind::Note),
-        ("the payload is let go", Kind::Note),
-        ("the target is outside the reactionless workspace: no b reaches it", Kind::Beyond),
+        ("the payload is picked up", EventKind::Note),
+        ("the payload is let go", EventKind::Note),
+        ("the target is outside the reactionless workspace: no b reaches it", EventKind::Beyond),
     ] {
         let event = events.iter().find(|event| event.words == words);
         assert_eq!(event.map(|event| event.kind), Some(kind), "{words} in {events:?}");
@@ -75,7 +75,7 @@ fn payload_limits_and_reach_are_told() {
     let at_limit: Vec<Event> =
         watched(&session).into_iter().filter(|event| event.words.contains("torque limit")).collect();
     assert!(!at_limit.is_empty() && at_limit.len() < 4, "{at_limit:?}");
-    assert!(at_limit.iter().all(|event| event.kind == Kind::Warning));
+    assert!(at_limit.iter().all(|event| event.kind == EventKind::Warning));
 }
 
 /// While a hand drags, only the newest frame is read again; after any change the events are those of the frames.
@@ -123,7 +123,7 @@ fn limits_are_those_of_the_time() {
     session.tick(40);
     let found = limits(&session);
     assert!(!found.is_empty() && found.iter().all(|event| event.step >= set), "{found:?}");
-    let mut seen = grown::<Watched>(&Default::default(), &Default::default());
+    let mut seen = answer_sequence::<EventLog>(&Default::default(), &Default::default());
     let see = |run: &Run, frame: &Frame| seen.see(frame, (run.scenario().step, &run.scenario().machine));
     replay(&session.to_scenario(), see).expect("it runs again");
     assert_eq!(seen.events(), watched(&session));

@@ -226,7 +226,7 @@ fn tolerances_change_no_frame() {
     let tolerance = &session.scenario().tolerance;
     assert_eq!((tolerance.moment_limit, tolerance.spreads.len()), (Some(0.02), 1));
     let saved = Scenario::parse(&session.to_scenario().to_toml(), "saved", None).expect("valid");
-    assert_eq!(stillbase::session::settled(&saved).expect("set").0.tolerance, *tolerance);
+    assert_eq!(stillbase::session::with_start_edits(&saved).expect("set").0.tolerance, *tolerance);
     let wrong = Edit::of("tolerance", toml::Table::from_iter([("link.*.com".into(), "much".into())]));
     assert!(session.apply(wrong).is_err());
     session.undo().expect("taken back");
@@ -238,7 +238,7 @@ fn tolerances_change_no_frame() {
 /// Friction that no part of a step can follow.
 fn blows_up(name: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
-    scenario.plant.friction.viscous = stillbase::simulation::plant::Each::All(1e4);
+    scenario.plant.friction.viscous = stillbase::simulation::plant::DriveValues::All(1e4);
     scenario.step = 0.01;
     scenario
 }
@@ -257,7 +257,7 @@ fn a_session_that_blew_up_opens_again() {
         let mut session = open(Scenario { step: 0.01, ..Scenario::builtin(name).expect("built in") });
         session.play();
         session.tick(20);
-        let change = stillbase::settings::change::one("friction.viscous", 1e4);
+        let change = stillbase::settings::change::single_change("friction.viscous", 1e4);
         session.apply(Edit::of("plant", change)).expect("within its range");
         session.end_gesture();
         session.tick(300);

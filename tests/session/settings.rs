@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 use stillbase::session::scenario::{Scenario, key_of, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
-use stillbase::settings::change::{self, DEFAULT};
-use stillbase::settings::key::{BOUNDS, Effect, Holds, Key};
+use stillbase::settings::change::{self, DEFAULT_WORD};
+use stillbase::settings::key::{Effect, HOLD_WORDS, Key, KeyType};
 use toml::{Table, Value};
 
 fn case_3() -> Scenario {
@@ -29,7 +29,7 @@ fn every_key_of_a_file_is_in_the_table() {
     for path in
         ["task", "control", "plant", "base", "base.wheel", "plant.payload", "plant.friction", "plant.link.5", "design"]
     {
-        let change = change::one(&format!("{path}.nonsense"), 1);
+        let change = change::single_change(&format!("{path}.nonsense"), 1);
         let message = case_3().with(&change).expect_err("there is no such key").to_string();
         let mut known = expected(&message);
         known.retain(|key| key != "nonsense");
@@ -58,10 +58,10 @@ fn every_key_of_a_file_is_in_the_table() {
 #[test]
 fn every_word_of_a_choice_is_in_the_table() {
     for key in keys() {
-        let Holds::Choice(words) = key.holds else { continue };
+        let KeyType::Choice(words) = key.holds else { continue };
         // Files are read by types that do not know the table.
         let file: Table = case_3().to_toml().parse().expect("TOML");
-        let file = change::join(file, &change::one(key.path, "nonsense")).to_string();
+        let file = change::join(file, &change::single_change(key.path, "nonsense")).to_string();
         let message = Scenario::parse(&file, "a.toml", None).expect_err("no such word").to_string();
         let mut known: BTreeSet<String> = expected(&message);
         // What files of earlier versions call the minimum norm.
@@ -77,12 +77,12 @@ fn every_default_is_as_it_is_said() {
     let scenario = scenario.expect("a wheel and a payload");
     for (path, key, _) in scenario.settings() {
         let parts: Vec<&str> = path.split('.').collect();
-        let without = scenario.with(&change::at(&parts, DEFAULT));
+        let without = scenario.with(&change::at(&parts, DEFAULT_WORD));
         match key.default {
             Key::REQUIRED => assert!(without.is_err(), "{path} can be left out"),
             Key::NONE => {
                 let without = without.expect("it may be left out");
-                assert_eq!(without.value(&path), Some(DEFAULT.into()), "{path}");
+                assert_eq!(without.value(&path), Some(DEFAULT_WORD.into()), "{path}");
             }
             default => {
                 let without = without.expect("it may be left out");
@@ -107,11 +107,11 @@ fn every_range_is_as_it_is_said() {
                 continue;
             }
             let value = match key.holds {
-                Holds::List(count, _) => vec![outside; count].into(),
-                Holds::Bounds(_) => vec![outside; 2].into(),
-                Holds::Points(_) => Value::Array(vec![vec![outside, 0.0].into()]),
-                Holds::Whole(_) if outside > range.high() => Value::Integer(outside.ceil() as i64),
-                Holds::Whole(_) => Value::Integer(outside.floor() as i64),
+                KeyType::List(count, _) => vec![outside; count].into(),
+                KeyType::Bounds(_) => vec![outside; 2].into(),
+                KeyType::Points(_) => Value::Array(vec![vec![outside, 0.0].into()]),
+                KeyType::Whole(_) if outside > range.high() => Value::Integer(outside.ceil() as i64),
+                KeyType::Whole(_) => Value::Integer(outside.floor() as i64),
                 _ => outside.into(),
             };
             let parts: Vec<&str> = path.split('.').collect();
@@ -176,7 +176,7 @@ fn older_sessions_still_open() {
     }
     let hidden = "step = 0\ndo = \"compare-b\"".parse::<Table>().expect("TOML");
     let hidden = TimedEdit::from_table(hidden).expect("an edit").edit;
-    assert_eq!(hidden, Edit::set("compare_b", DEFAULT));
+    assert_eq!(hidden, Edit::set("compare_b", DEFAULT_WORD));
     for (entry, words) in [
         ("do = \"set-plant\"", "missing field `change`"),
         ("do = \"set-plant\"\nchange = 3", "want a table"),
@@ -238,21 +238,21 @@ fn what_changes_no_frame_says_so() {
 }
 
 fn any_change() -> impl Strategy<Value = (String, Value)> {
-    let all: Vec<(String, Holds)> = case_3().settings().into_iter().map(|(path, key, _)| (path, key.holds)).collect();
+    let all: Vec<(String, KeyType)> = case_3().settings().into_iter().map(|(path, key, _)| (path, key.holds)).collect();
     (prop::sample::select(all), 0.0..1.0_f64, any::<bool>()).prop_map(|((path, holds), u, back)| {
         let within = |low: f64, high: f64| -> f64 { low.max(-5.0) + u * (high.min(5.0) - low.max(-5.0)) };
         let value = match holds {
-            _ if back => DEFAULT.into(),
-            Holds::Number(range) | Holds::PerDrive(range) => within(range.low(), range.high()).into(),
-            Holds::Whole(range) => Value::Integer(within(range.low(), range.high()).round() as i64),
-            Holds::List(count, range) => vec![within(range.low(), range.high()); count].into(),
-            Holds::Points(_) => Value::Array(vec![vec![0.5, 0.4 + 0.1 * u].into()]),
-            Holds::Choice(words) => words[(u * words.len() as f64) as usize % words.len()].into(),
-            Holds::Switch => (u > 0.5).into(),
-            Holds::Bounds(_) if u > 0.5 => BOUNDS[(u * 8.0) as usize % 2].into(),
-            Holds::Bounds(range) => vec![within(range.low(), range.high()); 2].into(),
-            Holds::Spread(_) => format!("normal:{}", 0.01 * u).into(),
-            Holds::Rows => DEFAULT.into(),
+            _ if back => DEFAULT_WORD.into(),
+            KeyType::Number(range) | KeyType::PerDrive(range) => within(range.low(), range.high()).into(),
+            KeyType::Whole(range) => Value::Integer(within(range.low(), range.high()).round() as i64),
+            KeyType::List(count, range) => vec![within(range.low(), range.high()); count].into(),
+            KeyType::Points(_) => Value::Array(vec![vec![0.5, 0.4 + 0.1 * u].into()]),
+            KeyType::Choice(words) => words[(u * words.len() as f64) as usize % words.len()].into(),
+            KeyType::Switch => (u > 0.5).into(),
+            KeyType::Bounds(_) if u > 0.5 => HOLD_WORDS[(u * 8.0) as usize % 2].into(),
+            KeyType::Bounds(range) => vec![within(range.low(), range.high()); 2].into(),
+            KeyType::Spread(_) => format!("normal:{}", 0.01 * u).into(),
+            KeyType::Rows => DEFAULT_WORD.into(),
         };
         (path, value)
     })

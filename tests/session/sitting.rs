@@ -9,7 +9,7 @@ use stillbase::mechanics::planar::PerDrive;
 use stillbase::session::scenario::{Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::key::Key;
-use stillbase::simulation::plant::{BaseKind, Each, Friction, Wheel};
+use stillbase::simulation::plant::{BaseKind, DriveValues, Friction, Wheel};
 
 use super::{coarse, drag, gains, one_path, open, set, slide, state};
 
@@ -191,8 +191,8 @@ fn any_start() -> impl Strategy<Value = Scenario> {
         }
         if rubs {
             scenario.plant.friction = Friction {
-                viscous: Each::All(0.05),
-                coulomb: Each::Own(PerDrive::from_fn(3, |k| 0.1 + 0.1 * k as f64)),
+                viscous: DriveValues::All(0.05),
+                coulomb: DriveValues::Own(PerDrive::from_fn(3, |k| 0.1 + 0.1 * k as f64)),
                 pin_viscous: 0.01,
                 pin_coulomb: 0.005,
             };
@@ -375,17 +375,17 @@ impl Unseen {
 #[test]
 fn what_any_window_shows_is_what_one_made_afresh_shows() {
     use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange};
-    use stillbase::picture::charts::choice::Change;
+    use stillbase::picture::charts::choice::PlotChange;
     use stillbase::picture::scene::palette::Theme;
     use stillbase::picture::scene::views::ViewKind;
 
     let mut runner = TestRunner::deterministic();
     let charts = [
-        Change::Statistics(true),
-        Change::Plot("transmission/12".into()),
-        Change::Range(Some([0.05, 0.2])),
-        Change::Range(None),
-        Change::Against("Torque".into(), Some("tip/x".into())),
+        PlotChange::Statistics(true),
+        PlotChange::Plot("transmission/12".into()),
+        PlotChange::Range(Some([0.05, 0.2])),
+        PlotChange::Range(None),
+        PlotChange::Against("Torque".into(), Some("tip/x".into())),
     ];
     let others = [
         Command::Session(SessionCommand::Undo),
@@ -511,7 +511,7 @@ fn no_store_of_answers_outlives_its_window() {
         let folder = crate::folder::Folder::new(&format!("stores-{name}"));
         let brief = Scenario { duration: Some(0.05), ..scenario };
         let mut most = 0;
-        let mut told = |_: stillbase::recording::Progress<'_>| {
+        let mut told = |_: stillbase::recording::RecordingProgress<'_>| {
             most = most.max(Queries::stores());
             true
         };

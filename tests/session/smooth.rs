@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::query::grown;
+use stillbase::query::answer_sequence;
 use stillbase::session::Edit;
-use stillbase::session::events::{Kind, Watched};
+use stillbase::session::events::{EventKind, EventLog};
 use stillbase::session::scenario::Scenario;
 
 use super::{drag, open, slide};
@@ -162,7 +162,7 @@ fn limits_that_cannot_be_foreseen_are_told() {
     let machine = case.machine.set_all(pairs).expect("an arm that little balances");
     let mut session = open(Scenario { machine, ..case });
     let limits: Vec<f64> = session.scenario().machine.spec().drives.iter().filter_map(|d| d.torque_limit).collect();
-    let (mut most, mut watched) = (0.0_f64, grown::<Watched>(&Default::default(), &Default::default()));
+    let (mut most, mut watched) = (0.0_f64, answer_sequence::<EventLog>(&Default::default(), &Default::default()));
     for [x, y] in [[-0.4, 0.6], [0.7, 0.5], [-0.6, 0.3], [0.2, 0.9], [0.9, 0.2]] {
         session.apply(drag(x, y)).expect("it can be led");
         for _ in 0..700 {
@@ -173,6 +173,7 @@ fn limits_that_cannot_be_foreseen_are_told() {
         }
     }
     assert!(most > 1.0, "this test wants a limit that is passed, by {most}");
-    let told = watched.events().iter().any(|event| event.kind == Kind::Warning && event.words.contains("torque limit"));
+    let told =
+        watched.events().iter().any(|event| event.kind == EventKind::Warning && event.words.contains("torque limit"));
     assert!(told, "{:?}", watched.events());
 }

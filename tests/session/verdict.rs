@@ -2,20 +2,20 @@
 
 use proptest::prelude::*;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::verdict::{Lamp, PAST, Statements, Verdict};
+use stillbase::session::verdict::{LIMIT_TOLERANCE, Statements, StatusLight, Verdict};
 use stillbase::session::{Edit, Session, TimedEdit, replay};
 use stillbase::settings::change;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{BaseKind, Each, Wheel};
+use stillbase::simulation::plant::{BaseKind, DriveValues, Wheel};
 
 fn case(name: &str, machine: &[(&str, &str)], settings: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
     let table: toml::Table = settings.parse().expect("TOML");
     let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
     scenario.machine = scenario.machine.set_all(machine.iter().copied()).expect("valid");
-    scenario.plant = change::with(&scenario.plant, &part("plant")).expect("a plant");
-    scenario.control = change::with(&scenario.control, &part("control")).expect("control");
-    scenario.base = change::with(&scenario.base, &part("base")).expect("a base");
+    scenario.plant = change::with_changes(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = change::with_changes(&scenario.control, &part("control")).expect("control");
+    scenario.base = change::with_changes(&scenario.base, &part("base")).expect("a base");
     scenario
 }
 
@@ -122,7 +122,7 @@ fn a_joint_limit_that_is_passed_is_named() {
     assert_eq!(verdict.past_limit, Some((worst.into(), by)));
     assert!(verdict.answer().contains("past a joint limit") && verdict.sentence().contains(worst));
     // What rounding passes by is none.
-    assert!(run(&case("case-1", &[], "")).0.past_limit.is_none_or(|(_, by)| by > PAST));
+    assert!(run(&case("case-1", &[], "")).0.past_limit.is_none_or(|(_, by)| by > LIMIT_TOLERANCE));
 }
 
 /// An audit that fails leaves no answer, whatever the peaks say.
@@ -166,7 +166,7 @@ proptest! {
             scenario.plant.payload.mass = payload;
             // PD knows no weight: it is the same controller in both.
             scenario.control.law = if knows { stillbase::simulation::control::ControlLaw::ComputedTorque } else { stillbase::simulation::control::ControlLaw::Pd };
-            scenario.control.kp = Each::All(400.0);
+            scenario.control.kp = DriveValues::All(400.0);
             scenario.duration = Some(0.4);
             run(&scenario)
         };
@@ -189,7 +189,7 @@ fn statements(scenario: &Scenario) -> [Statements; 2] {
     [Statements::of(&run, &frames[0]), Statements::of(&run, &run.frame())]
 }
 
-fn lamps(of: &Statements) -> [Lamp; 3] {
+fn lamps(of: &Statements) -> [StatusLight; 3] {
     of.named().map(|(_, statement)| statement.lamp)
 }
 
@@ -197,7 +197,7 @@ fn lamps(of: &Statements) -> [Lamp; 3] {
 /// machine's fault.
 #[test]
 fn machine_plan_and_run_are_told_apart() {
-    use Lamp::{Bad, Good, Open};
+    use StatusLight::{Bad, Good, Open};
     let [before, after] = statements(&case("case-3", &[], ""));
     assert_eq!(before.line(), "machine: balanced · plan: holds b · run: none yet");
     assert_eq!(lamps(&before), [Good, Good, Open]);
@@ -239,18 +239,25 @@ fn plans_that_wait_and_hands_that_lead() {
     waits.task.b = 3.6;
     let session = Session::open_waiting(waits).expect("it waits");
     let of = Statements::of(session.run(), session.frame());
-    assert_eq!([of.plan.lamp, of.run.lamp], [Lamp::Open; 2], "{of:?}");
+    assert_eq!([of.plan.lamp, of.run.lamp], [StatusLight::Open; 2], "{of:?}");
     let mut session = Session::open(case("case-3", &[], "")).expect("begins");
     session.apply(Edit::DragTarget { x: 0.52, y: 0.6 }).expect("inside");
     session.play();
     session.tick(300);
     let of = |session: &Session| Statements::of(session.run(), session.frames().last().expect("one"));
-    assert_eq!((lamps(&of(&session)), of(&session).plan.words.as_str()), ([Lamp::Good; 3], "led by hand, holds b"));
+    assert_eq!(
+        (lamps(&of(&session)), of(&session).plan.words.as_str()),
+        ([StatusLight::Good; 3], "led by hand, holds b")
+    );
     session.apply(Edit::SlideB { b: 2.6 }).expect("b");
     session.tick(20);
-    assert_eq!(of(&session).plan.lamp, Lamp::Bad, "{:?}", of(&session).plan);
+    assert_eq!(of(&session).plan.lamp, StatusLight::Bad, "{:?}", of(&session).plan);
     session.tick(20_000);
-    assert_eq!(lamps(&of(&session)), [Lamp::Good, Lamp::Good, Lamp::Bad], "it holds the new b, and has transmitted");
+    assert_eq!(
+        lamps(&of(&session)),
+        [StatusLight::Good, StatusLight::Good, StatusLight::Bad],
+        "it holds the new b, and has transmitted"
+    );
 }
 
 proptest! {
@@ -275,9 +282,9 @@ proptest! {
         let most = |of: &dyn Fn(&Frame) -> f64| frames.iter().map(of).fold(0.0, f64::max);
         let [moment, force] = [most(&|f| f.base_moment().abs()), most(&|f| f.wrench.dynamic.force.norm())];
         let torque = most(&|f| f.torque.iter().map(|t| t.abs()).sum());
-        prop_assert_eq!(of.machine.lamp == Lamp::Good, off == 0.0);
-        prop_assert_eq!(of.plan.lamp == Lamp::Good, off == 0.0 && name == "case-3");
-        prop_assert_eq!(of.run.lamp == Lamp::Good, moment < 1e-5 * torque && force < 1e-6);
-        prop_assert_eq!(of.run.lamp == Lamp::Good, off == 0.0 && name == "case-3" && payload == 0.0);
+        prop_assert_eq!(of.machine.lamp == StatusLight::Good, off == 0.0);
+        prop_assert_eq!(of.plan.lamp == StatusLight::Good, off == 0.0 && name == "case-3");
+        prop_assert_eq!(of.run.lamp == StatusLight::Good, moment < 1e-5 * torque && force < 1e-6);
+        prop_assert_eq!(of.run.lamp == StatusLight::Good, off == 0.0 && name == "case-3" && payload == 0.0);
     }
 }

@@ -2,8 +2,8 @@
 
 use stillbase::mechanics::machine::{KEYS, MachineError, builtin};
 use stillbase::session::scenario::Scenario;
-use stillbase::settings::change::{DEFAULT, typed};
-use stillbase::settings::key::{Holds, Key, in_words};
+use stillbase::settings::change::{DEFAULT_WORD, typed};
+use stillbase::settings::key::{Key, KeyType, in_words};
 
 #[test]
 fn keys_of_one_thing_stand_together() {
@@ -30,10 +30,10 @@ fn what_a_key_holds_sets_it() {
             Err(why) => assert!(matches!(why, MachineError::SharedLength { .. }), "{path}: {why}"),
         }
         // What has no default has to be given.
-        let freed = with.set(&path, DEFAULT);
+        let freed = with.set(&path, DEFAULT_WORD);
         let is_required = key.default == Key::REQUIRED;
         assert_eq!(freed.is_err(), is_required, "{path}: {freed:?}");
-        let Holds::Number(range) = key.holds else { continue };
+        let KeyType::Number(range) = key.holds else { continue };
         if !is_required && key.default != Key::NONE {
             let usual: f64 = key.default.parse().expect("a number");
             assert!(range.contains(usual), "{path}");

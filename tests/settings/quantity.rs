@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use stillbase::settings::quantity::{Misread, read};
+use stillbase::settings::quantity::{QuantityError, read};
 
 #[test]
 fn numbers_are_read_with_units_and_arithmetic() {
@@ -71,7 +71,7 @@ fn what_is_no_number_is_named() {
         let why = read(text, unit).expect_err(text).to_string();
         assert!(why.contains(words), "{text}: {why}");
     }
-    assert_eq!(read(&"(".repeat(10_000), "m").expect_err("too deep"), Misread::Unknown("(((".into()));
+    assert_eq!(read(&"(".repeat(10_000), "m").expect_err("too deep"), QuantityError::Unknown("(((".into()));
     assert!(read(&"-".repeat(100_000), "m").is_err());
 }
 

@@ -5,7 +5,7 @@ use stillbase::mechanics::balance::Preset;
 use stillbase::mechanics::counterweights::Disc;
 use stillbase::planning::posture::Posture;
 use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{Brief, Corners, Least, Shape, Task, TaskKind};
+use stillbase::session::scenario::{Corners, DesignBrief, PathShape, ReactionObjective, Task, TaskKind};
 use stillbase::settings::key::Key;
 use stillbase::settings::word::Choice;
 use stillbase::simulation::control::{Control, ControlLaw};
@@ -27,9 +27,9 @@ fn words_are_those_of_files<T: Choice + std::fmt::Debug + Serialize + serde::de:
 #[test]
 fn files_have_the_words_of_the_rows() {
     words_are_those_of_files::<TaskKind>();
-    words_are_those_of_files::<Shape>();
+    words_are_those_of_files::<PathShape>();
     words_are_those_of_files::<Corners>();
-    words_are_those_of_files::<Least>();
+    words_are_those_of_files::<ReactionObjective>();
     words_are_those_of_files::<Posture>();
     words_are_those_of_files::<TimeLaw>();
     words_are_those_of_files::<ControlLaw>();
@@ -61,8 +61,8 @@ fn parts_are_written_as_their_rows_say() {
     states_little::<Friction>(Friction::KEYS, &[]);
     states_little::<PlantDifferences>(PlantDifferences::KEYS, &[]);
     states_little::<LinkDifference>(LinkDifference::KEYS, &[]);
-    states_little::<Brief>(Brief::KEYS, &[]);
-    assert_eq!(Brief::default().disc(), Disc::STEEL);
+    states_little::<DesignBrief>(DesignBrief::KEYS, &[]);
+    assert_eq!(DesignBrief::default().disc(), Disc::STEEL);
     assert_eq!(Wheel::default().inertia, 0.02);
     assert_eq!(Base::default().stiffness, [2e4, 2e4, 2e3]);
 }

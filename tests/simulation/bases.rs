@@ -175,8 +175,8 @@ fn momentum_is_kept_for_an_hour() {
     let model = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.1").expect("valid");
     let base = Base { com: [0.15, -0.1], ..free() };
     let zero = Control {
-        kp: stillbase::simulation::plant::Each::All(0.0),
-        kd: stillbase::simulation::plant::Each::All(0.0),
+        kp: stillbase::simulation::plant::DriveValues::All(0.0),
+        kd: stillbase::simulation::plant::DriveValues::All(0.0),
         ..Control::default()
     };
     let control = Control { law: stillbase::simulation::control::ControlLaw::Pd, ..zero };

@@ -7,10 +7,10 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Path;
 use stillbase::planning::timing::Profile;
-use stillbase::planning::timing::profile::Span;
+use stillbase::planning::timing::profile::JerkPhase;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::simulation::plant::{Base, BaseKind, Contacts, Each, Friction, MovingBody, PlantDifferences};
+use stillbase::simulation::plant::{Base, BaseKind, Contacts, DriveValues, Friction, MovingBody, PlantDifferences};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 /// Numbers that are the same in every run.
@@ -245,12 +245,12 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     let way = [0, 1, 2].map(|_| dice.within(0.1, 1.0) * if dice.unit() < 0.5 { 1.0 } else { -1.0 });
     // A push, then there and back with pieces of a few milliseconds.
     let top = dice.within(5.0, 200.0);
-    let mut spans = vec![Span { time: dice.within(0.005, 0.008), acceleration: top, jerk: 0.0 }];
+    let mut spans = vec![JerkPhase { time: dice.within(0.005, 0.008), acceleration: top, jerk: 0.0 }];
     while spans.iter().map(|s| s.time).sum::<f64>() < STEP * STEPS as f64 + 0.005 {
         let (time, peak) = (dice.within(0.0008, 0.003), top * dice.within(0.3, 1.0));
         for sign in [-1.0, 1.0] {
             let (from, to) = (sign * peak * dice.within(0.8, 1.2), sign * peak * dice.within(0.8, 1.2));
-            spans.push(Span { time, acceleration: from, jerk: (to - from) / time });
+            spans.push(JerkPhase { time, acceleration: from, jerk: (to - from) / time });
         }
     }
     let motion = {
@@ -260,7 +260,7 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     };
     let most = |k: usize| d[k] * (way[k] * top).abs();
     let coulomb = [0, 1, 2].map(|k| most(k) * dice.within(0.1, 0.9));
-    let friction = Friction { coulomb: Each::Own(PerDrive::from(coulomb)), ..Friction::default() };
+    let friction = Friction { coulomb: DriveValues::Own(PerDrive::from(coulomb)), ..Friction::default() };
     let contacts = Contacts::of(&machine, &friction, free.then_some(3));
     let n = if free { 4 } else { 3 };
     let mut inertia = d.to_vec();
@@ -349,7 +349,7 @@ fn many_contacts_are_those_of_the_exact_twin() {
 
 fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
     let mut scenario = Scenario::builtin("circle").expect("built in");
-    scenario.plant.friction.coulomb = Each::All(coulomb);
+    scenario.plant.friction.coulomb = DriveValues::All(coulomb);
     scenario.step = step;
     if quick {
         scenario.task = scenario
@@ -390,7 +390,7 @@ fn fast_reversals_do_not_freeze() {
 #[test]
 fn what_sticking_takes_is_an_error() {
     let machine = builtin("nine-link").expect("built in");
-    let friction = Friction { coulomb: Each::All(1.0), ..Friction::default() };
+    let friction = Friction { coulomb: DriveValues::All(1.0), ..Friction::default() };
     for kind in [BaseKind::Fixed, BaseKind::Free] {
         let (q, base) = (DriveAngles::from([1.7, 3.7, 2.2]), Base { kind, ..Base::default() });
         let body = MovingBody::of(machine, &friction, &base, &q).expect("valid");

@@ -227,7 +227,7 @@ fn quintic_law() {
     let law = TimeLaw::Quintic;
     let grid = || (0..=10_000).map(|i| law.at(f64::from(i) * 3e-4, 3.0));
     let peak =
-        |f: fn(&stillbase::planning::timing::law::Progress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
+        |f: fn(&stillbase::planning::timing::law::PathProgress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
     assert!((peak(|p| p.acceleration) * 9.0 - 10.0 / 3f64.sqrt()).abs() < 1e-6);
     assert!((peak(|p| p.rate) * 3.0 - 1.875).abs() < 1e-9);
     assert!(grid().zip(grid().skip(1)).all(|(a, b)| a.s <= b.s));

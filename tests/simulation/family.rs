@@ -9,7 +9,7 @@ use stillbase::planning::off_plane::price::{FloatingBase, Price};
 use stillbase::planning::timing::TimeLaw;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{Base, BaseKind, Each, Friction, PlantDifferences};
+use stillbase::simulation::plant::{Base, BaseKind, DriveValues, Friction, PlantDifferences};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::random::{a_chain, a_machine};
@@ -47,7 +47,8 @@ fn energy_and_momentum_are_kept() {
             continue;
         }
         let base = Base { kind, com: [0.1, -0.05], ..Base::default() };
-        let friction = Friction { viscous: Each::All(0.05), coulomb: Each::All(0.02), ..Friction::default() };
+        let friction =
+            Friction { viscous: DriveValues::All(0.05), coulomb: DriveValues::All(0.02), ..Friction::default() };
         let friction = if seed % 2 == 0 { friction } else { Friction::default() };
         let plant = PlantDifferences { friction, ..PlantDifferences::default() };
         let end = run(&machine, &plant, &base, &Control::default(), way(&mut noise, n, 0.3));

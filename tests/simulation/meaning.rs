@@ -10,7 +10,7 @@ use stillbase::mechanics::planar::PerDrive;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::Each;
+use stillbase::simulation::plant::DriveValues;
 use stillbase::simulation::signals::signals;
 
 use crate::mechanics::nine_body::NineBody;
@@ -53,7 +53,7 @@ fn runs() -> [Told; 5] {
     let heavy = told("case-1", |scenario| {
         scenario.plant.payload.mass = 0.1;
         scenario.plant.payload.axial = 0.03;
-        scenario.plant.friction.viscous = Each::Own(PerDrive::from_fn(3, |k| 0.1 * (k + 1) as f64));
+        scenario.plant.friction.viscous = DriveValues::Own(PerDrive::from_fn(3, |k| 0.1 * (k + 1) as f64));
         let settings = [("gravity", "1,-9.81"), ("link.5.axial", "0.02")];
         scenario.machine = scenario.machine.set_all(settings).expect("valid");
     });

@@ -7,7 +7,7 @@ use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::settings::change;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{BaseKind, Contacts, Each, Friction};
+use stillbase::simulation::plant::{BaseKind, Contacts, DriveValues, Friction};
 
 use crate::support::{body_of, close, three};
 
@@ -15,9 +15,9 @@ fn case(name: &str, settings: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
     let table: toml::Table = settings.parse().expect("TOML");
     let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
-    scenario.plant = change::with(&scenario.plant, &part("plant")).expect("a plant");
-    scenario.control = change::with(&scenario.control, &part("control")).expect("control");
-    scenario.base = change::with(&scenario.base, &part("base")).expect("a base");
+    scenario.plant = change::with_changes(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = change::with_changes(&scenario.control, &part("control")).expect("control");
+    scenario.base = change::with_changes(&scenario.base, &part("base")).expect("a base");
     if let Some(step) = table.get("step").and_then(|v| v.as_float()) {
         scenario.step = step;
     }
@@ -260,7 +260,7 @@ fn check_sampled(given: Sampled) {
     scenario.base.kind = base;
     scenario.control = Control {
         knows_base: false,
-        kp: Each::All(kp),
+        kp: DriveValues::All(kp),
         rate: 1.0 / (period as f64 * scenario.step),
         delay: delay as f64 * scenario.step,
         encoder,
@@ -416,7 +416,7 @@ proptest! {
     ) {
         let machine = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.2").expect("valid");
         let friction = Friction {
-            coulomb: stillbase::simulation::plant::Each::Own(coulomb.into()), pin_coulomb: pin, ..Friction::default()
+            coulomb: stillbase::simulation::plant::DriveValues::Own(coulomb.into()), pin_coulomb: pin, ..Friction::default()
         };
         let contacts = Contacts::of(&machine, &friction, None);
         let inertia = stillbase::mechanics::machine::Inertia::of(&machine);

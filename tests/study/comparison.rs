@@ -5,15 +5,18 @@ use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
 
-use stillbase::query::{Shared, answered};
-use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, Rows, SLOWER, Ways, alternatives};
+use stillbase::query::{Shared, answer_now};
+use stillbase::study::comparison::{
+    Alternative, AlternativeRuns, ComparedRun, ComparisonTable, SLOW_FACTOR, SUMMARY_COLUMNS, SignalDifference,
+    alternatives,
+};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
 }
 
-fn run(way: Alternative, of: &str) -> Compared {
-    Compared::of(way.of(&scenario(of))).expect("it runs")
+fn run(way: Alternative, of: &str) -> ComparedRun {
+    ComparedRun::of(way.of(&scenario(of))).expect("it runs")
 }
 
 /// The ways of case 3 are the paper's three cases, a wheel and patience.
@@ -31,11 +34,11 @@ fn the_ways_of_case_3_are_the_cases() {
         ]
     );
     for (way, case) in [(Alternative::Reactionless, "case-3"), (Alternative::StraightLine, "case-1")] {
-        let (got, want) = (run(way, "case-3").summary, Compared::of(scenario(case)).expect("it runs").summary);
+        let (got, want) = (run(way, "case-3").summary, ComparedRun::of(scenario(case)).expect("it runs").summary);
         assert_eq!((got.peak_moment, got.energy, got.peak_torque), (want.peak_moment, want.energy, want.peak_torque));
     }
     let (other, case_2) = (run(Alternative::OtherPose, "case-3").summary, scenario("case-2"));
-    let case_2 = Compared::of(case_2).expect("it runs").summary;
+    let case_2 = ComparedRun::of(case_2).expect("it runs").summary;
     assert!(
         (other.peak_moment / case_2.peak_moment - 1.0).abs() < 1e-3,
         "{} {}",
@@ -51,14 +54,14 @@ fn patience_divides_by_the_square_and_not_the_turn() {
     free.base.kind = stillbase::simulation::plant::BaseKind::Free;
     let (quick, slow) = (run_of(&free, Alternative::StraightLine), run_of(&free, Alternative::Slowly));
     let (quick, slow) = (quick.summary, slow.summary);
-    assert!((slow.time - SLOWER * quick.time).abs() < 1e-9);
-    assert!((quick.peak_moment / slow.peak_moment / SLOWER.powi(2) - 1.0).abs() < 1e-3);
-    assert!((quick.moment_impulse / slow.moment_impulse / SLOWER - 1.0).abs() < 1e-3);
+    assert!((slow.time - SLOW_FACTOR * quick.time).abs() < 1e-9);
+    assert!((quick.peak_moment / slow.peak_moment / SLOW_FACTOR.powi(2) - 1.0).abs() < 1e-3);
+    assert!((quick.moment_impulse / slow.moment_impulse / SLOW_FACTOR - 1.0).abs() < 1e-3);
     assert!((quick.base_tilt / slow.base_tilt - 1.0).abs() < 1e-6, "{} {}", quick.base_tilt, slow.base_tilt);
 }
 
-fn run_of(scenario: &Scenario, way: Alternative) -> Compared {
-    Compared::of(way.of(scenario)).expect("it runs")
+fn run_of(scenario: &Scenario, way: Alternative) -> ComparedRun {
+    ComparedRun::of(way.of(scenario)).expect("it runs")
 }
 
 /// A wheel that is large enough takes all of it; one that is not says when it stopped.
@@ -87,7 +90,7 @@ fn a_task_of_its_own_kind_stands_first() {
     let ways = alternatives(&scenario("least-reaction"));
     assert_eq!(ways[0].0, Alternative::AsGiven);
     assert_eq!(ways[0].1.task.kind, TaskKind::LeastReaction);
-    let outcomes: Vec<bool> = ways.into_iter().map(|(_, s)| Compared::of(s).is_ok()).collect();
+    let outcomes: Vec<bool> = ways.into_iter().map(|(_, s)| ComparedRun::of(s).is_ok()).collect();
     assert!(outcomes[0] && outcomes.contains(&false) && outcomes.iter().filter(|ok| **ok).count() >= 4);
 }
 
@@ -134,10 +137,10 @@ fn the_table_agrees_with_the_frames() {
     let power = |i: usize| (0..3).map(|k| (run.frames[i].torque[k] * run.frames[i].qd[k]).abs()).sum::<f64>();
     assert!((s.energy - sum(&power)).abs() < 1e-4 * s.energy);
     // Every column has a value or none, and keys are their own.
-    let mut keys: Vec<&str> = COLUMNS.iter().map(|c| c.key).collect();
+    let mut keys: Vec<&str> = SUMMARY_COLUMNS.iter().map(|c| c.key).collect();
     keys.dedup();
-    assert_eq!(keys.len(), COLUMNS.len());
-    assert!(COLUMNS.iter().filter_map(|c| (c.value)(s)).all(f64::is_finite));
+    assert_eq!(keys.len(), SUMMARY_COLUMNS.len());
+    assert!(SUMMARY_COLUMNS.iter().filter_map(|c| (c.value)(s)).all(f64::is_finite));
 }
 
 /// Long runs keep evenly spaced frames, and their last.
@@ -145,7 +148,7 @@ fn the_table_agrees_with_the_frames() {
 fn long_runs_are_thinned() {
     let mut long = scenario("case-3");
     long.task.time = 9.5;
-    let run = Compared::of(long).expect("it runs");
+    let run = ComparedRun::of(long).expect("it runs");
     assert!(run.frames.len() < 4100 && run.frames.len() > 2000, "{}", run.frames.len());
     assert!((run.duration() - 9.5).abs() < 1e-9);
     let gaps: Vec<u64> = run.frames.to_vec().windows(2).map(|w| w[1].step - w[0].step).collect();
@@ -161,7 +164,7 @@ fn two_instants_differ_by_their_signals() {
     let run = run(Alternative::StraightLine, "case-3");
     let table = signals(run.machine());
     let (a, b) = (run.at(0.2).expect("a frame"), run.at(0.7).expect("a frame"));
-    let list: Vec<Difference> = table.iter().map(|signal| Difference::of(signal, a, b)).collect();
+    let list: Vec<SignalDifference> = table.iter().map(|signal| SignalDifference::of(signal, a, b)).collect();
     assert_eq!(list.len(), table.len());
     for (d, signal) in list.iter().zip(&table) {
         assert_eq!((d.from, d.to), (signal.value(a), signal.value(b)), "{}", signal.path);
@@ -174,7 +177,7 @@ fn two_instants_differ_by_their_signals() {
 fn a_comparison_follows_sorts_and_keeps() {
     use stillbase::study::comparison::Comparison;
     let mut comparison = Comparison::empty(&scenario("case-3"));
-    let ways = |scenario: Scenario| Arc::new(answered::<Ways>(Shared(Arc::new(scenario))));
+    let ways = |scenario: Scenario| Arc::new(answer_now::<AlternativeRuns>(Shared(Arc::new(scenario))));
     comparison.follow(&ways(scenario("case-3")));
     assert_eq!(comparison.entries().len(), 5);
     comparison.show(1, true);
@@ -184,10 +187,11 @@ fn a_comparison_follows_sorts_and_keeps() {
     assert_eq!(titles[5..], ["case-2", "case-2 2"]);
     assert_eq!(comparison.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
 
-    let column = COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
+    let column = SUMMARY_COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
     let values = |comparison: &Comparison| -> Vec<f64> {
-        let value =
-            |i: usize| comparison.entries()[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
+        let value = |i: usize| {
+            comparison.entries()[i].outcome.as_ref().ok().and_then(|r| (SUMMARY_COLUMNS[column].value)(&r.summary))
+        };
         comparison.order().into_iter().filter_map(value).collect()
     };
     comparison.sort_by(column);
@@ -199,7 +203,7 @@ fn a_comparison_follows_sorts_and_keeps() {
 
     let text = comparison.to_text();
     assert_eq!(text.lines().count(), 8);
-    assert!(text.lines().all(|line| line.split('\t').count() == COLUMNS.len() + 1));
+    assert!(text.lines().all(|line| line.split('\t').count() == SUMMARY_COLUMNS.len() + 1));
 
     // Another task: its ways are run, what was ticked stays so, what was kept stays.
     let mut other = scenario("case-3");
@@ -219,10 +223,10 @@ fn a_comparison_follows_sorts_and_keeps() {
 #[test]
 fn designs_stand_beside_the_first() {
     use stillbase::mechanics::machine::Inertia;
-    use stillbase::study::comparison::{Comparison, DESIGN};
-    let compared = |scenario: Scenario| Compared::of(scenario).expect("it runs");
-    let value = |design: &stillbase::study::comparison::Design, key: &str| {
-        (DESIGN.iter().find(|c| c.key == key).expect("a column").value)(design)
+    use stillbase::study::comparison::{Comparison, DESIGN_COLUMNS};
+    let compared = |scenario: Scenario| ComparedRun::of(scenario).expect("it runs");
+    let value = |design: &stillbase::study::comparison::DesignMeasures, key: &str| {
+        (DESIGN_COLUMNS.iter().find(|c| c.key == key).expect("a column").value)(design)
     };
     // The same task on a machine whose links all weigh twice as much, so that every force and torque doubles.
     let bare = compared(scenario("nine-link-bare"));
@@ -264,11 +268,11 @@ fn designs_stand_beside_the_first() {
     comparison.keep(scenario("nine-link-bare")).expect("it runs");
     assert!(!comparison.has_designs());
     let columns = |comparison: &Comparison| comparison.to_text().lines().next().map(|line| line.split('\t').count());
-    assert_eq!(columns(&comparison), Some(COLUMNS.len() + 1));
+    assert_eq!(columns(&comparison), Some(SUMMARY_COLUMNS.len() + 1));
     comparison.keep_run(compared(heavy));
     assert!(comparison.has_designs());
-    assert_eq!(columns(&comparison), Some(COLUMNS.len() + DESIGN.len() + 1));
-    let of = COLUMNS.len() + DESIGN.iter().position(|c| c.key == "mass").expect("a column");
+    assert_eq!(columns(&comparison), Some(SUMMARY_COLUMNS.len() + DESIGN_COLUMNS.len() + 1));
+    let of = SUMMARY_COLUMNS.len() + DESIGN_COLUMNS.iter().position(|c| c.key == "mass").expect("a column");
     comparison.sort_by(of);
     comparison.sort_by(of);
     assert_eq!(comparison.order(), [1, 0], "the heavier first");
@@ -282,7 +286,7 @@ fn designs_stand_beside_the_first() {
 fn rows_are_what_runs_come_to() {
     let mut impossible = scenario("case-3");
     impossible.task.to = [5.0, 5.0];
-    let mut rows = Rows::default();
+    let mut rows = ComparisonTable::default();
     rows.run(None, &impossible);
     rows.run(Some("as it is"), &scenario("case-3"));
     assert!(!rows.have_designs());
@@ -290,10 +294,10 @@ fn rows_are_what_runs_come_to() {
     assert!(rows.have_designs());
     let [refused, first, other] = rows.rows() else { panic!("three runs") };
     assert!(refused.outcome.is_err() && refused.design.is_none() && refused.title() == "case-3");
-    let alone = Compared::of(scenario("case-3")).expect("it runs");
+    let alone = ComparedRun::of(scenario("case-3")).expect("it runs");
     assert_eq!((first.outcome.as_ref().ok(), first.title()), (Some(&alone.summary), "as it is"));
     assert_eq!(first.design, Some(alone.candidate.beside(&alone.candidate)));
-    let two = Compared::of(scenario("two-drive")).expect("it runs");
+    let two = ComparedRun::of(scenario("two-drive")).expect("it runs");
     assert_eq!(other.design, Some(two.candidate.beside(&alone.candidate)));
     let said = serde_json::to_value(&rows).expect("plain data");
     assert!(said[0]["refused"].is_string() && said[1]["way"] == "as it is" && said[2]["design"]["apart"].is_string());

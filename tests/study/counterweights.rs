@@ -1,17 +1,17 @@
 //! A machine balanced by counterweights: what the answer says is what the machine that comes out is.
 
-use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
 use stillbase::mechanics::machine::Inertia;
-use stillbase::query::{Portion, Query, Shared, answered};
+use stillbase::query::{Portion, Query, Shared, answer_now};
 use stillbase::study::balance_constants::BalanceConstants;
-use stillbase::study::counterweights::{CounterweightRequest, NoCounterweights, balanced};
-use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths, Seeking, search};
+use stillbase::study::counterweights::{CounterweightRequest, NoCounterweights, balance_by_weights};
+use stillbase::study::lengths::{FreeLength, LengthSearch, LengthsQuery, NoLengths, search};
 
 use crate::support::family_machine;
 
-fn weighing() -> Weighing {
+fn weighing() -> CounterweightSpec {
     let bare = family_machine("nine-link-bare");
-    Weighing::least(Objective::inertia(), Sites::anywhere(&bare), Disc::STEEL)
+    CounterweightSpec::least(Objective::inertia(), Sites::anywhere(&bare), Disc::STEEL)
 }
 
 fn lengths(starts: usize) -> LengthSearch {
@@ -30,8 +30,8 @@ fn lengths(starts: usize) -> LengthSearch {
 fn the_report_is_of_the_machine_that_comes_out() {
     let bare = family_machine("nine-link-bare");
     let asked = CounterweightRequest { weighing: weighing(), lengths: None, front: Some(3) };
-    let (machine, report) = balanced(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
-    let placed = place(&bare, &asked.weighing).expect("it can be balanced");
+    let (machine, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
+    let placed = place_weights(&bare, &asked.weighing).expect("it can be balanced");
     let inertia = Inertia::of(&machine);
     assert!(report.is_balanced && inertia.is_balanced() && report.certified == placed.is_certified());
     assert_eq!(report.weights, machine.spec().counterweights);
@@ -40,8 +40,8 @@ fn the_report_is_of_the_machine_that_comes_out() {
     assert!(report.sought.is_none() && report.taken_off.is_empty() && report.front.len() == 3);
     // From light to quick.
     assert!(report.front.windows(2).all(|w| w[0][0] <= w[1][0] + 1e-9 && w[0][1] + 1e-9 >= w[1][1]));
-    let heavy = Weighing { most_mass: Some(1e-3), ..weighing() };
-    let refused = balanced(&bare, &CounterweightRequest { weighing: heavy, ..asked }, None, &mut |_| true);
+    let heavy = CounterweightSpec { most_mass: Some(1e-3), ..weighing() };
+    let refused = balance_by_weights(&bare, &CounterweightRequest { weighing: heavy, ..asked }, None, &mut |_| true);
     assert!(matches!(refused, Err(NoCounterweights::Weights(_))));
 }
 
@@ -49,11 +49,11 @@ fn the_report_is_of_the_machine_that_comes_out() {
 fn what_it_had_is_taken_off_and_lengths_are_sought() {
     let bare = family_machine("nine-link-bare");
     let asked = CounterweightRequest { weighing: weighing(), lengths: None, front: None };
-    let (weighed, first) = balanced(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
-    let (_, again) = balanced(&weighed, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (weighed, first) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (_, again) = balance_by_weights(&weighed, &asked, None, &mut |_| true).expect("it can be balanced");
     assert_eq!(again.taken_off, first.weights);
     let asked = CounterweightRequest { lengths: Some(lengths(2)), ..asked };
-    let (longer, report) = balanced(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (longer, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
     let sought = report.sought.expect("lengths");
     assert_eq!((&*sought.lengths[0].0, sought.starts, sought.certified), ("l5", 2, false));
     assert!((longer.spec().lengths["l5"] - sought.lengths[0].1).abs() < 1e-12);
@@ -64,15 +64,15 @@ fn what_it_had_is_taken_off_and_lengths_are_sought() {
 fn lengths_are_a_query() {
     let bare = family_machine("nine-link-bare");
     let found = search(&bare, &lengths(2), &mut |_| true).expect("there is one");
-    assert_eq!(answered::<Seeking>((Shared(bare.clone().into()), lengths(2))), Ok(found));
+    assert_eq!(answer_now::<LengthsQuery>((Shared(bare.clone().into()), lengths(2))), Ok(found));
     let mut left = 5;
     let mut goes_on = |share: f64| {
         assert!((0.0..=1.0).contains(&share));
         left -= 1;
         left > 0
     };
-    let mut work = Seeking::begin((Shared(bare.clone().into()), lengths(2)));
+    let mut work = LengthsQuery::begin((Shared(bare.clone().into()), lengths(2)));
     assert_eq!(work.go_on(&mut goes_on), Portion::Stopped);
     let nothing = LengthSearch { lengths: vec![FreeLength { name: "none".into(), ends: [0.1, 0.2] }], ..lengths(1) };
-    assert!(!matches!(answered::<Seeking>((Shared(bare.into()), nothing)), Ok(_) | Err(NoLengths::Weights(_))));
+    assert!(!matches!(answer_now::<LengthsQuery>((Shared(bare.into()), nothing)), Ok(_) | Err(NoLengths::Weights(_))));
 }

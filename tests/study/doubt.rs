@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::study::trim::{Doubt, Motion, Recording, doubt};
+use stillbase::study::trim::{Doubt, MeasuredMotion, MeasurementSet, doubt};
 
 use crate::mechanics::nine_body::NineBody;
 use crate::support::random::a_machine;
@@ -49,7 +49,7 @@ fn built(machine: &Machine, noise: &mut Noise, off: f64) -> NineBody {
 }
 
 /// Motions within the joint limits [0, π] of both relative angles, two sines each.
-fn recorded(body: &NineBody, noise: &mut Noise, how: Measuring) -> Recording {
+fn recorded(body: &NineBody, noise: &mut Noise, how: Measuring) -> MeasurementSet {
     let mut motions = Vec::new();
     for _ in 0..how.motions {
         let mut wave = |size: f64| [size * noise.between(0.3, 1.0), noise.between(3.0, 7.0), noise.between(0.0, 6.0)];
@@ -58,7 +58,7 @@ fn recorded(body: &NineBody, noise: &mut Noise, how: Measuring) -> Recording {
         let middle = [noise.between(-3.0, 3.0), noise.between(0.8, 2.3), noise.between(0.8, 2.3)];
         let offset = [(); 3].map(|()| noise.between(-5.0, 5.0));
         let mut error = [0.0; 3].map(|_: f64| normal(noise));
-        let mut motion = Motion::default();
+        let mut motion = MeasuredMotion::default();
         for i in 0..how.rows {
             let t = 2.0 / how.rows as f64 * i as f64;
             let own = |k: usize| {
@@ -89,21 +89,21 @@ fn recorded(body: &NineBody, noise: &mut Noise, how: Measuring) -> Recording {
         }
         motions.push(motion);
     }
-    Recording { motions }
+    MeasurementSet { motions }
 }
 
-type Spoil = fn(&mut Motion);
+type Spoil = fn(&mut MeasuredMotion);
 
-fn each_angle(motion: &mut Motion, change: impl Fn(&PerDrive) -> PerDrive) {
-    let Motion { q, qd, qdd, .. } = motion;
+fn each_angle(motion: &mut MeasuredMotion, change: impl Fn(&PerDrive) -> PerDrive) {
+    let MeasuredMotion { q, qd, qdd, .. } = motion;
     q.iter_mut().chain(qd).chain(qdd).for_each(|x| *x = change(x));
 }
 
-fn each_force(motion: &mut Motion, change: impl Fn(Vector) -> Vector) {
+fn each_force(motion: &mut MeasuredMotion, change: impl Fn(Vector) -> Vector) {
     motion.force.iter_mut().for_each(|f| *f = change(*f));
 }
 
-fn each_moment(motion: &mut Motion, by: f64) {
+fn each_moment(motion: &mut MeasuredMotion, by: f64) {
     motion.moment.iter_mut().for_each(|n| *n *= by);
 }
 
@@ -127,13 +127,13 @@ const FAULTS: &[(&str, Spoil)] = &[
     ("the angles are in degrees, not in radians", |m| each_angle(m, |q| q.scaled(1.0_f64.to_degrees()))),
 ];
 
-fn spoilt(recording: &Recording, spoil: Spoil) -> Recording {
+fn spoilt(recording: &MeasurementSet, spoil: Spoil) -> MeasurementSet {
     let mut recording = recording.clone();
     recording.motions.iter_mut().for_each(spoil);
     recording
 }
 
-fn asked(machine: &Machine, recording: &Recording) -> Option<Doubt> {
+fn asked(machine: &Machine, recording: &MeasurementSet) -> Option<Doubt> {
     doubt(machine, recording, false).expect("a recording")
 }
 
@@ -148,7 +148,7 @@ fn honest_measurements_are_believed() {
             let mut recording = recorded(&body, &mut noise, how);
             for motion in &mut recording.motions {
                 let [x, y, n] = [(); 3].map(|()| noise.between(-0.5, 0.5));
-                let Motion { t, force, moment, .. } = motion;
+                let MeasuredMotion { t, force, moment, .. } = motion;
                 force.iter_mut().zip(&*t).for_each(|(f, t)| *f += Vector::new(x, y) * *t);
                 moment.iter_mut().zip(&*t).for_each(|(m, t)| *m += 0.1 * n * t);
             }
@@ -274,7 +274,7 @@ fn campaign_of_faults() {
 }
 
 /// Any machine of up to four drives, with rotors of either sense and gravity.
-fn any_recording(noise: &mut Noise, rows: u32) -> (Machine, Recording) {
+fn any_recording(noise: &mut Noise, rows: u32) -> (Machine, MeasurementSet) {
     let machine = std::iter::repeat_with(|| a_machine(noise)).find(|machine| machine.drives() <= 4).expect("endless");
     let off = [0.0, 0.003, 0.01, 0.05][(noise.between(0.0, 4.0) as usize).min(3)];
     let recording = a_recording(&machine, off, noise, rows);
@@ -282,7 +282,7 @@ fn any_recording(noise: &mut Noise, rows: u32) -> (Machine, Recording) {
 }
 
 /// Motions of a machine whose links are built off by up to `off` m along them, half of it across, and that share of mass.
-fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> Recording {
+fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> MeasurementSet {
     let n = machine.drives();
     let mut spec = machine.spec().clone();
     for link in &mut spec.links {
@@ -300,7 +300,7 @@ fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> Rec
         let wave = |noise: &mut Noise| [noise.between(0.1, 0.6), noise.between(2.0, 8.0), noise.between(0.0, 6.0)];
         let waves: Vec<[[f64; 3]; 2]> = (0..n).map(|_| [wave(noise), wave(noise)]).collect();
         let middle = PerDrive::from_fn(n, |_| noise.between(-3.0, 3.0));
-        let mut motion = Motion::default();
+        let mut motion = MeasuredMotion::default();
         let mut error = [0.0; 3].map(|_: f64| normal(noise));
         for i in 0..rows {
             let t = 2.0 / f64::from(rows) * f64::from(i);
@@ -322,7 +322,7 @@ fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> Rec
         }
         motions.push(motion);
     }
-    Recording { motions }
+    MeasurementSet { motions }
 }
 
 /// Of any machine honest measurements are believed, and none whose moment is reversed where D is known.

@@ -9,18 +9,19 @@ use stillbase::planning::Reference;
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::equations::{
-    Equation, Line, NUMBERS, NoInstant, State, Stated, Term, When, cells, equations, plain,
+    DriveState, EQUATION_NUMBERS, Equality, Equation, InstantKind, NoInstant, StatedEquations, Term, cells, equations,
+    plain,
 };
 
 use crate::support::{Noise, close, random};
 
-fn a_state(noise: &mut Noise, n: usize) -> State {
+fn a_state(noise: &mut Noise, n: usize) -> DriveState {
     let mut some = |size: f64| PerDrive::from_fn(n, |_| noise.between(-size, size));
     let (q, qd, qdd) = (DriveAngles(some(6.0)), some(3.0), some(20.0));
-    State::given(Reference { q, qd, qdd })
+    DriveState::given(Reference { q, qd, qdd })
 }
 
-fn of(machine: &Machine, state: &State) -> Vec<Equation> {
+fn of(machine: &Machine, state: &DriveState) -> Vec<Equation> {
     equations(machine, state, Preset::Table1)
 }
 
@@ -28,7 +29,7 @@ fn numbered<'a>(all: &'a [Equation], number: &str) -> &'a Equation {
     all.iter().find(|equation| equation.number == number).expect("a number of the paper")
 }
 
-fn lines<'a>(all: &'a [Equation], number: &str) -> &'a [Line] {
+fn lines<'a>(all: &'a [Equation], number: &str) -> &'a [Equality] {
     numbered(all, number).lines.as_ref().unwrap_or_else(|why| panic!("({number}): {why}"))
 }
 
@@ -66,7 +67,7 @@ fn both_sides_of_every_law_agree() {
         let state = a_state(&mut noise, machine.drives());
         let all = of(&machine, &state);
         let numbers: Vec<&str> = all.iter().map(|equation| equation.number).collect();
-        assert_eq!(numbers, NUMBERS);
+        assert_eq!(numbers, EQUATION_NUMBERS);
         for number in ["1", "2", "3", "4", "5", "6", "14", "A1", "A2", "A3"] {
             for line in self::lines(&all, number) {
                 assert!(line.tolerance > 0.0 && line.sides().iter().all(|side| side.is_finite()));
@@ -113,7 +114,7 @@ fn what_is_left_of_balance_is_what_the_constants_have() {
         let inertia = Inertia::of(&machine);
         let all = of(&machine, &a_state(&mut noise, machine.drives()));
         let eighth = numbered(&all, "8").lines.as_ref().map_or(&[][..], |lines| lines);
-        let both: Vec<&Line> = lines(&all, "7").iter().chain(eighth).collect();
+        let both: Vec<&Equality> = lines(&all, "7").iter().chain(eighth).collect();
         let conditions: Vec<Condition> = Condition::all(machine.drives()).collect();
         assert_eq!(both.len(), conditions.len());
         for (i, (line, condition)) in both.into_iter().zip(conditions).enumerate() {
@@ -142,14 +143,14 @@ fn on_a_plane_of_any_number_of_drives() {
             }
         }
         let [zero, ratios @ ..] = lines(&all, "12") else { panic!("no line") };
-        assert!(ratios.iter().all(Line::holds));
+        assert!(ratios.iter().all(Equality::holds));
         // What is left of (12) is what the angular momentum of (6) has of D_1.
         let momentum = lines(&all, "6")[0].sides()[0];
         let inertia = Inertia::of(&machine);
         let size: f64 = inertia.diagonals().iter().sum();
         assert!((zero.off() * inertia.pose_inertia() - momentum).abs() < 1e-9 * size * 10.0);
         // Another b than that of the pose is found out.
-        let other = of(&machine, &State { b: Some(b + 0.1), ..state });
+        let other = of(&machine, &DriveState { b: Some(b + 0.1), ..state });
         assert!(!lines(&other, "13")[0].holds());
     }
 }
@@ -157,7 +158,7 @@ fn on_a_plane_of_any_number_of_drives() {
 /// As they stand in the paper, but that masses of one length are taken together in all three.
 #[test]
 fn the_paper_s_machine_is_written_as_in_the_paper() {
-    let all = of(&table_1(), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let all = of(&table_1(), &DriveState::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
     let sides = |number| lines(&all, number).iter().map(|line| written(&line.left)).collect::<Vec<_>>();
     assert_eq!(
         sides("7"),
@@ -192,7 +193,7 @@ fn the_paper_s_numbers_stand_in_them() {
     let machine = table_1();
     // Where both cosines of (A3) vanish with what couples drives 1 and 2, and 1 and 3.
     let quarter = std::f64::consts::FRAC_PI_2;
-    let all = of(&machine, &State::at_rest(DriveAngles::from([0.0, quarter, quarter])));
+    let all = of(&machine, &DriveState::at_rest(DriveAngles::from([0.0, quarter, quarter])));
     let left = |number: &str| lines(&all, number).iter().map(|line| line.sides()[0]).collect::<Vec<_>>();
     let first = lines(&all, "A3")[0].sides();
     close("d_1", &[first[0]], &[1.367816575], 1e-9);
@@ -211,7 +212,7 @@ fn the_paper_s_numbers_stand_in_them() {
     }
     let [now, best] = least[0].sides();
     assert!((now - best).abs() < 1e-3 * best, "{now} and {best}");
-    let solved = of(builtin("nine-link").expect("built in"), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let solved = of(builtin("nine-link").expect("built in"), &DriveState::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
     for number in ["7", "8", "9", "10"] {
         assert_eq!(numbered(&solved, number).holds(), Some(true), "({number})");
     }
@@ -223,7 +224,7 @@ fn case_3_has_its_numbers() {
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
     let (run, motion) = (session.run(), session.run().motion().expect("a motion"));
     let of_case = |at: f64| {
-        let state = State { b: Some(2.4), ..State::given(motion.at(at)) };
+        let state = DriveState { b: Some(2.4), ..DriveState::given(motion.at(at)) };
         of(&run.scenario().machine, &state)
     };
     for (at, place) in [(0.0, [0.5, 0.5]), (1.0, [0.55, 0.9])] {
@@ -232,7 +233,7 @@ fn case_3_has_its_numbers() {
         close("(14)", &tip, &place, 1e-9);
     }
     let all = of_case(0.3);
-    for number in NUMBERS {
+    for number in EQUATION_NUMBERS {
         assert_eq!(numbered(&all, number).holds(), Some(true), "({number}): {:?}", numbered(&all, number).worst());
     }
     assert!((lines(&all, "13")[0].sides()[0] - 2.4).abs() < 1e-9);
@@ -241,18 +242,18 @@ fn case_3_has_its_numbers() {
     let torque = lines(&all, "11").iter().map(|line| line.sides()[0].abs()).fold(0.0, f64::max);
     assert!(torque > 0.5, "{torque} N m");
     // At rest the window shows the plan instead, because a pose at rest has nothing to show.
-    let state = State::of(run, session.frame());
-    assert_eq!(state.when, When::Plan(0.25));
-    assert_eq!(State::now(session.frame()).when, When::Run(0.0));
+    let state = DriveState::of(run, session.frame());
+    assert_eq!(state.when, InstantKind::Plan(0.25));
+    assert_eq!(DriveState::now(session.frame()).when, InstantKind::Run(0.0));
     let case_1 = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it opens");
-    let all = of(&case_1.scenario().machine, &State::of(case_1.run(), case_1.frame()));
+    let all = of(&case_1.scenario().machine, &DriveState::of(case_1.run(), case_1.frame()));
     assert_eq!((numbered(&all, "12").holds(), numbered(&all, "5").holds()), (Some(false), Some(true)));
 }
 
 #[test]
 fn what_has_no_meaning_says_why() {
     let bare = builtin("nine-link-bare").expect("built in");
-    let all = of(bare, &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let all = of(bare, &DriveState::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
     for number in ["11", "12", "13", "15", "16"] {
         let why = numbered(&all, number).lines.as_ref().expect_err("not balanced");
         assert!(why.contains("kg m²"), "({number}) {why}");
@@ -265,7 +266,7 @@ fn what_has_no_meaning_says_why() {
 
 #[test]
 fn numbers_stand_below_their_symbols() {
-    let all = of(&table_1(), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let all = of(&table_1(), &DriveState::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
     let line = &lines(&all, "8")[2];
     let cells = cells(line, 4);
     let symbols: Vec<String> = cells.iter().map(|cell| format!("{}{}", cell.sign, plain(cell.symbol))).collect();
@@ -284,7 +285,7 @@ fn tolerances_are_those_of_rounding() {
         let mut spec = machine.spec().clone();
         spec.angles.iter_mut().for_each(|angle| angle.offset = 0.0);
         let machine = Machine::new(spec).expect("still a machine");
-        let zero = State::at_rest(DriveAngles(PerDrive::from_fn(machine.drives(), |_| 0.0)));
+        let zero = DriveState::at_rest(DriveAngles(PerDrive::from_fn(machine.drives(), |_| 0.0)));
         for line in lines(&of(&machine, &zero), "15") {
             assert!(line.holds() && line.tolerance > 0.0 && line.tolerance < 1e-5, "{line:?}");
         }
@@ -333,7 +334,7 @@ fn lengths_stand_before_centres_of_mass() {
                 attach = { link = \"1\", at = \"tip\" }\nlength = 0.3\nmass = 1.0\ninertia = 0.1\ncom = 0.1\n\
                 [end_effector]\nlink = \"2\"\n";
     let machine = stillbase::mechanics::machine::parse(text, "named").expect("a machine");
-    let all = of(&machine, &State::at_rest(DriveAngles(PerDrive::from_fn(2, |_| 0.3))));
+    let all = of(&machine, &DriveState::at_rest(DriveAngles(PerDrive::from_fn(2, |_| 0.3))));
     assert_eq!(written(&lines(&all, "8")[0].left), "m₂ upper l_c2");
 }
 
@@ -391,8 +392,8 @@ fn momenta_are_counted_by_the_first_drive_that_has_one() {
 #[test]
 fn the_b_of_now_is_the_one_aimed_at() {
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
-    assert!((State::now(session.frame()).b.expect("held") - 2.4).abs() < 1e-12);
-    let all = of(&session.scenario().machine, &State::now(session.frame()));
+    assert!((DriveState::now(session.frame()).b.expect("held") - 2.4).abs() < 1e-12);
+    let all = of(&session.scenario().machine, &DriveState::now(session.frame()));
     assert_eq!(numbered(&all, "13").holds(), Some(true));
 }
 
@@ -410,12 +411,12 @@ fn one_drive_is_written_of_alone() {
 #[test]
 fn a_time_of_a_run_has_a_state() {
     let scenario = Scenario::builtin("case-1").expect("built in");
-    let state = State::at(&scenario, 0.3).expect("it runs so far");
-    assert!(matches!(state.when, When::Run(time) if (time - 0.3).abs() < 1e-9));
-    let later = State::at(&scenario, 1e3).expect_err("it is over then");
+    let state = DriveState::at(&scenario, 0.3).expect("it runs so far");
+    assert!(matches!(state.when, InstantKind::Run(time) if (time - 0.3).abs() < 1e-9));
+    let later = DriveState::at(&scenario, 1e3).expect_err("it is over then");
     assert!(matches!(later, NoInstant::Later { end } if end > 0.9), "{later}");
-    let stated = Stated::of(&scenario.machine, &state, &of(&scenario.machine, &state));
-    assert_eq!(stated.equations.len(), NUMBERS.len());
+    let stated = StatedEquations::of(&scenario.machine, &state, &of(&scenario.machine, &state));
+    assert_eq!(stated.equations.len(), EQUATION_NUMBERS.len());
     assert!(stated.time.is_some_and(|time| (time - 0.3).abs() < 1e-9) && stated.planned_time.is_none());
     let force = &stated.equations[0].lines[0];
     let sum: f64 = force.left_terms.iter().map(|term| term.value).sum();

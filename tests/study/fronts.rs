@@ -1,14 +1,14 @@
 //! The fronts of several machines side by side are those of each alone.
 
-use stillbase::mechanics::counterweights::{Disc, NoWeights, Objective, Sites, Weighing, front};
+use stillbase::mechanics::counterweights::{CounterweightError, CounterweightSpec, Disc, Objective, Sites, front};
 use stillbase::planning::Motion;
-use stillbase::query::{Portion, Query, Same, answered};
+use stillbase::query::{ByIdentity, Portion, Query, answer_now};
 use stillbase::session::Run;
-use stillbase::session::design::Brief;
+use stillbase::session::design::DesignBrief;
 use stillbase::session::scenario::Scenario;
-use stillbase::study::counterweights::{CounterweightRequest, balanced};
+use stillbase::study::counterweights::{CounterweightRequest, balance_by_weights};
 use stillbase::study::front_point::FrontMeasure;
-use stillbase::study::fronts::{FrontOf, Fronts, FrontsRequest};
+use stillbase::study::fronts::{FrontCase, Fronts, FrontsRequest};
 
 use crate::support::family_machine;
 
@@ -19,13 +19,13 @@ fn asked(names: &[&str], most: f64) -> FrontsRequest {
     let of = |name: &&str| {
         let machine = family_machine(name);
         let sites = Sites::anywhere(&machine).into_iter().map(|site| Sites { most, ..site }).collect();
-        let asked = Weighing::least(Objective::mass(), sites, Disc::STEEL);
-        FrontOf { name: (*name).to_owned(), machine, asked }
+        let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
+        FrontCase { name: (*name).to_owned(), machine, asked }
     };
     FrontsRequest { machines: names.iter().map(of).collect(), count: COUNT, motion: None, workspace: true }
 }
 
-fn motion(name: &str) -> Same<Motion> {
+fn motion(name: &str) -> ByIdentity<Motion> {
     let scenario = Scenario::builtin(name).expect("built in");
     Run::new(&scenario).expect("it starts").shared_motion().expect("it is planned")
 }
@@ -35,7 +35,7 @@ fn each_front_is_that_of_its_machine_alone() {
     let motion = motion("case-3");
     let names = ["nine-link-bare", "two-drive"];
     let request = FrontsRequest { motion: Some(motion.clone()), ..asked(&names, f64::INFINITY) };
-    let fronts = answered::<Fronts>(request.clone());
+    let fronts = answer_now::<Fronts>(request.clone());
     assert_eq!(fronts.len(), 2);
     for (found, of) in fronts.iter().zip(&request.machines) {
         let told = found.outcome.as_ref().expect("it can be balanced");
@@ -44,7 +44,7 @@ fn each_front_is_that_of_its_machine_alone() {
         // A motion of three drives says nothing of a machine of two.
         let own = (of.machine.drives() == 3).then_some(&*motion.0);
         let alone = CounterweightRequest { weighing: of.asked.clone(), lengths: None, front: Some(COUNT) };
-        let (_, report) = balanced(&of.machine, &alone, own, &mut |_| true).expect("it can be balanced");
+        let (_, report) = balance_by_weights(&of.machine, &alone, own, &mut |_| true).expect("it can be balanced");
         assert_eq!((&told.points, told.measures()), (&report.front_points, report.front));
         assert!(told.points.iter().all(|point| point.torque.is_some() == own.is_some()));
     }
@@ -53,15 +53,15 @@ fn each_front_is_that_of_its_machine_alone() {
 #[test]
 fn one_brief_is_asked_of_all() {
     let bare = family_machine("nine-link-bare");
-    let brief = Brief { heaviest: Some(9.0), behind_root: Some(0.2), ..Brief::default() };
-    let of = FrontOf::of("bare", &bare, &brief);
+    let brief = DesignBrief { heaviest: Some(9.0), behind_root: Some(0.2), ..DesignBrief::default() };
+    let of = FrontCase::of("bare", &bare, &brief);
     assert_eq!(of.asked, brief.weighing(&bare));
     let alone = brief.front(&bare, COUNT).expect("it can be balanced");
     // Counterweights of today make no other question.
     let heavy = alone.points[0].machine.clone();
-    assert_eq!(FrontOf::of("bare", &heavy, &brief), of);
+    assert_eq!(FrontCase::of("bare", &heavy, &brief), of);
     let request = FrontsRequest { machines: vec![of], count: COUNT, motion: None, workspace: false };
-    let fronts = answered::<Fronts>(request);
+    let fronts = answer_now::<Fronts>(request);
     let told = fronts[0].outcome.as_ref().expect("it can be balanced");
     assert_eq!((&told.front, told.measures()), (&alone, alone.measures()));
     assert!(told.points.iter().all(|point| point.workspace.is_none()));
@@ -74,15 +74,15 @@ fn a_machine_that_nothing_balances_says_why_and_the_others_stand() {
     let names = ["nine-link-bare", "two-drive", "nine-link-bare"];
     let mut request = asked(&names, f64::INFINITY);
     request.machines[0].asked.most_mass = Some(1e-3);
-    let fronts = answered::<Fronts>(request.clone());
-    assert!(matches!(fronts[0].outcome, Err(NoWeights::Conflict { .. })));
+    let fronts = answer_now::<Fronts>(request.clone());
+    assert!(matches!(fronts[0].outcome, Err(CounterweightError::Conflict { .. })));
     assert!(fronts[1].outcome.is_ok() && fronts[2].outcome.is_ok());
     let said = serde_json::to_value(&fronts).expect("plain data");
     let alone = front(&request.machines[0].machine, &request.machines[0].asked, COUNT).expect_err("too light");
     assert_eq!(said[0], serde_json::json!({ "machine": "nine-link-bare", "refused": alone.to_string() }));
     assert_eq!(said[1]["machine"], "two-drive");
     assert_eq!(said[2]["front_points"].as_array().map(Vec::len), Some(COUNT));
-    assert!(answered::<Fronts>(FrontsRequest { machines: Vec::new(), ..request }).is_empty());
+    assert!(answer_now::<Fronts>(FrontsRequest { machines: Vec::new(), ..request }).is_empty());
 }
 
 #[test]

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::planning::curves::{Coordinates, Samples};
-use stillbase::query::{Portion, Queries, Query, Shared, State, answered};
+use stillbase::query::{Portion, Queries, Query, QueryStatus, Shared, answer_now};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::advice::Remedy;
-use stillbase::study::import::{GivenMotion, ImportError, Importing, Keep, Request};
+use stillbase::study::import::{GivenMotion, ImportQuery, MotionImportError, PreservedPath, Request};
 
 /// From rest to rest over one second, 0 to 1.
 fn eased(s: f64) -> f64 {
@@ -41,7 +41,7 @@ fn request(machine: &Machine, coordinates: Coordinates, samples: Samples) -> Req
 fn a_motion_is_moved_onto_a_plane() {
     let machine = builtin("nine-link").expect("built in");
     let samples = moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]);
-    let found = answered::<Importing>(request(machine, Coordinates::Drives, samples.clone())).expect("a motion");
+    let found = answer_now::<ImportQuery>(request(machine, Coordinates::Drives, samples.clone())).expect("a motion");
     let given = found.given.as_ref().expect("it moves");
     assert!(found.feasible && found.reason.is_none() && found.content == "drives" && given.peak_base_moment > 0.1);
     let proposal = found.proposal.as_ref().expect("a proposal");
@@ -63,12 +63,13 @@ fn a_motion_is_moved_onto_a_plane() {
 fn a_motion_of_the_end_effector_is_carried_out() {
     let machine = builtin("nine-link").expect("built in");
     let asked = request(machine, Coordinates::EndEffector, moving(&[0.50, 0.50], &[0.05, 0.40]));
-    let found = answered::<Importing>(asked.clone()).expect("a motion");
+    let found = answer_now::<ImportQuery>(asked.clone()).expect("a motion");
     let proposal = found.proposal.as_ref().expect("a proposal");
     assert!(found.content == "tip" && found.b_samples.is_none() && proposal.way == "on-plane");
     assert!(proposal.simulated_peak_base_moment < 1e-6 && found.given.expect("it follows").peak_base_moment > 0.1);
-    let refused = answered::<Importing>(Request { keep: Some(Keep::Joints), ..asked }).expect_err("no joints");
-    assert_eq!(refused, ImportError::NoJoints);
+    let refused =
+        answer_now::<ImportQuery>(Request { keep: Some(PreservedPath::Joints), ..asked }).expect_err("no joints");
+    assert_eq!(refused, MotionImportError::NoJoints);
 }
 
 /// In portions it comes to the same as at once.
@@ -76,12 +77,12 @@ fn a_motion_of_the_end_effector_is_carried_out() {
 fn portions_come_to_the_same() {
     let machine = builtin("nine-link").expect("built in");
     let asked = request(machine, Coordinates::Drives, moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]));
-    let at_once = answered::<Importing>(asked.clone()).expect("a motion");
+    let at_once = answer_now::<ImportQuery>(asked.clone()).expect("a motion");
     let queries = Queries::default();
     queries.work_in_portions();
     let found = (0..100).find_map(|_| {
-        let asked = queries.ask_beside::<Importing>(&asked);
-        (asked.state == State::Known).then_some(asked.last).flatten()
+        let asked = queries.ask_beside::<ImportQuery>(&asked);
+        (asked.state == QueryStatus::Known).then_some(asked.last).flatten()
     });
     let found: Arc<_> = found.expect("it ends");
     let found = found.as_ref().as_ref().expect("a motion");
@@ -100,7 +101,7 @@ fn the_search_is_told_and_stopped() {
         let machine = builtin(name).expect("built in");
         let asked = request(machine, coordinates, samples);
         let mut heard = Vec::new();
-        let mut work = Importing::begin(asked.clone());
+        let mut work = ImportQuery::begin(asked.clone());
         loop {
             match work.go_on(&mut |done| {
                 heard.push(done);
@@ -115,7 +116,7 @@ fn the_search_is_told_and_stopped() {
         assert!(heard.iter().filter(|done| **done < 0.5).count() > 3, "{heard:?}");
         // Wherever it hears that the rest is not wanted it says so, and asks no more.
         for last in [1, 3, heard.len() / 2] {
-            let (mut words, mut work) = (0, Importing::begin(asked.clone()));
+            let (mut words, mut work) = (0, ImportQuery::begin(asked.clone()));
             let end = (0..100).find_map(|_| {
                 let portion = work.go_on(&mut |_| {
                     words += 1;
@@ -133,7 +134,7 @@ fn the_search_is_told_and_stopped() {
 fn what_would_help_is_named_apart() {
     let machine = builtin("scara").expect("built in");
     let asked = request(machine, Coordinates::Drives, moving(&[0.3, 0.9], &[0.4, -0.2]));
-    let found = answered::<Importing>(asked).expect("a motion");
+    let found = answer_now::<ImportQuery>(asked).expect("a motion");
     let why = found.reason.expect("nothing can be proposed");
     assert!(!why.to_string().contains("--"), "{why}");
     let rough = moving(&[1.7, 3.7, 2.2], &[-0.2, 0.5, 0.9]);
@@ -143,7 +144,8 @@ fn what_would_help_is_named_apart() {
         row[1..].iter().map(|x| x + sign).collect()
     });
     let jagged = rough.with_values(jagged).expect("as many");
-    let found = answered::<Importing>(request(builtin("nine-link").expect("built in"), Coordinates::Drives, jagged));
+    let found =
+        answer_now::<ImportQuery>(request(builtin("nine-link").expect("built in"), Coordinates::Drives, jagged));
     let note = found.expect("a motion").notes.swap_remove(0);
     assert_eq!(note.remedies().collect::<Vec<_>>(), [Remedy::CutOff]);
     assert!(note.to_string().ends_with("digits or samples; smoothing removes higher frequencies"), "{note}");

@@ -1,6 +1,6 @@
 //! Lengths that are sought: what a search finds holds what is asked for, and a grid of all lengths finds nothing better.
 
-use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths, search};
 
@@ -9,7 +9,7 @@ use crate::support::family_machine;
 fn asked(machine: &Machine, lengths: &[(&str, [f64; 2])]) -> LengthSearch {
     LengthSearch {
         lengths: lengths.iter().map(|(name, ends)| FreeLength { name: (*name).into(), ends: *ends }).collect(),
-        weighing: Weighing::least(Objective::inertia(), Sites::anywhere(machine), Disc::STEEL),
+        weighing: CounterweightSpec::least(Objective::inertia(), Sites::anywhere(machine), Disc::STEEL),
         anywhere: true,
         least_reach: Some(1.26),
         least_workspace: None,
@@ -56,8 +56,8 @@ fn a_grid_of_lengths_finds_nothing_better() {
                 continue;
             }
             let machine = by_hand(&bare, l5, l9);
-            let weighing = Weighing { sites: Sites::anywhere(&machine), ..asked.weighing.clone() };
-            least = least.min(place(&machine, &weighing).expect("it can be balanced").value);
+            let weighing = CounterweightSpec { sites: Sites::anywhere(&machine), ..asked.weighing.clone() };
+            least = least.min(place_weights(&machine, &weighing).expect("it can be balanced").value);
         }
     }
     assert!(found.placed.value < least + 1e-6, "{} against {least}", found.placed.value);
@@ -74,7 +74,7 @@ fn a_search_is_the_same_again_and_can_be_stopped() {
     let [one, other] = [(); 2].map(|()| search(&bare, &asked, &mut |_| true).expect("there is one"));
     assert_eq!(one, other);
     let mut best = f64::INFINITY;
-    let mut stop = |progress: stillbase::study::lengths::Progress| {
+    let mut stop = |progress: stillbase::study::lengths::SearchProgress| {
         best = progress.best;
         progress.machines < 4
     };

@@ -46,7 +46,7 @@ fn a_change_of_b_has_a_price() {
 #[test]
 fn a_refusal_says_what_would_do() {
     let case = Scenario::builtin("case-3").expect("built in");
-    let mut change = stillbase::session::scenario::Change::new();
+    let mut change = stillbase::session::scenario::TaskChange::new();
     change.insert("b".into(), 2.9.into());
     change.insert("shape".into(), "line".into());
     let task = case.task.with(&change, &case.machine).expect("a task");

@@ -1,17 +1,17 @@
 //! Lines as they are drawn, held against all samples; and samples that follow a session.
 
 use proptest::prelude::*;
-use stillbase::query::{Mark, Queries, grown};
+use stillbase::query::{Queries, RevisionMark, answer_sequence};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::signals::{Signal, signals};
-use stillbase::study::samples::Samples;
+use stillbase::study::samples::SignalSamples;
 use stillbase::study::series::Series;
 
-fn samples(values: &[f64], across: &[f64], step: f64) -> Samples {
+fn samples(values: &[f64], across: &[f64], step: f64) -> SignalSamples {
     let series = |values: &[f64]| values.iter().copied().collect::<Series>();
     let times = (0..values.len()).map(|i| step * i as f64).collect();
-    Samples::of(times, [("y".to_owned(), series(values)), ("x".to_owned(), series(across))])
+    SignalSamples::of(times, [("y".to_owned(), series(values)), ("x".to_owned(), series(across))])
 }
 
 proptest! {
@@ -94,15 +94,15 @@ fn samples_follow_a_session() {
     let mut session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it starts");
     let table = signals(&session.scenario().machine);
     let (at_once, in_portions) = (Queries::default(), Queries::default());
-    let mut known: Option<Mark> = None;
+    let mut known: Option<RevisionMark> = None;
     let (mut again, mut checks) = (0, 0);
     let mut check = |session: &Session, what: &str| {
         // Asked for less in between: what comes back later is whole.
         let all = wanted(&table);
         let asked = &if checks % 3 == 1 { all[..2].to_vec() } else { all };
-        let samples = at_once.grow::<Samples>(asked, session.frames(), usize::MAX);
-        let portions = (0..100).find(|_| in_portions.grow::<Samples>(asked, session.frames(), 37).is_whole);
-        let bit_by_bit = in_portions.grow::<Samples>(asked, session.frames(), 0);
+        let samples = at_once.grow::<SignalSamples>(asked, session.frames(), usize::MAX);
+        let portions = (0..100).find(|_| in_portions.grow::<SignalSamples>(asked, session.frames(), 37).is_whole);
+        let bit_by_bit = in_portions.grow::<SignalSamples>(asked, session.frames(), 0);
         let [samples, bit_by_bit] = [&samples, &bit_by_bit].map(|grown| grown.answer().expect("just asked"));
         assert!(portions.is_some() && bit_by_bit.times() == samples.times(), "{what}");
         checks += 1;
@@ -162,7 +162,7 @@ fn csv_of_a_range_is_every_sample_of_it() {
     let table = signals(&session.scenario().machine);
     let shown = table.iter().filter(|s| s.group() == "torque" || s.path == "force/dynamic");
     let shown: Vec<Signal> = shown.cloned().collect();
-    let text = grown::<Samples>(&shown, session.frames()).csv([0.2, 0.3]);
+    let text = answer_sequence::<SignalSamples>(&shown, session.frames()).csv([0.2, 0.3]);
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("time s,torque/1 N m,torque/2 N m,torque/3 N m,force/dynamic N"));
     let frames = session.frames().iter().skip(200).take(101);

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use stillbase::session::felt;
+use stillbase::session::base_loads;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
-use stillbase::study::spectrum::{JitterLimit, LEAST, Spectrum, SpectrumError, Window};
+use stillbase::study::spectrum::{JitterLimit, MIN_SPECTRUM_SAMPLES, Spectrum, SpectrumError, WindowFunction};
 
 /// The one-sided density by its definition, a sum for each line.
 fn by_definition(x: &[f64], step: f64, weight: impl Fn(usize) -> f64) -> Vec<f64> {
@@ -32,14 +32,14 @@ fn hann(n: usize) -> impl Fn(usize) -> f64 {
 proptest! {
     #[test]
     fn the_power_of_all_lines_is_that_of_the_samples(
-        x in prop::collection::vec(-10.0..10.0_f64, LEAST..300),
+        x in prop::collection::vec(-10.0..10.0_f64, MIN_SPECTRUM_SAMPLES..300),
         step in 1e-4..1.0_f64,
     ) {
         let n = x.len();
-        let plain = Spectrum::of(&x, step, Window::Rectangular).expect("enough");
+        let plain = Spectrum::of(&x, step, WindowFunction::Rectangular).expect("enough");
         let square = x.iter().map(|x| x * x).sum::<f64>() / n as f64;
         prop_assert!((plain.rms() - square.sqrt()).abs() <= 1e-12 * square.sqrt());
-        let windowed = Spectrum::of(&x, step, Window::Hann).expect("enough");
+        let windowed = Spectrum::of(&x, step, WindowFunction::Hann).expect("enough");
         let w = hann(n);
         let sums = (0..n).fold([0.0; 2], |s, i| [s[0] + (w(i) * x[i]).powi(2), s[1] + w(i).powi(2)]);
         let rms = (sums[0] / sums[1]).sqrt();
@@ -62,12 +62,12 @@ fn a_tone_stands_at_its_frequency_with_its_power() {
     let (n, step, amplitude, line) = (1000, 0.001, 3.0, 40);
     let x: Vec<f64> = (0..n).map(|i| amplitude * (TAU * (line * i) as f64 / n as f64 + 0.3).cos()).collect();
     let rms = amplitude / 2_f64.sqrt();
-    let plain = Spectrum::of(&x, step, Window::Rectangular).expect("enough");
+    let plain = Spectrum::of(&x, step, WindowFunction::Rectangular).expect("enough");
     // One line of 1 Hz.
     assert!((plain.frequency[line] - 40.0).abs() < 1e-9 && (plain.density[line] - rms).abs() < 1e-12);
     assert!(plain.cumulative_rms[line - 1] < 1e-12 && (plain.cumulative_rms[line] - rms).abs() < 1e-12);
     // A Hann window spreads it over three, 1/6, 4/6, 1/6 of its power: its noise bandwidth is one and a half lines.
-    let hann = Spectrum::of(&x, step, Window::Hann).expect("enough");
+    let hann = Spectrum::of(&x, step, WindowFunction::Hann).expect("enough");
     let density = |m: usize| hann.density[m].powi(2) / rms.powi(2);
     assert!((density(line) - 4.0 / 6.0).abs() < 1e-12);
     assert!((density(line - 1) - 1.0 / 6.0).abs() < 1e-12 && (density(line + 1) - 1.0 / 6.0).abs() < 1e-12);
@@ -95,7 +95,7 @@ fn a_verdict_names_the_worst_frequency() {
         .map(|i| f64::from(i) * 0.01)
         .map(|t| 5.0 + 0.2 * (TAU * 3.0 * t).sin() + 0.1 * (TAU * 20.0 * t).sin())
         .collect();
-    let spectrum = Spectrum::of(&x, 0.01, Window::Rectangular).expect("enough");
+    let spectrum = Spectrum::of(&x, 0.01, WindowFunction::Rectangular).expect("enough");
     let against = |text: &str| spectrum.against(&text.parse().expect("a limit"));
     // The mean, at 0 Hz, is not held against it. Lines are 0.25 Hz apart, so the density of a tone is its RMS by 0.5.
     let flat = against("1").expect("lines");
@@ -107,25 +107,25 @@ fn a_verdict_names_the_worst_frequency() {
 
 #[test]
 fn what_has_no_spectrum_is_refused() {
-    let few = Spectrum::of(&[1.0; LEAST - 1], 0.1, Window::Hann);
-    assert_eq!(few, Err(SpectrumError::TooFew { count: LEAST - 1, least: LEAST }));
+    let few = Spectrum::of(&[1.0; MIN_SPECTRUM_SAMPLES - 1], 0.1, WindowFunction::Hann);
+    assert_eq!(few, Err(SpectrumError::TooFew { count: MIN_SPECTRUM_SAMPLES - 1, least: MIN_SPECTRUM_SAMPLES }));
     let mut x = [1.0; 20];
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(Spectrum::of(&x, step, Window::Hann), Err(SpectrumError::Step { .. })));
+        assert!(matches!(Spectrum::of(&x, step, WindowFunction::Hann), Err(SpectrumError::Step { .. })));
     }
     x[3] = f64::NAN;
-    assert_eq!(Spectrum::of(&x, 0.1, Window::Hann), Err(SpectrumError::NotFinite { index: 3 }));
+    assert_eq!(Spectrum::of(&x, 0.1, WindowFunction::Hann), Err(SpectrumError::NotFinite { index: 3 }));
 }
 
 /// What is said of a run's base is the spectrum of what it felt, axis by axis.
 #[test]
 fn the_spectra_of_a_base_are_those_of_what_it_felt() {
     let scenario = Scenario::builtin("case-1").expect("built in");
-    let mut found = BaseSpectrum::of(&scenario, Window::Rectangular).expect("long enough");
-    let ([x, y, n], fault) = felt(&scenario).expect("it runs");
+    let mut found = BaseSpectrum::of(&scenario, WindowFunction::Rectangular).expect("long enough");
+    let ([x, y, n], fault) = base_loads(&scenario).expect("it runs");
     assert_eq!((found.samples, found.fault.clone(), fault), (n.len(), None, None));
     for ((.., spectrum), samples) in found.spectra.named().into_iter().zip([&x, &y, &n]) {
-        assert_eq!(*spectrum, Spectrum::of(samples, scenario.step, Window::Rectangular).expect("long enough"));
+        assert_eq!(*spectrum, Spectrum::of(samples, scenario.step, WindowFunction::Rectangular).expect("long enough"));
         let [at, most] = spectrum.greatest();
         assert!(spectrum.density.iter().all(|density| *density <= most) && spectrum.frequency.contains(&at));
         assert!(spectrum.below(0.5) <= spectrum.below(0.99));

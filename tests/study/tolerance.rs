@@ -10,8 +10,8 @@ use stillbase::planning::Motion;
 use stillbase::session::Run;
 use stillbase::session::scenario::{Scenario, Spread, Tolerance, default_spreads};
 use stillbase::study::tolerance::{
-    AgainstTracking, Agreement, Bands, Batch, CHUNK, Distributions, Ensemble, Histogram, Mode, Outcome, Quantiles,
-    Shares, ToleranceError, Yield, Yields, inverse_normal, simulate,
+    Agreement, Bands, Batch, CHUNK, Distributions, Ensemble, Histogram, Mode, Quantiles, SampleOutcome, Shares,
+    ToleranceError, TrackingComparison, Yield, Yields, inverse_normal, simulate,
 };
 
 fn spreads(pairs: &[(&str, &str)]) -> BTreeMap<String, Spread> {
@@ -33,7 +33,7 @@ fn of_machine(sampler: &stillbase::study::tolerance::Sampler, machine: usize) ->
 }
 
 /// Machine, constants, dynamics at every instant.
-fn straightforward(ensemble: &Ensemble, deviations: &[f64]) -> Outcome {
+fn straightforward(ensemble: &Ensemble, deviations: &[f64]) -> SampleOutcome {
     let machine = ensemble.machine_of(deviations).expect("possible");
     let (inertia, gravity) = (Inertia::of(&machine), machine.gravity());
     let around = Surroundings { gravity, force: Vector::default() };
@@ -45,7 +45,12 @@ fn straightforward(ensemble: &Ensemble, deviations: &[f64]) -> Outcome {
     let between = &wrenches[1..wrenches.len() - 1];
     let rms =
         |f: fn(&(f64, f64)) -> f64| (between.iter().map(|w| f(w).powi(2)).sum::<f64>() / between.len() as f64).sqrt();
-    Outcome { peak_moment: peak(|w| w.0), peak_force: peak(|w| w.1), rms_moment: rms(|w| w.0), rms_force: rms(|w| w.1) }
+    SampleOutcome {
+        peak_moment: peak(|w| w.0),
+        peak_force: peak(|w| w.1),
+        rms_moment: rms(|w| w.0),
+        rms_force: rms(|w| w.1),
+    }
 }
 
 /// The fast way equals the straightforward one to 1e-12 of each result.
@@ -376,7 +381,7 @@ fn simulated_machines_come_to_perfect_tracking_as_gains_grow() {
     let base = Scenario::builtin("case-1").expect("built in");
     let some = spreads(&[("link.*.com", "normal:0.002"), ("link.*.mass", "uniform:5%")]);
     let difference = |kp: f64, kd: f64| {
-        let all = stillbase::simulation::plant::Each::All;
+        let all = stillbase::simulation::plant::DriveValues::All;
         let control = stillbase::simulation::control::Control { kp: all(kp), kd: all(kd), ..base.control };
         let scenario = Scenario { control, step: 0.0005, ..base.clone() };
         let run = Run::new(&scenario).expect("it starts");
@@ -420,15 +425,15 @@ fn batches_are_parts_of_the_whole() {
     assert!(simulated.tracking == batch.outcomes && simulated.deviations.is_empty());
     let plant = ensemble.machine_of(&batch.deviations[0]).expect("possible");
     assert_eq!(simulated.outcomes[0], simulate(&run, &plant).expect("it ends"));
-    let against = AgainstTracking::of(&simulated.outcomes, &simulated.tracking).expect("they were simulated");
+    let against = TrackingComparison::of(&simulated.outcomes, &simulated.tracking).expect("they were simulated");
     let furthest = simulated.outcomes.iter().zip(&batch.outcomes).map(|(a, b)| (a.peak_moment - b.peak_moment).abs());
     assert_eq!(against.peak_moment_difference, furthest.fold(0.0, f64::max));
-    assert!(AgainstTracking::of(&simulated.outcomes, &[]).is_none());
+    assert!(TrackingComparison::of(&simulated.outcomes, &[]).is_none());
 }
 
 #[test]
 fn all_machines_come_to_distributions_and_yields() {
-    let machine = |x: f64| Outcome { peak_moment: x, peak_force: 10.0 * x, rms_moment: 0.5 * x, rms_force: x };
+    let machine = |x: f64| SampleOutcome { peak_moment: x, peak_force: 10.0 * x, rms_moment: 0.5 * x, rms_force: x };
     let outcomes = [4.0, 1.0, 3.0, 2.0].map(machine);
     let found = Distributions::of(&outcomes).expect("some");
     assert_eq!((found.peak_moment.mean, found.peak_force.mean, found.rms_moment.mean), (2.5, 25.0, 1.25));
@@ -523,12 +528,12 @@ fn a_study_is_of_one_piece() {
     use std::sync::Arc;
     use stillbase::session::Run;
 
-    use stillbase::query::answered;
-    use stillbase::study::tolerance::{Studied, Studying, left_out};
+    use stillbase::query::answer_now;
+    use stillbase::study::tolerance::{StudiedRun, StudyQuery, neglected_effects};
     let mut scenario = stillbase::session::scenario::Scenario::builtin("case-3").expect("built in");
     scenario.tolerance = toml::from_str("samples = 3000\nmoment_limit = 0.01").expect("tolerances");
-    let run = Studied(Arc::new(Run::new(&scenario).expect("planned")));
-    let study = answered::<Studying>(run).expect("something varies");
+    let run = StudiedRun(Arc::new(Run::new(&scenario).expect("planned")));
+    let study = answer_now::<StudyQuery>(run).expect("something varies");
     assert!((study.shares.iter().map(|s| s.moment_share).sum::<f64>() - 1.0).abs() < 1e-9);
     assert!(study.shares.is_sorted_by(|a, b| a.moment_share >= b.moment_share));
     assert!(study.moment.values.is_sorted() && study.moment_histogram.counts.iter().sum::<u64>() == 3000);
@@ -542,6 +547,6 @@ fn a_study_is_of_one_piece() {
         [("spacecraft", "a base that moves"), ("pick-up", "a payload that comes or goes"), ("friction", "friction")]
     {
         let scenario = stillbase::session::scenario::Scenario::builtin(name).expect("built in");
-        assert!(left_out(&scenario).contains(&word), "{name}: {:?}", left_out(&scenario));
+        assert!(neglected_effects(&scenario).contains(&word), "{name}: {:?}", neglected_effects(&scenario));
     }
 }

@@ -1,14 +1,15 @@
 //! Trim balancing: machines with hidden errors are found from what their bases feel, within what is said of it.
 
-use stillbase::mechanics::balance::{Body, Condition, Hold, Keep, Parameter, Quantity};
-use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
+use stillbase::mechanics::balance::{Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceRequest};
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::query::{Portion, Query, Shared, answered};
+use stillbase::query::{Portion, Query, Shared, answer_now};
 use stillbase::study::trim::{
-    Fit, Made, Motion, NoTrim, Part, Recording, Rows, TrimError, TrimRequest, Trimming, Unknown, Way, doubt, fit,
-    identified, mend, next, taken, worth,
+    ComplexPart, Fit, MeasuredMotion, MeasurementSet, NoTrim, Regressor, RegressorSource, TrimError, TrimMethod,
+    TrimQuery, TrimRequest, Unknown, adopt_parameters, correct_machine, correction_benefit, doubt, fit,
+    identified_machine, next_excitation,
 };
 
 use crate::support::random::a_machine;
@@ -65,14 +66,14 @@ fn normal(noise: &mut Noise) -> f64 {
     (-2.0 * u.ln()).sqrt() * v.cos()
 }
 
-fn measured(machine: &Machine, noise: &mut Noise, how: Measuring, moving: &[bool]) -> Recording {
+fn measured(machine: &Machine, noise: &mut Noise, how: Measuring, moving: &[bool]) -> MeasurementSet {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
     let mut motions = Vec::new();
     for _ in 0..how.motions {
         let sines = Sines::of(noise, n, moving);
         let offset = [(); 3].map(|()| noise.between(-5.0, 5.0));
-        let (mut motion, mut t) = (Motion::default(), noise.between(-3.0, 9.0));
+        let (mut motion, mut t) = (MeasuredMotion::default(), noise.between(-3.0, 9.0));
         let mut error = [0.0; 3].map(|_: f64| normal(noise));
         for _ in 0..how.rows {
             let [q, qd, qdd] = sines.at(t);
@@ -92,7 +93,7 @@ fn measured(machine: &Machine, noise: &mut Noise, how: Measuring, moving: &[bool
         }
         motions.push(motion);
     }
-    Recording { motions }
+    MeasurementSet { motions }
 }
 
 /// The machine as it was really built: centres of mass and masses are off.
@@ -114,8 +115,8 @@ fn truth(fit: &Fit, machine: &Machine) -> Vec<f64> {
     fit.unknowns.nominal(&Inertia::of(machine))
 }
 
-fn fitted(machine: &Machine, recording: &Recording, angles_only: bool) -> Fit {
-    fit(machine, &Rows::of(machine, recording, angles_only).expect("rows")).expect("a fit")
+fn fitted(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Fit {
+    fit(machine, &Regressor::of(machine, recording, angles_only).expect("rows")).expect("a fit")
 }
 
 /// The largest error by the scale of the machine.
@@ -183,7 +184,7 @@ fn noise_of_accelerations_is_that_of_the_window() {
     let machine = family_machine("two-drive");
     let (step, sigma, size, rate) = (0.002, 4e-5, 0.5, 6.0);
     let mut noise = Noise::of(12);
-    let mut motion = Motion::default();
+    let mut motion = MeasuredMotion::default();
     for i in 0..2000 {
         let t = step * f64::from(i);
         motion.t.push(t);
@@ -193,8 +194,8 @@ fn noise_of_accelerations_is_that_of_the_window() {
         motion.force.push(Vector::new(normal(&mut noise), normal(&mut noise)));
         motion.moment.push(normal(&mut noise));
     }
-    let rows = Rows::of(&machine, &Recording { motions: vec![motion] }, true).expect("rows");
-    let Made::Windows { half, noise: share } = rows.made else { panic!("windows") };
+    let rows = Regressor::of(&machine, &MeasurementSet { motions: vec![motion] }, true).expect("rows");
+    let RegressorSource::Windows { half, noise: share } = rows.made else { panic!("windows") };
     // Sums over u = (t − centre)/half.
     let count = 20_000;
     let sum = |f: &dyn Fn(f64) -> f64| {
@@ -255,7 +256,7 @@ fn laws_of_scale() {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs() + 1e-3);
     let mut shifted = recording.clone();
     for (i, motion) in shifted.motions.iter_mut().enumerate() {
-        let Motion { t, force, moment, .. } = motion;
+        let MeasuredMotion { t, force, moment, .. } = motion;
         force.iter_mut().zip(&*t).for_each(|(f, t)| *f += Vector::new(7.0 - 0.4 * t, (0.3 * t - 3.0) * i as f64));
         moment.iter_mut().zip(&*t).for_each(|(n, t)| *n += 0.2 * t - 11.0);
         motion.t.iter_mut().for_each(|t| *t += 1e3);
@@ -284,7 +285,7 @@ fn what_data_cannot_tell_is_named() {
     let angles = Measuring { sigma: [1e-5, 0.1, 0.02], rates: false, rows: 500, step: 0.004, ..EXACT };
     for how in [exact, angles] {
         let recording = measured(&hidden, &mut noise, how, &[true, false, true]);
-        let rows = Rows::of(machine, &recording, false).expect("rows");
+        let rows = Regressor::of(machine, &recording, false).expect("rows");
         assert_eq!(rows.moves, [true, false, true]);
         let fit = fit(machine, &rows).expect("a fit");
         for i in 0..fit.unknowns.count() {
@@ -292,7 +293,7 @@ fn what_data_cannot_tell_is_named() {
             let lost = match fit.unknowns.at(i) {
                 Unknown::Of(Condition::Force(1), _) | Unknown::Momentum(1) => true,
                 Unknown::Of(Condition::Force(_), _) | Unknown::Momentum(_) => false,
-                Unknown::Of(Condition::Coupling(0, 2), Part::Along | Part::Across) => false,
+                Unknown::Of(Condition::Coupling(0, 2), ComplexPart::Along | ComplexPart::Across) => false,
                 Unknown::Of(..) => continue,
             };
             assert_eq!(!fit.told[i], lost, "{}: {:?}", fit.unknowns.at(i).name(machine), fit.confused);
@@ -306,14 +307,14 @@ fn what_data_cannot_tell_is_named() {
     // What is taken of the rest is what was measured, or the file's.
     let recording = measured(&hidden, &mut noise, angles, &[true, false, true]);
     let fit = fitted(machine, &recording, false);
-    let taken = taken(&fit);
+    let taken = adopt_parameters(&fit);
     for i in 0..fit.unknowns.of_balance() {
         let near = [fit.measured[i], fit.nominal[i]].map(|of| (taken.values[i] - of).abs());
         assert!(near[0] <= 2.0 * fit.half_width(i) || near[1] == 0.0, "{i}: {near:?}");
         assert!(fit.told[i] || near[1] == 0.0);
     }
     let none = measured(&hidden, &mut noise, exact, &[false; 3]);
-    assert_eq!(Rows::of(machine, &none, false).unwrap_err(), TrimError::Still);
+    assert_eq!(Regressor::of(machine, &none, false).unwrap_err(), TrimError::Still);
 }
 
 /// Drives that turn as one are told as one: what both bring to the force, and what both bring to the moment, each together.
@@ -347,22 +348,22 @@ fn weighed() -> Machine {
     let bare = builtin("nine-link-bare").expect("built in");
     let sites = bare.resolved_links().iter().enumerate();
     let sites = sites.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
-    let asked = Weighing::least(Objective::inertia(), sites, Disc::STEEL);
-    place(bare, &asked).expect("counterweights").machine
+    let asked = CounterweightSpec::least(Objective::inertia(), sites, Disc::STEEL);
+    place_weights(bare, &asked).expect("counterweights").machine
 }
 
-fn of_weights(machine: &Machine) -> Way {
-    let mut asked = Keep::default();
+fn of_weights(machine: &Machine) -> TrimMethod {
+    let mut asked = RebalanceRequest::default();
     for i in 0..machine.spec().counterweights.len() {
-        for quantity in [Quantity::Mass, Quantity::Along] {
-            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), Hold::Free);
+        for quantity in [BodyQuantity::Mass, BodyQuantity::Along] {
+            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), ParameterBounds::Free);
         }
     }
-    Way::Change(asked)
+    TrimMethod::Change(asked)
 }
 
 /// The dynamic force, root mean square, over motions that were measured.
-fn shaking(machine: &Machine, recording: &Recording) -> f64 {
+fn shaking(machine: &Machine, recording: &MeasurementSet) -> f64 {
     let inertia = Inertia::of(machine);
     let (mut sum, mut count) = (0.0, 0);
     for motion in &recording.motions {
@@ -396,8 +397,8 @@ fn the_real_machine_is_mended() {
         let how = Measuring { sigma: [0.0, 0.02, 0.005], rows: 300, ..EXACT };
         let recording = measured(&hidden, &mut noise, how, &[true; 3]);
         let fit = fitted(&machine, &recording, false);
-        let taken = taken(&fit);
-        let mended = mend(&machine, &taken, &of_weights(&machine)).expect("a change");
+        let taken = adopt_parameters(&fit);
+        let mended = correct_machine(&machine, &taken, &of_weights(&machine)).expect("a change");
         let mut after = hidden.spec().clone();
         for change in &mended.changes {
             let tenths = (change.to - change.from) / 1e-4;
@@ -432,7 +433,7 @@ fn off_and_taken_agree() {
         let mut noise = Noise::of(700 + seed);
         let hidden = built(machine, &mut noise, 0.004);
         let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
-        let taken = taken(&fit);
+        let taken = adopt_parameters(&fit);
         for i in 0..fit.unknowns.of_balance() {
             assert_eq!(taken.off[i], taken.measured[i]);
             assert_eq!(taken.off[i], taken.values[i] != fit.nominal[i]);
@@ -461,11 +462,11 @@ fn a_change_is_proposed_where_it_helps() {
         let hidden = Machine::new(spec).expect("a machine");
         let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
         let recording = measured(&hidden, &mut noise, how, &[true; 3]);
-        let rows = Rows::of(&machine, &recording, false).expect("rows");
+        let rows = Regressor::of(&machine, &recording, false).expect("rows");
         let fit = fit(&machine, &rows).expect("a fit");
-        let taken = taken(&fit);
-        let mended = mend(&machine, &taken, &way).expect("a change");
-        if !worth(&machine, &rows, &fit, &taken, &mended).helps() {
+        let taken = adopt_parameters(&fit);
+        let mended = correct_machine(&machine, &taken, &way).expect("a change");
+        if !correction_benefit(&machine, &rows, &fit, &taken, &mended).helps() {
             continue;
         }
         // The force of the true machine before and after.
@@ -490,7 +491,7 @@ fn the_query_puts_all_of_it_together() {
     let hidden = Machine::new(spec).expect("a machine");
     let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
     let mut recording = measured(&hidden, &mut noise, how, &[true; 3]);
-    let request = |recording: &Recording, as_given: bool| TrimRequest {
+    let request = |recording: &MeasurementSet, as_given: bool| TrimRequest {
         machine: Shared(machine.clone().into()),
         recording: Shared(recording.clone().into()),
         angles_only: false,
@@ -498,12 +499,12 @@ fn the_query_puts_all_of_it_together() {
         way: of_weights(&machine),
         accelerations: None,
     };
-    let ask = |recording: &Recording, as_given: bool| answered::<Trimming>(request(recording, as_given));
+    let ask = |recording: &MeasurementSet, as_given: bool| answer_now::<TrimQuery>(request(recording, as_given));
     let found = ask(&recording, false);
     assert!(found.doubt.is_none() && found.angle_noise.is_none());
     let trim = found.outcome.expect("a fit");
     let fit = fitted(&machine, &recording, false);
-    assert_eq!(trim.taken, taken(&fit));
+    assert_eq!(trim.taken, adopt_parameters(&fit));
     let told = trim.report.numbers.iter().map(|number| number.measured.expect("told"));
     assert!(told.eq(fit.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
     let mended = trim.mended.expect("a change");
@@ -516,7 +517,7 @@ fn the_query_puts_all_of_it_together() {
     assert!(believed.doubt.is_some() && believed.outcome.is_ok());
     // Faults are tried one by one, each in a portion.
     let mut heard = Vec::new();
-    let mut work = Trimming::begin(request(&recording, false));
+    let mut work = TrimQuery::begin(request(&recording, false));
     while let Portion::More(done) = work.go_on(&mut |_| true) {
         heard.push(done);
     }
@@ -534,16 +535,16 @@ fn new_counterweights_mend_what_has_none() {
     spec.links.iter_mut().for_each(|link| link.com += noise.between(-0.01, 0.01));
     let hidden = Machine::new(spec).expect("a machine");
     let recording = measured(&hidden, &mut noise, EXACT, &[true; 3]);
-    let taken = taken(&fitted(machine, &recording, false));
+    let taken = adopt_parameters(&fitted(machine, &recording, false));
     let sites = machine.resolved_links().iter().enumerate();
     let sites = sites.map(|(link, p)| Sites { link, from: -p.length, to: p.length, most: f64::INFINITY }).collect();
-    let asked = Weighing::least(Objective::mass(), sites, Disc::STEEL);
-    let mended = mend(machine, &taken, &Way::Add(asked)).expect("new ones");
+    let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
+    let mended = correct_machine(machine, &taken, &TrimMethod::Add(asked)).expect("new ones");
     let mut after = hidden.spec().clone();
     after.counterweights = mended.machine.spec().counterweights.clone();
     let after = Machine::new(after).expect("a machine");
     assert!(shaking(&after, &recording) < 0.02 * shaking(&hidden, &recording));
-    let (written, misses) = identified(machine, &taken).expect("one");
+    let (written, misses) = identified_machine(machine, &taken).expect("one");
     assert!(misses.iter().all(|miss| miss.norm() < 1e-9), "{misses:?}");
     let (got, want) = (Inertia::of(&written), Inertia::of(&hidden));
     for condition in Condition::all(3) {
@@ -563,13 +564,13 @@ fn the_next_motion_keeps_its_promise() {
         let hidden = built(machine, &mut noise, 0.02);
         let how = Measuring { sigma: [0.0, 0.2, 0.05], motions: 1, rows: 300, slow, ..EXACT };
         let recording = measured(&hidden, &mut noise, how, &[true; 2]);
-        let rows = Rows::of(machine, &recording, false).expect("rows");
+        let rows = Regressor::of(machine, &recording, false).expect("rows");
         let before = fit(machine, &rows).expect("a fit");
         let seen = |k: usize| recording.motions[0].qdd.iter().map(|qdd| qdd[k].abs()).fold(0.0, f64::max);
         // Much faster than before, so that much is to be gained.
         let fast = [4.0 * seen(0), 4.0 * seen(1)];
-        let usual = next(machine, &recording, &rows, &before, None);
-        let told = next(machine, &recording, &rows, &before, Some(&fast));
+        let usual = next_excitation(machine, &recording, &rows, &before, None);
+        let told = next_excitation(machine, &recording, &rows, &before, Some(&fast));
         assert!(told.candidates[0].half_width < usual.candidates[0].half_width);
         let best = &told.candidates[0];
         let last = told.candidates.last().expect("several");
@@ -594,7 +595,7 @@ fn the_next_motion_keeps_its_promise() {
                 assert!(a * w * w <= most[*k] * (1.0 + 1e-9), "no faster than it may be: {candidate:?}");
             }
             let sines = Sines(parts, (0..2).map(|k| ends(k).iter().sum::<f64>() / 2.0).collect());
-            let (inertia, mut more) = (Inertia::of(&hidden), Motion::default());
+            let (inertia, mut more) = (Inertia::of(&hidden), MeasuredMotion::default());
             let (fresh, mut error) = ((1.0 - slow * slow).sqrt(), [0.0; 3].map(|_: f64| normal(&mut noise)));
             for i in 0..how.rows {
                 let t = i as f64 * how.step;
@@ -633,11 +634,12 @@ fn every_kind_of_motion_is_a_candidate() {
         let n = machine.drives();
         let how = Measuring { sigma: [0.0, 0.2, 0.05], ..EXACT };
         let recording = measured(machine, &mut noise, how, &vec![true; n]);
-        let rows = Rows::of(machine, &recording, false).expect("rows");
-        let candidates = next(machine, &recording, &rows, &fit(machine, &rows).expect("a fit"), None).candidates;
+        let rows = Regressor::of(machine, &recording, false).expect("rows");
+        let candidates =
+            next_excitation(machine, &recording, &rows, &fit(machine, &rows).expect("a fit"), None).candidates;
         assert_eq!(candidates.len(), count, "{name}");
         let all = candidates.iter().filter(|one| one.drives.len() == n && n > 2).collect::<Vec<_>>();
-        let alike = |one: &&&stillbase::study::trim::Candidate| one.frequency.windows(2).all(|f| f[0] == f[1]);
+        let alike = |one: &&&stillbase::study::trim::Excitation| one.frequency.windows(2).all(|f| f[0] == f[1]);
         assert!(n < 3 || (all.len() == 2 && all.iter().filter(alike).count() == 1), "{name}");
         for one in &candidates {
             assert!(one.half_width.is_finite() && one.all >= 1.0, "{name}: {one:?}");
@@ -700,13 +702,13 @@ fn the_interval_of_a_gain_counts_what_it_was_chosen_by() {
     let mut noise = Noise::of(31);
     let hidden = built(&machine, &mut noise, 0.02);
     let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
-    let rows = Rows::of(&machine, &measured(&hidden, &mut noise, how, &[true; 3]), false).expect("rows");
+    let rows = Regressor::of(&machine, &measured(&hidden, &mut noise, how, &[true; 3]), false).expect("rows");
     let fit = fit(&machine, &rows).expect("a fit");
-    let mut taken = taken(&fit);
-    let mended = mend(&machine, &taken, &of_weights(&machine)).expect("a change");
+    let mut taken = adopt_parameters(&fit);
+    let mended = correct_machine(&machine, &taken, &of_weights(&machine)).expect("a change");
     let mut of = |count: usize| {
         taken.measured = (0..fit.unknowns.of_balance()).map(|i| i < count).collect();
-        worth(&machine, &rows, &fit, &taken, &mended)
+        correction_benefit(&machine, &rows, &fit, &taken, &mended)
     };
     let first = of(1);
     for (count, quantile) in [(2, 5.991), (3, 7.815), (4, 9.488), (6, 12.592), (12, 21.026)] {
@@ -726,17 +728,17 @@ fn what_is_no_recording_is_refused() {
     let machine = builtin("two-drive").expect("built in");
     let mut noise = Noise::of(9);
     let good = measured(machine, &mut noise, EXACT, &[true; 2]);
-    let refused = |change: &dyn Fn(&mut Motion)| {
+    let refused = |change: &dyn Fn(&mut MeasuredMotion)| {
         let mut bad = good.clone();
         change(&mut bad.motions[1]);
-        Rows::of(machine, &bad, false).expect_err("refused").to_string()
+        Regressor::of(machine, &bad, false).expect_err("refused").to_string()
     };
     assert!(refused(&|m| m.moment[3] = f64::NAN).starts_with("motion 2: what is no finite number"));
     assert!(refused(&|m| m.t[4] = m.t[3]).contains("times that do not rise"));
     assert!(refused(&|m| _ = m.force.pop()).contains("lists of different lengths"));
     assert!(refused(&|m| m.q.iter_mut().for_each(|q| *q = PerDrive::zeros(3))).contains("3 drives"));
     let short = |rows: usize| {
-        let own = Motion {
+        let own = MeasuredMotion {
             t: good.motions[0].t[..rows].to_vec(),
             q: good.motions[0].q[..rows].to_vec(),
             qd: good.motions[0].qd[..rows].to_vec(),
@@ -744,26 +746,29 @@ fn what_is_no_recording_is_refused() {
             force: good.motions[0].force[..rows].to_vec(),
             moment: good.motions[0].moment[..rows].to_vec(),
         };
-        Recording { motions: vec![own] }
+        MeasurementSet { motions: vec![own] }
     };
     for name in ["two-drive", "nine-link", "four-drive"] {
         let machine = builtin(name).expect("built in");
-        let rows = Rows::of(machine, &Recording::default(), false).expect_err("nothing");
+        let rows = Regressor::of(machine, &MeasurementSet::default(), false).expect_err("nothing");
         // As many as stand in the mass matrix and beside it: g_k and C_kl have two parts each, D_k has one.
         let n = machine.drives();
         assert_eq!(rows, TrimError::TooFew { rows: 0, unknowns: 2 * (n + n * (n - 1) / 2) + n }, "{name}");
     }
-    let few = Rows::of(machine, &short(3), false).expect_err("too few");
+    let few = Regressor::of(machine, &short(3), false).expect_err("too few");
     assert_eq!(few, TrimError::TooFew { rows: 3, unknowns: 8 });
-    assert!(matches!(Rows::of(machine, &short(20), true), Err(TrimError::Short { motion: 0, rows: 20, want: 51, .. })));
+    assert!(matches!(
+        Regressor::of(machine, &short(20), true),
+        Err(TrimError::Short { motion: 0, rows: 20, want: 51, .. })
+    ));
     let huge = {
         let mut huge = good.clone();
         huge.motions.iter_mut().for_each(|m| m.t.iter_mut().enumerate().for_each(|(i, t)| *t = 1e-9 * i as f64));
         huge
     };
     // At a gigahertz nothing but noise moves, or what is found is finite.
-    if let Ok(rows) = Rows::of(machine, &huge, true) {
-        assert!(matches!(rows.made, Made::Windows { .. }));
+    if let Ok(rows) = Regressor::of(machine, &huge, true) {
+        assert!(matches!(rows.made, RegressorSource::Windows { .. }));
         if let Ok(fit) = fit(machine, &rows) {
             assert!(fit.measured.iter().all(|x| x.is_finite()));
         }

@@ -1,21 +1,21 @@
-//! [`Assessing`]: the query that assesses a table: a motion, or a measured machine.
+//! [`AssessmentQuery`]: the query that assesses a table: a motion, or a measured machine.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::files::table::{SampleTable, Table as Read, motions, samples};
+use crate::files::table::{SampleTable, TableData as Read, motions, samples};
 use crate::mechanics::machine::Machine;
 use crate::planning::curves::Coordinates;
-use crate::query::{Portion, Query, Shared, Watch};
+use crate::query::{Portion, ProgressCallback, Query, Shared};
 use crate::session::scenario::Scenario;
 use crate::study::advice::Advice;
-use crate::study::import::{GivenMotion, ImportError, Imported, Importing, Keep, Request};
-use crate::study::trim::{Motion, Recording, TrimRequest, Trimmed, Trimming, Way};
+use crate::study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
+use crate::study::trim::{MeasuredMotion, MeasurementSet, TrimMethod, TrimOutcome, TrimQuery, TrimRequest};
 
 /// The text of a table, and its name.
 #[derive(Debug, PartialEq)]
-pub struct Table {
+pub struct TableText {
     /// Its file name.
     pub name: String,
     /// Its text.
@@ -43,7 +43,7 @@ pub struct TableOptions {
     /// Cut-off frequency of smoothing, Hz.
     pub smoothing: Option<f64>,
     /// What the proposed motion keeps of the given one.
-    pub keep: Option<Keep>,
+    pub keep: Option<PreservedPath>,
     /// Pose constant b of the proposed motion, rad.
     pub b: Option<f64>,
     /// Whether measured rates and accelerations are ignored.
@@ -54,11 +54,11 @@ pub struct TableOptions {
 
 /// An open table with its options.
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct OpenedTable {
     /// Its file.
     pub file: PathBuf,
     /// Its content.
-    pub table: Shared<Table>,
+    pub table: Shared<TableText>,
     /// Its options.
     pub options: TableOptions,
     /// The measured machine: the one on display when the table was opened.
@@ -67,7 +67,7 @@ pub struct Given {
 
 /// A result that can be applied to the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taking {
+pub enum TableAction {
     /// The task of the proposed motion.
     Proposal,
     /// The task of the given motion.
@@ -78,10 +78,10 @@ pub enum Taking {
     Measured,
 }
 
-impl Given {
+impl OpenedTable {
     /// Returns the request for a session's machine, plant, base, control, step and design; its task and its edits do
     /// not matter.
-    pub fn asked(&self, scenario: &Scenario) -> Option<Asked> {
+    pub fn asked(&self, scenario: &Scenario) -> Option<TableRequest> {
         let Scenario { machine, plant, base, control, design, .. } = scenario;
         let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let scenario = Scenario {
@@ -97,15 +97,15 @@ impl Given {
             ..Scenario::builtin("case-3")?
         };
         let (table, options, measured) = (self.table.clone(), self.options.clone(), self.measured.clone());
-        Some(Asked { table, scenario: Shared(scenario.into()), measured, options })
+        Some(TableRequest { table, scenario: Shared(scenario.into()), measured, options })
     }
 }
 
 /// A request to assess a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct TableRequest {
     /// The table.
-    pub table: Shared<Table>,
+    pub table: Shared<TableText>,
     /// The session's machine, plant, base and control.
     pub scenario: Shared<Scenario>,
     /// The measured machine.
@@ -116,7 +116,7 @@ pub struct Asked {
 
 /// Assessment of a table.
 #[derive(Debug)]
-pub enum Assessed {
+pub enum TableAssessment {
     /// Assessment of a motion.
     Motion {
         /// The given motion.
@@ -124,37 +124,37 @@ pub enum Assessed {
         /// Number of places where a whole turn was removed, for each column.
         unwrapped: Vec<usize>,
         /// Its base reactions, and the proposed motion.
-        imported: Box<Result<Imported, ImportError>>,
+        imported: Box<Result<ImportedMotion, MotionImportError>>,
     },
     /// Assessment of a measured machine.
-    Measured(Box<Trimmed>),
+    Measured(Box<TrimOutcome>),
 }
 
 /// Query that reads a table, then runs the import of a motion or the trim of a machine.
-pub struct Assessing {
-    asked: Asked,
+pub struct AssessmentQuery {
+    asked: TableRequest,
     work: Option<Work>,
 }
 
 /// The running import or trim of a table that has been read.
 enum Work {
-    Motion { motion: Arc<GivenMotion>, unwrapped: Vec<usize>, importing: Box<Importing> },
-    Measured(Box<Trimming>),
+    Motion { motion: Arc<GivenMotion>, unwrapped: Vec<usize>, importing: Box<ImportQuery> },
+    Measured(Box<TrimQuery>),
 }
 
 /// Fraction of the work that is reading the table.
 const READING_SHARE: f64 = 0.02;
 
-impl Query for Assessing {
-    type Input = Asked;
+impl Query for AssessmentQuery {
+    type Input = TableRequest;
     /// The assessment, or why the table cannot be read.
-    type Answer = Result<Assessed, Advice>;
+    type Answer = Result<TableAssessment, Advice>;
 
-    fn begin(asked: Asked) -> Self {
+    fn begin(asked: TableRequest) -> Self {
         Self { asked, work: None }
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         match &mut self.work {
             None => match self.asked.read() {
                 Ok(work) => {
@@ -168,22 +168,22 @@ impl Query for Assessing {
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(imported) => {
                     let (motion, unwrapped) = (motion.clone(), std::mem::take(unwrapped));
-                    Portion::Done(Ok(Assessed::Motion { motion, unwrapped, imported: imported.into() }))
+                    Portion::Done(Ok(TableAssessment::Motion { motion, unwrapped, imported: imported.into() }))
                 }
             },
             Some(Work::Measured(trimming)) => match trimming.go_on(goes_on) {
                 Portion::More(done) => Portion::More(done.max(READING_SHARE)),
                 Portion::Stopped => Portion::Stopped,
-                Portion::Done(trimmed) => Portion::Done(Ok(Assessed::Measured(trimmed.into()))),
+                Portion::Done(trimmed) => Portion::Done(Ok(TableAssessment::Measured(trimmed.into()))),
             },
         }
     }
 }
 
-impl Asked {
+impl TableRequest {
     fn read(&self) -> Result<Work, Advice> {
         let Self { table, scenario, options, measured } = self;
-        let (Table { name, text }, machine) = (&*table.0, &scenario.0.machine);
+        let (TableText { name, text }, machine) = (&*table.0, &scenario.0.machine);
         let of = |coordinates| samples(text, name, machine, Some(coordinates), options.gaps).map(Read::Motion);
         let read = match options.content {
             None => Read::of(text, name, machine, options.gaps),
@@ -208,20 +208,20 @@ impl Asked {
         let motion = Arc::new(motion);
         let keep = options.keep.filter(|_| coordinates == Coordinates::Drives);
         let request = Request { scenario: scenario.clone(), motion: Shared(motion.clone()), b: options.b, keep };
-        Ok(Work::Motion { motion, unwrapped, importing: Importing::begin(request).into() })
+        Ok(Work::Motion { motion, unwrapped, importing: ImportQuery::begin(request).into() })
     }
 
-    fn trim(&self, motions: Vec<Motion>) -> Work {
+    fn trim(&self, motions: Vec<MeasuredMotion>) -> Work {
         let Self { scenario, options, measured, .. } = self;
         let machine = &*measured.0;
         let request = TrimRequest {
             machine: measured.clone(),
-            recording: Shared(Recording { motions }.into()),
+            recording: Shared(MeasurementSet { motions }.into()),
             angles_only: options.angles_only,
             as_given: options.as_given,
-            way: Way::of(&scenario.0.design, machine),
+            way: TrimMethod::of(&scenario.0.design, machine),
             accelerations: None,
         };
-        Work::Measured(Trimming::begin(request).into())
+        Work::Measured(TrimQuery::begin(request).into())
     }
 }

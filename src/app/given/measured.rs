@@ -2,22 +2,22 @@
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
-use super::assess::Taking;
-use super::parts::{Shown, TOLD, column, rows, take, title};
+use super::assess::TableAction;
+use super::parts::{PROPOSAL_WIDTH, TableView, column, rows, take, title};
 use crate::app::Command;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::note;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::settings::number::{counted, shown as rounded};
-use crate::study::trim::{Change, NoTrim, Number, Trim, TrimReport, Trimmed};
+use crate::study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 470.0;
 
 /// Returns number and size of the measured data.
-pub(super) fn summary(trimmed: &Trimmed) -> String {
-    let Ok(Trim { report, .. }) = &trimmed.outcome else { return String::new() };
+pub(super) fn summary(trimmed: &TrimOutcome) -> String {
+    let Ok(TrimResult { report, .. }) = &trimmed.outcome else { return String::new() };
     let [motions, rows] = [counted(report.motions, "motion"), counted(report.rows, "row")];
     let part = |i: usize, unit: &str| {
         format!("{} {unit} rms, not explained {}", rounded(report.size[i], 4), rounded(report.noise[i], 4))
@@ -26,7 +26,13 @@ pub(super) fn summary(trimmed: &Trimmed) -> String {
 }
 
 /// Draws the identified balance of the machine, and the change that balances it.
-pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimmed, commands: &mut Vec<Command>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    p: &Palette,
+    shown: &TableView<'_>,
+    trimmed: &TrimOutcome,
+    commands: &mut Vec<Command>,
+) {
     let found = match &trimmed.outcome {
         Ok(found) => found,
         Err(why) => {
@@ -35,7 +41,7 @@ pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimme
         }
     };
     column(ui, "numbers", NUMBERS_WIDTH_PT, |ui| numbers(ui, p, &found.report));
-    let rest = ui.available_width().max(TOLD);
+    let rest = ui.available_width().max(PROPOSAL_WIDTH);
     column(ui, "change", rest, |ui| {
         change(ui, p, shown, found, commands);
         if let Some(noise) = trimmed.angle_noise {
@@ -57,7 +63,7 @@ pub(super) fn show(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, trimmed: &Trimme
     });
 }
 
-fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &TableView<'_>, commands: &mut Vec<Command>) {
     ui.add(Label::new(RichText::new(why.to_string()).font(plain(12.5)).color(colour(p.reaction))).wrap());
     let is_doubted = matches!(why, NoTrim::Doubted(_));
     let tip = "Takes the columns as they are: they are right";
@@ -94,12 +100,12 @@ fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
     });
 }
 
-fn change(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, found: &Trim, commands: &mut Vec<Command>) {
-    let Trim { report, mended, .. } = found;
+fn change(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, found: &TrimResult, commands: &mut Vec<Command>) {
+    let TrimResult { report, mended, .. } = found;
     let ink = |ui: &mut Ui, words: &str, tone| {
         ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(tone))).wrap());
     };
-    let changes: Vec<&Change> = report.changed().collect();
+    let changes: Vec<&ParameterChange> = report.changed().collect();
     let [head, rest] = match mended {
         Err(_) => ["Nothing mends it", ""],
         Ok(_) if changes.is_empty() => ["No change", ""],
@@ -109,10 +115,10 @@ fn change(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, found: &Trim, commands: &
     ui.horizontal_wrapped(|ui| {
         if mended.is_ok() && !changes.is_empty() {
             let tip = "The machine of the session becomes the measured one with this change: one step to undo";
-            take(ui, ("Take the change", tip), shown, Taking::Change, commands);
+            take(ui, ("Take the change", tip), shown, TableAction::Change, commands);
         }
         let tip = "The machine of the session becomes the measured one as it stands: one step to undo";
-        take(ui, ("Take as measured", tip), shown, Taking::Measured, commands);
+        take(ui, ("Take as measured", tip), shown, TableAction::Measured, commands);
     });
     match mended {
         Err(why) => ink(ui, &why.to_string(), p.reaction),
@@ -120,7 +126,7 @@ fn change(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, found: &Trim, commands: &
         Ok(_) => {
             rows(ui);
             Grid::new("changes").num_columns(2).spacing([14.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
-                for Change { key, from, to, unit, .. } in &changes {
+                for ParameterChange { key, from, to, unit, .. } in &changes {
                     let unit = if *unit == "kg" { "g" } else { "mm" };
                     let [from, to] = [from, to].map(|x| signed(1e3 * x, 1));
                     ui.label(RichText::new(key).font(plain(12.5)));

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use egui::{Align, Grid, Label, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoints};
 
-use super::assess::Taking;
-use super::parts::{GAP, Shown, TOLD, column, rows, take, title, worded};
+use super::assess::TableAction;
+use super::parts::{COLUMN_GAP, PROPOSAL_WIDTH, TableView, column, rows, take, title, worded};
 use crate::app::plots::{marks, small_axes, spaced};
 use crate::app::study::bare;
 use crate::app::theme::{colour, plain};
@@ -17,7 +17,7 @@ use crate::picture::scene::palette::Palette;
 use crate::planning::curves::Coordinates;
 use crate::session::scenario::Scenario;
 use crate::settings::number::{counted, fixed};
-use crate::study::import::{GivenMotion, ImportError, Imported, Proposal};
+use crate::study::import::{GivenMotion, ImportedMotion, MotionImportError, Proposal};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 360.0;
@@ -37,8 +37,8 @@ pub(super) fn summary(motion: &GivenMotion) -> String {
 pub(super) fn show(
     ui: &mut Ui,
     p: &Palette,
-    shown: &Shown<'_>,
-    (motion, unwrapped, imported): (&GivenMotion, &[usize], &Result<Imported, ImportError>),
+    shown: &TableView<'_>,
+    (motion, unwrapped, imported): (&GivenMotion, &[usize], &Result<ImportedMotion, MotionImportError>),
     commands: &mut Vec<Command>,
 ) {
     let imported = match imported {
@@ -50,10 +50,10 @@ pub(super) fn show(
         }
     };
     column(ui, "numbers", NUMBERS_WIDTH_PT, |ui| numbers(ui, p, imported));
-    let rest = ui.available_width().max(TOLD);
+    let rest = ui.available_width().max(PROPOSAL_WIDTH);
     // The text has priority over the plot where there is no room for both.
     let plot = if rest > 2.0 * MOMENT_PLOT_WIDTH_PT { MOMENT_PLOT_WIDTH_PT } else { 0.0 };
-    let rest = if plot > 0.0 { rest - plot - GAP } else { rest };
+    let rest = if plot > 0.0 { rest - plot - COLUMN_GAP } else { rest };
     column(ui, "proposal", rest, |ui| {
         proposal(ui, p, shown, imported, commands);
         let names = motion.names.iter();
@@ -76,7 +76,7 @@ pub(super) fn show(
 }
 
 /// Plots n_B over time of both motions.
-fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
+fn moments(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {
     title(ui, p, "Base moment n_B", "N m over s; dashed as given");
     let given = imported.given.as_ref().map(|given| &given.moment);
     let proposed = imported.proposal.as_ref().map(|proposal| &proposal.account.moment);
@@ -99,7 +99,7 @@ fn moments(ui: &mut Ui, p: &Palette, imported: &Imported) {
     named(&response.response, "Base moment over time as given and as proposed, N m");
 }
 
-fn numbers(ui: &mut Ui, p: &Palette, imported: &Imported) {
+fn numbers(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {
     let usual = if imported.content == "tip" { "minimum norm" } else { "as given" };
     let dim = |text: &str| RichText::new(text.to_owned()).font(plain(11.5)).color(colour(p.dim));
     let number = |ui: &mut Ui, x: Option<f64>, decimals: usize| {
@@ -132,7 +132,7 @@ fn with_subscripts(name: &str) -> String {
     all.fold(name.to_owned(), |name, (i, digit)| name.replace(&format!("τ_{i}"), &format!("τ{digit}")))
 }
 
-fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
+fn proposal(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, imported: &ImportedMotion, commands: &mut Vec<Command>) {
     let ink = |ui: &mut Ui, words: &str, tone| {
         ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(tone))).wrap());
     };
@@ -154,15 +154,15 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &Shown<'_>, imported: &Imported, co
 }
 
 /// Draws the buttons that apply or compare the motions.
-fn takes(ui: &mut Ui, shown: &Shown<'_>, imported: &Imported, commands: &mut Vec<Command>) {
+fn takes(ui: &mut Ui, shown: &TableView<'_>, imported: &ImportedMotion, commands: &mut Vec<Command>) {
     let Some(as_given) = &imported.as_given else { return };
     ui.horizontal_wrapped(|ui| {
         if imported.scenarios.is_some() {
             let tip = "Makes it the task of the session: one step to undo";
-            take(ui, ("Take the proposal", tip), shown, Taking::Proposal, commands);
+            take(ui, ("Take the proposal", tip), shown, TableAction::Proposal, commands);
         }
         let tip = "Makes the motion as it was given the task of the session, to see what it does to the base";
-        take(ui, ("Take as given", tip), shown, Taking::AsGiven, commands);
+        take(ui, ("Take as given", tip), shown, TableAction::AsGiven, commands);
         let tip = "Runs both, and adds them to the runs side by side";
         let proposal = imported.scenarios.as_ref().map(|[proposal, _]| proposal);
         if let Some(proposal) = proposal

@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
-use super::assess::{Assessed, Given, TableContent, TableOptions, Taking};
+use super::assess::{OpenedTable, TableAction, TableAssessment, TableContent, TableOptions};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::{Command, SessionCommand, WindowCommand};
 use crate::picture::scene::palette::Palette;
@@ -10,25 +10,25 @@ use crate::planning::curves::Coordinates;
 use crate::study::advice::{Advice, Remedy};
 
 /// Minimum width of the column that describes the proposal, points.
-pub(super) const TOLD: f32 = 300.0;
+pub(super) const PROPOSAL_WIDTH: f32 = 300.0;
 
 /// Gap between columns, points.
-pub(super) const GAP: f32 = 14.0;
+pub(super) const COLUMN_GAP: f32 = 14.0;
 
 /// Content of the panel: the table, its assessment, and whether the assessment belongs to the present session.
 #[derive(Clone, Copy)]
-pub(in crate::app) struct Shown<'a> {
-    pub given: &'a Given,
-    pub answer: Option<&'a Result<Assessed, Advice>>,
+pub(in crate::app) struct TableView<'a> {
+    pub given: &'a OpenedTable,
+    pub answer: Option<&'a Result<TableAssessment, Advice>>,
     pub is_known: bool,
 }
 
-impl Shown<'_> {
+impl TableView<'_> {
     /// Returns the type of content; `None` while it is not known.
     pub fn content(&self) -> Option<TableContent> {
         match self.answer {
-            Some(Ok(Assessed::Measured(_))) => Some(TableContent::Measurement),
-            Some(Ok(Assessed::Motion { motion, .. })) => match motion.coordinates {
+            Some(Ok(TableAssessment::Measured(_))) => Some(TableContent::Measurement),
+            Some(Ok(TableAssessment::Motion { motion, .. })) => match motion.coordinates {
                 Coordinates::Drives => Some(TableContent::Drives),
                 Coordinates::EndEffector => Some(TableContent::Tip),
             },
@@ -38,7 +38,7 @@ impl Shown<'_> {
 
     /// Returns b of the proposed motion, rad.
     pub fn proposed_b(&self) -> Option<f64> {
-        let Some(Ok(Assessed::Motion { imported, .. })) = self.answer else { return None };
+        let Some(Ok(TableAssessment::Motion { imported, .. })) = self.answer else { return None };
         imported.as_ref().as_ref().ok()?.proposal.as_ref().map(|proposal| proposal.b)
     }
 
@@ -61,7 +61,7 @@ pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui
             add(ui);
         });
     });
-    ui.add_space(GAP);
+    ui.add_space(COLUMN_GAP);
 }
 
 /// Makes the rows of a table as high as their text.
@@ -95,8 +95,8 @@ pub(super) fn worded(advice: &Advice) -> String {
 pub(super) fn take(
     ui: &mut Ui,
     (words, tip): (&str, &str),
-    shown: &Shown<'_>,
-    taking: Taking,
+    shown: &TableView<'_>,
+    taking: TableAction,
     commands: &mut Vec<Command>,
 ) {
     let button = ui.add_enabled(shown.is_known, Button::new(words)).on_hover_text(tip);

@@ -12,9 +12,9 @@ use crate::app::{Command, SessionCommand, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
-use crate::planning::pose_constant::BOfPoints;
+use crate::planning::pose_constant::CommonB;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Queries, Same, Whole};
+use crate::query::{ByIdentity, Queries, QuickWork};
 use crate::session::Session;
 
 /// Maximum number of points with a bar.
@@ -37,7 +37,7 @@ pub fn bars(
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let serving = queries.ask_beside::<Whole<BOfPoints>>(&(Same(space.clone()), places)).last;
+    let serving = queries.ask_beside::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
     // While the intervals are being computed, those of other points are not shown.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");

@@ -4,13 +4,13 @@ use egui::accesskit::Role;
 use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
 
 use super::prepared::extent;
-use super::shown::Shown;
+use super::shown::DisplayContext;
 use super::{hover, menu, values};
 use crate::app::theme::colour;
 use crate::app::{Command, SessionCommand, ViewChange};
-use crate::picture::charts::choice::{Change, Plot};
-use crate::picture::charts::drawn::Drawn;
-use crate::picture::charts::figure::{Axes, Item, Look, body};
+use crate::picture::charts::choice::{Plot, PlotChange};
+use crate::picture::charts::drawn::PlotLines;
+use crate::picture::charts::figure::{Axes, FigureItem, PlotContext, body};
 use crate::picture::numbers::at_step;
 use crate::picture::paint::figure::items;
 use crate::picture::scene::palette::faded;
@@ -34,9 +34,9 @@ enum Hold {
 /// Draws a plot; returns the time under the pointer, if the pointer is over it.
 pub fn show(
     ui: &mut Ui,
-    shown: &Shown<'_>,
-    (plot, drawn): (&Plot<'_>, &Drawn),
-    look: &Look<'_>,
+    shown: &DisplayContext<'_>,
+    (plot, drawn): (&Plot<'_>, &PlotLines),
+    look: &PlotContext<'_>,
     height: f32,
     commands: &mut Vec<Command>,
 ) -> Option<f64> {
@@ -55,7 +55,7 @@ pub fn show(
         {
             let [a, b] = [from, time_at(pos)].map(|time| axes.place([time, 0.0])[0]);
             let sides = [a.min(b), axes.sides[1], a.max(b), axes.sides[3]];
-            items(&painter, rect.min, &axes, &[Item::Area { sides, colour: faded(p.amber, 0.18) }]);
+            items(&painter, rect.min, &axes, &[FigureItem::Area { sides, colour: faded(p.amber, 0.18) }]);
         }
         items(&painter, rect.min, &axes, &body(plot, drawn, &axes, look));
         if response.has_focus() {
@@ -71,7 +71,7 @@ pub fn show(
         }
         zoom(ui, shown, &response, time_at, commands);
         if plot.values.is_some() && response.double_clicked_by(PointerButton::Primary) {
-            commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), None)).into());
+            commands.push(ViewChange::Charts(PlotChange::Values(plot.name.clone(), None)).into());
         }
     }
     menu::show(ui, shown, plot, &response, commands);
@@ -86,10 +86,10 @@ pub fn show(
 }
 
 /// Describes the plot to a screen reader: the title, and the values at the time on display.
-fn describe(response: &Response, plot: &Plot<'_>, look: &Look<'_>) {
+fn describe(response: &Response, plot: &Plot<'_>, look: &PlotContext<'_>) {
     let over = plot.against.map_or_else(|| "over time".into(), |signal| format!("over {}", signal.label));
     let label = format!("{} {over}, {}", plot.title, plot.unit());
-    let value = |curve: &crate::picture::charts::choice::Curve<'_>| {
+    let value = |curve: &crate::picture::charts::choice::PlotCurve<'_>| {
         format!("{} {}", curve.signal.symbol, at_step(curve.times * curve.signal.value(look.now), 1e-3))
     };
     let values: Vec<String> = plot.shown().map(value).collect();
@@ -113,7 +113,7 @@ fn held(ui: &Ui, response: &Response) -> Option<Hold> {
 
 fn drag(
     ui: &Ui,
-    shown: &Shown<'_>,
+    shown: &DisplayContext<'_>,
     response: &Response,
     axes: &Axes,
     time_at: impl Fn(egui::Pos2) -> f64,
@@ -162,11 +162,11 @@ fn drag(
             Hold::Plot if response.drag_delta().x != 0.0 => {
                 let [left, _, right, _] = axes.sides;
                 let by = -f64::from(response.drag_delta().x / (right - left)) * (axes.x[1] - axes.x[0]);
-                commands.push(ViewChange::Charts(Change::Range(Some(extent.panned(axes.x, by)))).into());
+                commands.push(ViewChange::Charts(PlotChange::Range(Some(extent.panned(axes.x, by)))).into());
             }
             Hold::Range(from) if response.drag_stopped() => {
                 let range = extent.between(from, time_at(pos));
-                commands.extend(range.map(|range| Command::View(ViewChange::Charts(Change::Range(Some(range))))));
+                commands.extend(range.map(|range| Command::View(ViewChange::Charts(PlotChange::Range(Some(range))))));
             }
             Hold::Plot | Hold::Range(_) => {}
         }
@@ -175,7 +175,7 @@ fn drag(
         ui.data_mut(|data| data.remove::<(Id, Hold)>(hold_id()));
     }
     if response.double_clicked_by(PointerButton::Primary) && !shift {
-        commands.push(ViewChange::Charts(Change::Range(extent.all(view_state.charts.range))).into());
+        commands.push(ViewChange::Charts(PlotChange::Range(extent.all(view_state.charts.range))).into());
     } else if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary)) {
         commands.push(match shift {
             true => Command::View(ViewChange::Mark(Some(time_at(pos)))),
@@ -188,7 +188,7 @@ fn drag(
 /// plain wheel scrolls the panel.
 fn zoom(
     ui: &Ui,
-    shown: &Shown<'_>,
+    shown: &DisplayContext<'_>,
     response: &Response,
     time_at: impl Fn(egui::Pos2) -> f64,
     commands: &mut Vec<Command>,
@@ -206,6 +206,6 @@ fn zoom(
         next = Some(extent.panned(range, by));
     }
     if next != chosen {
-        commands.push(ViewChange::Charts(Change::Range(next)).into());
+        commands.push(ViewChange::Charts(PlotChange::Range(next)).into());
     }
 }

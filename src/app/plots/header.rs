@@ -5,16 +5,16 @@ use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, Widg
 
 use crate::app::theme::{bold, colour, plain};
 use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Change, Curve, Plot};
-use crate::picture::charts::drawn::Drawn;
-use crate::picture::charts::figure::{Look, pen};
+use crate::picture::charts::choice::{Plot, PlotChange, PlotCurve};
+use crate::picture::charts::drawn::PlotLines;
+use crate::picture::charts::figure::{PlotContext, pen};
 use crate::picture::numbers::{at_step, signed};
-use crate::study::comparison::Difference;
+use crate::study::comparison::SignalDifference;
 
 /// Height of the line, points.
-pub const TITLE: f32 = 17.0;
+pub const HEADER_HEIGHT: f32 = 17.0;
 /// Height of a row of statistics, points.
-pub const ROW: f32 = 14.0;
+pub const STATISTICS_HEIGHT: f32 = 14.0;
 
 /// Width of a symbol in a row of statistics, points.
 const SYMBOL_WIDTH_PT: f32 = 28.0;
@@ -24,10 +24,10 @@ const ALL_DIGITS: usize = 0;
 const SYMBOLS_ONLY: usize = 3;
 
 /// Draws the line.
-pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>, commands: &mut Vec<Command>) {
     let p = look.palette;
     ui.horizontal(|ui| {
-        ui.set_height(TITLE);
+        ui.set_height(HEADER_HEIGHT);
         let gap = ui.spacing().item_spacing.x;
         let wide =
             |ui: &Ui, text: &str, font| gap + ui.painter().layout_no_wrap(text.into(), font, Color32::WHITE).size().x;
@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, comman
 }
 
 /// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor.
-fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, fewer: usize) -> String {
+fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotContext<'_>, fewer: usize) -> String {
     let (signal, thousandths) = (curve.signal, curve.times != 1.0);
     // Values in thousandths get two decimals; their index B is omitted, since the plot names it.
     let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
@@ -65,7 +65,7 @@ fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, few
         true => at_step(curve.times * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
         false => signed(curve.times * value, if thousandths { 2 } else { 3 } - fewer),
     };
-    match look.mark.map(|marked| Difference::of(signal, marked, look.now)) {
+    match look.mark.map(|marked| SignalDifference::of(signal, marked, look.now)) {
         Some(d) => format!("Δ{symbol} {}", shown(d.by())),
         None => format!("{symbol} {}", shown(signal.value(look.now))),
     }
@@ -75,9 +75,9 @@ fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, few
 fn switch(
     ui: &mut Ui,
     plot: &Plot<'_>,
-    (i, curve): (usize, &Curve<'_>),
+    (i, curve): (usize, &PlotCurve<'_>),
     text: String,
-    look: &Look<'_>,
+    look: &PlotContext<'_>,
     commands: &mut Vec<Command>,
 ) {
     let (p, signal) = (look.palette, curve.signal);
@@ -90,29 +90,29 @@ fn switch(
     button.widget_info(|| WidgetInfo::selected(Role::Switch, true, curve.on, &name));
     let at = |value: f64| signed(curve.times * value, 4);
     let differs = look.mark.map_or_else(String::new, |marked| {
-        let d = Difference::of(signal, marked, look.now);
+        let d = SignalDifference::of(signal, marked, look.now);
         format!(": {} at the second cursor, {} now", at(d.from), at(d.to))
     });
     let unit = if curve.unit().is_empty() { String::new() } else { format!(", {}", curve.unit()) };
     let verb = if curve.on { "away" } else { "back" };
     let button = button.on_hover_cursor(CursorIcon::PointingHand);
     if button.on_hover_text(format!("{}{unit}{differs}\nClick: {verb}", signal.label)).clicked() {
-        let change = Change::Show(plot.name.clone(), signal.path.clone(), !curve.on);
+        let change = PlotChange::Show(plot.name.clone(), signal.path.clone(), !curve.on);
         commands.push(ViewChange::Charts(change).into());
     }
 }
 
 /// Draws the statistics of the curves over the time shown: a row each, in columns of equal width.
-pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>) {
+pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>) {
     let p = look.palette;
     let wide = (ui.available_width() - SYMBOL_WIDTH_PT) / 4.0;
     let cell = |ui: &mut Ui, wide: f32, text: String, tone| {
         let label = Label::new(RichText::new(text).font(plain(10.0)).color(colour(tone))).truncate();
-        ui.add_sized([wide, ROW], label.halign(Align::LEFT));
+        ui.add_sized([wide, STATISTICS_HEIGHT], label.halign(Align::LEFT));
     };
     for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
         let Some(Some(s)) = drawn.statistics.get(i) else { continue };
-        ui.spacing_mut().interact_size.y = ROW;
+        ui.spacing_mut().interact_size.y = STATISTICS_HEIGHT;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             cell(ui, SYMBOL_WIDTH_PT, curve.signal.symbol.clone(), pen(plot, i, look).0);

@@ -2,11 +2,11 @@
 
 use egui::{Grid, Id, RichText, Ui};
 
-use super::shown::{Shown, nearest};
+use super::shown::{DisplayContext, nearest};
 use crate::app::theme::{bold, colour, plain};
 use crate::picture::charts::choice::Plot;
-use crate::picture::charts::drawn::Drawn;
-use crate::picture::charts::figure::{Look, pen};
+use crate::picture::charts::drawn::PlotLines;
+use crate::picture::charts::figure::{PlotContext, pen};
 use crate::picture::numbers::{at_step, signed};
 use crate::session::Session;
 use crate::simulation::frame::Frame;
@@ -34,7 +34,14 @@ pub fn remember(ui: &Ui, over: Option<f64>) {
 }
 
 /// Draws the values of all curves at an instant, in a card.
-pub fn card(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, frame: &Frame) {
+pub fn card(
+    ui: &mut Ui,
+    shown: &DisplayContext<'_>,
+    plot: &Plot<'_>,
+    drawn: &PlotLines,
+    look: &PlotContext<'_>,
+    frame: &Frame,
+) {
     let p = look.palette;
     let dim = |text: String| RichText::new(text).font(plain(11.5)).color(colour(p.dim));
     let number = |x: f64| at_step(x, drawn.finest());

@@ -5,16 +5,22 @@ use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, v
 
 use super::prepared::extent;
 use super::search;
-use super::shown::Shown;
+use super::shown::DisplayContext;
 use super::written::columns;
 use crate::app::theme::{bold, colour};
-use crate::app::{Command, FileDialog, PlotFile, Purpose, ViewChange};
-use crate::picture::charts::choice::{Change, Plot};
-use crate::query::grown;
-use crate::study::samples::Samples;
+use crate::app::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
+use crate::picture::charts::choice::{Plot, PlotChange};
+use crate::query::answer_sequence;
+use crate::study::samples::SignalSamples;
 
 /// Draws the button, and the menu while it is open.
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, response: &Response, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    shown: &DisplayContext<'_>,
+    plot: &Plot<'_>,
+    response: &Response,
+    commands: &mut Vec<Command>,
+) {
     let corner = pos2(response.rect.right() - 24.0, response.rect.top());
     let rect = Rect::from_min_size(corner, vec2(22.0, 16.0));
     let button = ui.interact(rect, response.id.with("menu"), Sense::click());
@@ -31,58 +37,58 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, response: &Response
     Popup::menu(&button).show(|ui| entries(ui, shown, plot, commands));
 }
 
-fn entries(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, commands: &mut Vec<Command>) {
+fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, commands: &mut Vec<Command>) {
     let chosen = &shown.view_state.charts;
     let extent = extent(shown.session);
     let range = extent.shown(chosen.range);
     ui.set_min_width(210.0);
     if ui.button("Copy the values shown").clicked() {
-        let samples: Samples = grown(&columns(plot), shown.session.frames());
+        let samples: SignalSamples = answer_sequence(&columns(plot), shown.session.frames());
         ui.ctx().copy_text(samples.csv(range));
         ui.close();
     }
     for file in PlotFile::ALL {
         if ui.button(format!("Save as {}…", file.words())).clicked() {
-            let purpose = Purpose::Plot(plot.name.clone(), file);
+            let purpose = FilePurpose::Plot(plot.name.clone(), file);
             commands.push(ViewChange::Dialog(Some(FileDialog::suggest(shown.session, purpose))).into());
             ui.close();
         }
     }
     ui.separator();
     if ui.button("Add a curve…").clicked() {
-        search::start(ui.ctx(), search::Sought::Curve(plot.name.clone()));
+        search::start(ui.ctx(), search::SearchPurpose::Curve(plot.name.clone()));
         ui.close();
     }
     for curve in plot.curves.iter().filter(|curve| curve.added && plot.curves.len() > 1) {
         if ui.button(format!("Take {} out", curve.signal.symbol)).clicked() {
-            commands.push(ViewChange::Charts(Change::Remove(plot.name.clone(), curve.signal.path.clone())).into());
+            commands.push(ViewChange::Charts(PlotChange::Remove(plot.name.clone(), curve.signal.path.clone())).into());
             ui.close();
         }
     }
     if ui.button("Against another signal…").clicked() {
-        search::start(ui.ctx(), search::Sought::Across(plot.name.clone()));
+        search::start(ui.ctx(), search::SearchPurpose::Across(plot.name.clone()));
         ui.close();
     }
     if plot.against.is_some() && ui.button("Against time").clicked() {
-        commands.push(ViewChange::Charts(Change::Against(plot.name.clone(), None)).into());
+        commands.push(ViewChange::Charts(PlotChange::Against(plot.name.clone(), None)).into());
         ui.close();
     }
     ui.separator();
     let mut statistics = chosen.statistics;
     if ui.checkbox(&mut statistics, "Statistics of the time shown").changed() {
-        commands.push(ViewChange::Charts(Change::Statistics(statistics)).into());
+        commands.push(ViewChange::Charts(PlotChange::Statistics(statistics)).into());
         ui.close();
     }
     if ui.add_enabled(chosen.range.is_some(), Button::new("Show all time   Alt 0")).clicked() {
-        commands.push(ViewChange::Charts(Change::Range(extent.all(chosen.range))).into());
+        commands.push(ViewChange::Charts(PlotChange::Range(extent.all(chosen.range))).into());
         ui.close();
     }
     if ui.add_enabled(plot.values.is_some(), Button::new("Show all values")).clicked() {
-        commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), None)).into());
+        commands.push(ViewChange::Charts(PlotChange::Values(plot.name.clone(), None)).into());
         ui.close();
     }
     if ui.button("Put this plot away").clicked() {
-        commands.push(ViewChange::Charts(Change::Close(plot.name.clone())).into());
+        commands.push(ViewChange::Charts(PlotChange::Close(plot.name.clone())).into());
         ui.close();
     }
 }

@@ -15,14 +15,14 @@ mod written;
 
 use egui::{Frame, Margin, Panel, Ui};
 
-use self::header::{ROW, TITLE};
+use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::{Command, Layout};
-use crate::picture::charts::figure::{BELOW, LEFT, Look};
+use crate::picture::charts::figure::{BOTTOM_MARGIN, LEFT_MARGIN, PlotContext};
 
 pub use prepared::extent;
 pub use search::focus;
 pub use search::is_looking;
-pub use shown::Shown;
+pub use shown::DisplayContext;
 pub use small::{base_plot, marks, small_axes, spaced};
 pub use written::written;
 
@@ -49,8 +49,8 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
 }
 
 /// Draws this panel; returns the width set by the user, if any.
-pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Option<f32> {
-    let Shown { session, queries, signals, view_state, .. } = *what;
+pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>) -> Option<f32> {
+    let DisplayContext { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let usual = usual(ui, view_state.arrangement.layout);
@@ -64,15 +64,15 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
-        let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT) * ui.ctx().pixels_per_point())
+        let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT_MARGIN) * ui.ctx().pixels_per_point())
             .clamp(16.0, 8192.0) as usize;
         let (lines, is_whole) = prepared::drawn(what, &plots, columns);
         if !is_whole {
             ui.ctx().request_repaint();
         }
-        let statistics = if view_state.charts.statistics { ROW } else { 0.0 };
+        let statistics = if view_state.charts.statistics { STATISTICS_HEIGHT } else { 0.0 };
         let rows: usize = plots.iter().map(|plot| plot.shown().count()).sum();
-        let taken = (TITLE + BELOW + 13.0) * (plots.len() as f32 + 1.0) + statistics * rows as f32;
+        let taken = (HEADER_HEIGHT + BOTTOM_MARGIN + 13.0) * (plots.len() as f32 + 1.0) + statistics * rows as f32;
         let height = ((ui.available_height() - taken) / (plots.len() as f32 + 1.6)).max(56.0);
         let seen = hover::instant(ui, session);
         // The plots scroll if they do not fit.
@@ -83,9 +83,10 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, commands: &mut Vec<Command>) -> Optio
             for (plot, drawn) in plots.iter().zip(&*lines) {
                 let marked = view_state.mark.map(|time| shown::instant(session, time));
                 let newest = session.frames().last().unwrap_or(session.frame());
-                let look = Look { palette: &p, peaks: &newest.peaks, now: session.frame(), mark: marked, hover: seen };
+                let look =
+                    PlotContext { palette: &p, peaks: &newest.peaks, now: session.frame(), mark: marked, hover: seen };
                 header::show(ui, plot, drawn, &look, commands);
-                let found = curve::show(ui, what, (plot, drawn), &look, height + BELOW, commands);
+                let found = curve::show(ui, what, (plot, drawn), &look, height + BOTTOM_MARGIN, commands);
                 over = found.or(over);
                 if view_state.charts.statistics {
                     header::statistics(ui, plot, drawn, &look);

@@ -2,78 +2,78 @@
 
 use std::sync::Arc;
 
-use super::shown::Shown;
-use crate::picture::charts::choice::{Choice, Plot};
-use crate::picture::charts::drawn::Drawn;
-use crate::picture::charts::range::Extent;
-use crate::query::{Grown, Quick, Same, Sequence, Shared, Whole};
+use super::shown::DisplayContext;
+use crate::picture::charts::choice::{Plot, PlotChoice};
+use crate::picture::charts::drawn::PlotLines;
+use crate::picture::charts::range::TimeExtent;
+use crate::query::{ByIdentity, IncrementalAnswer, QuickQuery, QuickWork, Sequence, Shared};
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 use crate::study::comparison::Comparison;
-use crate::study::samples::Samples;
+use crate::study::samples::SignalSamples;
 
 /// Number of frames sampled in one repaint: a few milliseconds for ten signals.
 const FRAMES_PER_REPAINT: usize = 4_000;
 
 /// Query for the drawn lines of each plot.
-pub struct Drawing;
+pub struct PlotPreparation;
 
 /// The input of the drawn lines.
 #[derive(Clone, PartialEq)]
-pub struct Input {
+pub struct PlotInput {
     scenario: Shared<Scenario>,
-    signals: Same<Vec<Signal>>,
-    choice: Choice,
+    signals: ByIdentity<Vec<Signal>>,
+    choice: PlotChoice,
     pins: bool,
-    samples: Grown<Samples>,
+    samples: IncrementalAnswer<SignalSamples>,
     /// Runs shown in comparison, with their indices.
-    others: Vec<(usize, Grown<Samples>)>,
+    others: Vec<(usize, IncrementalAnswer<SignalSamples>)>,
     shown: [f64; 2],
     columns: usize,
 }
 
-impl Quick for Drawing {
-    type Input = Input;
-    type Answer = Vec<Drawn>;
+impl QuickQuery for PlotPreparation {
+    type Input = PlotInput;
+    type Answer = Vec<PlotLines>;
 
-    fn answer(input: &Input) -> Vec<Drawn> {
-        let Input { scenario, signals, choice, pins, shown, columns, .. } = input;
+    fn answer(input: &PlotInput) -> Vec<PlotLines> {
+        let PlotInput { scenario, signals, choice, pins, shown, columns, .. } = input;
         let Some(samples) = input.samples.answer() else { return Vec::new() };
-        let others: Vec<(usize, &Samples)> =
+        let others: Vec<(usize, &SignalSamples)> =
             input.others.iter().filter_map(|(place, other)| Some((*place, &**other.answer()?))).collect();
         let plots = choice.plots(&scenario.0, &signals.0, *pins);
-        plots.iter().map(|plot| Drawn::of(plot, samples, &others, *shown, *columns, choice.statistics)).collect()
+        plots.iter().map(|plot| PlotLines::of(plot, samples, &others, *shown, *columns, choice.statistics)).collect()
     }
 
-    fn let_go(input: &mut Input) {
+    fn let_go(input: &mut PlotInput) {
         input.samples.let_go();
         input.others.iter_mut().for_each(|(_, other)| other.let_go());
     }
 }
 
 /// Returns the time that the plots of a session can show.
-pub fn extent(session: &Session) -> Extent {
+pub fn extent(session: &Session) -> TimeExtent {
     let (now, end) = (session.frame().time, session.frames().last().map_or(0.0, |f| f.time).max(session.length()));
     match session.is_led() {
-        true => Extent::open_ended(session.run().planned_time(), end, now),
-        false => Extent::of(end, now),
+        true => TimeExtent::open_ended(session.run().planned_time(), end, now),
+        false => TimeExtent::of(end, now),
     }
 }
 
 /// Returns the drawn lines of the plots for a number of pixel columns, and whether they contain all frames.
-pub fn drawn(what: &Shown<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<Drawn>>, bool) {
-    let Shown { session, queries, view_state, .. } = *what;
+pub fn drawn(what: &DisplayContext<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<PlotLines>>, bool) {
+    let DisplayContext { session, queries, view_state, .. } = *what;
     let wanted = wanted(plots);
     let others = laid_over(what.comparison);
-    let others: Vec<(usize, Grown<Samples>)> =
+    let others: Vec<(usize, IncrementalAnswer<SignalSamples>)> =
         others.map(|(place, frames)| (place, queries.grow(&wanted, frames, FRAMES_PER_REPAINT))).collect();
-    let samples: Grown<Samples> = queries.grow(&wanted, session.frames(), FRAMES_PER_REPAINT);
+    let samples: IncrementalAnswer<SignalSamples> = queries.grow(&wanted, session.frames(), FRAMES_PER_REPAINT);
     let is_whole = samples.is_whole && others.iter().all(|(_, other)| other.is_whole);
-    let input = Input {
+    let input = PlotInput {
         scenario: session.run().shared_scenario(),
-        signals: Same(what.signals.clone()),
+        signals: ByIdentity(what.signals.clone()),
         choice: view_state.charts.clone(),
         pins: view_state.pins,
         samples,
@@ -81,7 +81,7 @@ pub fn drawn(what: &Shown<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<D
         shown: extent(session).shown(view_state.charts.range),
         columns,
     };
-    (queries.ask::<Whole<Drawing>>(&input), is_whole)
+    (queries.ask::<QuickWork<PlotPreparation>>(&input), is_whole)
 }
 
 /// Returns the signals of the plots, without repetitions.

@@ -5,17 +5,17 @@ use egui::{
 };
 
 use super::prepared::extent;
-use super::shown::Shown;
+use super::shown::DisplayContext;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Change, Plot};
+use crate::picture::charts::choice::{Plot, PlotChange};
 use crate::picture::charts::search::search;
 use crate::picture::numbers::at_step;
 
 /// Purpose of the search for a signal.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Sought {
+pub enum SearchPurpose {
     /// A new plot.
     #[default]
     Plot,
@@ -28,7 +28,7 @@ pub enum Sought {
 /// Search text, and the selected result.
 #[derive(Clone, Debug, Default)]
 struct Typed {
-    sought: Sought,
+    sought: SearchPurpose,
     text: String,
     place: usize,
     /// Whether the results are on display.
@@ -50,17 +50,17 @@ fn typed_id() -> Id {
 
 /// Moves the keyboard focus to the field, for a new plot.
 pub fn focus(ctx: &Context) {
-    start(ctx, Sought::Plot);
+    start(ctx, SearchPurpose::Plot);
 }
 
 /// Moves the keyboard focus to the field.
-pub fn start(ctx: &Context, sought: Sought) {
+pub fn start(ctx: &Context, sought: SearchPurpose) {
     ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { sought, ..Typed::default() }));
     ctx.memory_mut(|memory| memory.request_focus(id()));
 }
 
 /// Draws the row, with this margin on the right, points.
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], right: i8, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], right: i8, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right, top: 6, bottom: 0 });
     Panel::bottom("find a signal").resizable(false).show_separator_line(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -74,7 +74,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], right: i8, comma
 }
 
 /// Draws buttons that show all time, remove the second cursor, and reopen closed plots.
-fn state(ui: &mut Ui, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+fn state(ui: &mut Ui, shown: &DisplayContext<'_>, commands: &mut Vec<Command>) {
     let (view_state, session) = (shown.view_state, shown.session);
     let p = view_state.palette();
     let small = |text: String, tone| RichText::new(text).font(plain(11.0)).color(colour(tone));
@@ -95,26 +95,26 @@ fn state(ui: &mut Ui, shown: &Shown<'_>, commands: &mut Vec<Command>) {
         let fine = 0.01 * (to - from);
         let text = format!("{}–{} s ×", at_step(from, fine), at_step(to, fine));
         if button(ui, text, p.dim, "Show all time", "The time that plots show; click: all of it (Alt 0)") {
-            commands.push(ViewChange::Charts(Change::Range(extent(session).all(view_state.charts.range))).into());
+            commands.push(ViewChange::Charts(PlotChange::Range(extent(session).all(view_state.charts.range))).into());
         }
     }
     let closed = view_state.charts.closed();
     if closed > 0
         && button(ui, format!("+{closed}"), p.dim, "Bring plots back", "Brings back the plots that were put away")
     {
-        commands.push(ViewChange::Charts(Change::Reopen).into());
+        commands.push(ViewChange::Charts(PlotChange::Reopen).into());
     }
 }
 
-fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<Command>) {
+fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: &mut Vec<Command>) {
     let p = shown.view_state.palette();
     let mut typed: Typed = ui.data(|data| data.get_temp(typed_id())).unwrap_or_default();
     let title =
         |name: &String| plots.iter().find(|plot| plot.name == *name).map_or("it", |plot| &plot.title).to_owned();
     let hint = match &typed.sought {
-        Sought::Plot => "+ plot a signal: name, symbol, unit".to_owned(),
-        Sought::Curve(plot) => format!("+ curve in {}", title(plot)),
-        Sought::Across(plot) => format!("{} against …", title(plot)),
+        SearchPurpose::Plot => "+ plot a signal: name, symbol, unit".to_owned(),
+        SearchPurpose::Curve(plot) => format!("+ curve in {}", title(plot)),
+        SearchPurpose::Across(plot) => format!("{} against …", title(plot)),
     };
     // The arrow keys move through the results, not through the text.
     let focused = ui.memory(|memory| memory.has_focus(id()));
@@ -166,9 +166,9 @@ fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<
         });
     if let Some(path) = chosen {
         let change = match typed.sought.clone() {
-            Sought::Plot => Change::Plot(path),
-            Sought::Curve(plot) => Change::Add(plot, path),
-            Sought::Across(plot) => Change::Against(plot, Some(path)),
+            SearchPurpose::Plot => PlotChange::Plot(path),
+            SearchPurpose::Curve(plot) => PlotChange::Add(plot, path),
+            SearchPurpose::Across(plot) => PlotChange::Against(plot, Some(path)),
         };
         commands.push(ViewChange::Charts(change).into());
         typed = Typed::default();

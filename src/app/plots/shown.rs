@@ -10,7 +10,7 @@ use crate::simulation::signals::Signal;
 use crate::study::comparison::Comparison;
 
 /// The data shown by the plots.
-pub struct Shown<'a> {
+pub struct DisplayContext<'a> {
     pub session: &'a Session,
     /// The queries about the session.
     pub queries: &'a Queries,

@@ -3,9 +3,9 @@
 use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 
 use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Change, Plot};
-use crate::picture::charts::drawn::Drawn;
-use crate::picture::charts::figure::{Axes, LEFT};
+use crate::picture::charts::choice::{Plot, PlotChange};
+use crate::picture::charts::drawn::PlotLines;
+use crate::picture::charts::figure::{Axes, LEFT_MARGIN};
 
 /// Minimum and maximum of the visible value range, as fractions of the range of all values.
 const MIN_SPAN: f64 = 1e-3;
@@ -18,15 +18,15 @@ const TIP: &str = "Drag: along the values\nCtrl wheel, or Alt wheel on the plot:
 /// Handles the gestures; returns whether the pointer is on the numbers or drags them.
 pub fn hands(
     ui: &Ui,
-    (plot, drawn, axes): (&Plot<'_>, &Drawn, &Axes),
+    (plot, drawn, axes): (&Plot<'_>, &PlotLines, &Axes),
     response: &Response,
     commands: &mut Vec<Command>,
 ) -> bool {
     let rect = response.rect;
-    let numbers = Rect::from_min_max(rect.min, pos2(rect.left() + LEFT - 2.0, rect.bottom()));
+    let numbers = Rect::from_min_max(rect.min, pos2(rect.left() + LEFT_MARGIN - 2.0, rect.bottom()));
     let id = response.id.with("values");
     let mut ask = |values: Option<[f64; 2]>| {
-        commands.push(ViewChange::Charts(Change::Values(plot.name.clone(), values)).into());
+        commands.push(ViewChange::Charts(PlotChange::Values(plot.name.clone(), values)).into());
     };
     let [low, high] = drawn.y;
     let [_, top, _, bottom] = axes.sides;
@@ -84,7 +84,7 @@ fn wheel_zoom(ui: &Ui, on_numbers: bool) -> f64 {
 
 /// Returns the value range zoomed by a factor about a value, which keeps its position; `None` if the range is not
 /// finite.
-fn zoomed(drawn: &Drawn, about: f64, factor: f64) -> Option<[f64; 2]> {
+fn zoomed(drawn: &PlotLines, about: f64, factor: f64) -> Option<[f64; 2]> {
     let [low, high] = drawn.y;
     let all = drawn.all[1] - drawn.all[0];
     let span = ((high - low) / factor.max(1e-6)).clamp(MIN_SPAN * all, MAX_SPAN * all);
@@ -96,5 +96,5 @@ fn zoomed(drawn: &Drawn, about: f64, factor: f64) -> Option<[f64; 2]> {
 
 /// Whether a position is on the axis numbers of a plot.
 pub fn are_at(response: &Response, pos: Pos2) -> bool {
-    pos.x < response.rect.left() + LEFT - 2.0
+    pos.x < response.rect.left() + LEFT_MARGIN - 2.0
 }

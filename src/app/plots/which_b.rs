@@ -11,23 +11,23 @@ use crate::app::theme::{colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, SessionCommand, ViewChange, ViewState, set_b};
 use crate::mechanics::planar::Vector;
-use crate::picture::charts::figure::BELOW;
+use crate::picture::charts::figure::BOTTOM_MARGIN;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::planning::pose_constant::BOfPoints;
+use crate::planning::pose_constant::CommonB;
 use crate::planning::pose_space::{Planes, PoseSpace};
 use crate::planning::reactionless::PlanePoint;
-use crate::query::{Queries, Quick, Same, Whole};
+use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork};
 use crate::session::Session;
 
 /// Query for the branches of the self-motion on the planes, for each of some points.
 pub struct Branches;
 
-impl Quick for Branches {
-    type Input = (Same<Planes>, Vec<Vector>);
+impl QuickQuery for Branches {
+    type Input = (ByIdentity<Planes>, Vec<Vector>);
     type Answer = Vec<Vec<Vec<PlanePoint>>>;
 
-    fn answer((Same(planes), points): &Self::Input) -> Self::Answer {
+    fn answer((ByIdentity(planes), points): &Self::Input) -> Self::Answer {
         points.iter().map(|x| planes.map().self_motion(*x, 96)).collect()
     }
 }
@@ -49,11 +49,11 @@ pub fn show(
     };
     match space.planes() {
         Ok(planes) => {
-            let height = height * 1.6 + BELOW;
+            let height = height * 1.6 + BOTTOM_MARGIN;
             lines(ui, p, (session, queries), (space, planes), &points, (view_state, height), commands);
         }
         Err(_) if space.joints().is_empty() => {}
-        Err(_) => bars(ui, p, (session, queries), space, points, (view_state, height + BELOW), commands),
+        Err(_) => bars(ui, p, (session, queries), space, points, (view_state, height + BOTTOM_MARGIN), commands),
     }
 }
 
@@ -69,8 +69,8 @@ fn lines(
 ) {
     let now = session.frame();
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
-    let branches = queries.ask::<Whole<Branches>>(&(Same(planes.clone()), places.clone()));
-    let serving = queries.ask::<Whole<BOfPoints>>(&(Same(space.clone()), places));
+    let branches = queries.ask::<QuickWork<Branches>>(&(ByIdentity(planes.clone()), places.clone()));
+    let serving = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
     which_b_title(ui, p, "q₁ against b, rad; click to choose");
     let map = planes.map();
     let common = serving.all.as_ref().map(|common| common.near(now.b_reference));

@@ -1,16 +1,16 @@
 //! Export of a plot to a file.
 
-use super::prepared::{Drawing, extent};
-use super::shown::Shown;
+use super::prepared::{PlotPreparation, extent};
+use super::shown::DisplayContext;
 use crate::app::PlotFile;
 use crate::picture::canvas::Canvas;
 use crate::picture::charts::choice::Plot;
-use crate::picture::charts::figure::{Figure, Look};
+use crate::picture::charts::figure::{Figure, PlotContext};
 use crate::picture::charts::svg::svg;
 use crate::picture::paint::figure::whole;
-use crate::query::{Whole, grown};
+use crate::query::{QuickWork, answer_sequence};
 use crate::simulation::signals::Signal;
-use crate::study::samples::Samples;
+use crate::study::samples::SignalSamples;
 
 /// Width and height of a picture of a plot, points.
 const PICTURE_SIZE_PT: [f32; 2] = [720.0, 320.0];
@@ -22,10 +22,10 @@ type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 ///
 /// # Errors
 /// If the plot does not exist any more.
-pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, String> {
-    let Shown { session, signals, view_state, .. } = *what;
+pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<Content, String> {
+    let DisplayContext { session, signals, view_state, .. } = *what;
     let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
-    let lines = what.queries.last::<Whole<Drawing>>().unwrap_or_default();
+    let lines = what.queries.last::<QuickWork<PlotPreparation>>().unwrap_or_default();
     let found = plots.iter().zip(&*lines).find(|(plot, _)| plot.name == name);
     let Some((plot, drawn)) = found else {
         return Err(format!("there is no plot {name} any more: choose one that is shown"));
@@ -33,13 +33,13 @@ pub fn written(what: &Shown<'_>, name: &str, file: PlotFile) -> Result<Content, 
     let newest = session.frames().last().unwrap_or(session.frame());
     let mark = view_state.mark.map(|time| super::shown::instant(session, time));
     let palette = view_state.palette();
-    let look = Look { palette: &palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
+    let look = PlotContext { palette: &palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
     let figure = Figure::of(plot, drawn, PICTURE_SIZE_PT, &look);
     Ok(match file {
         PlotFile::Csv => {
             let range = extent(session).shown(view_state.charts.range);
             let (signals, frames) = (columns(plot), session.frames().clone());
-            Box::new(move || Ok(grown::<Samples>(&signals, &frames).csv(range).into_bytes()))
+            Box::new(move || Ok(answer_sequence::<SignalSamples>(&signals, &frames).csv(range).into_bytes()))
         }
         PlotFile::Svg => Box::new(move || Ok(svg(&figure).into_bytes())),
         PlotFile::Png => Box::new(move || png(&figure)),

@@ -3,17 +3,17 @@
 use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
 use super::fold::{fold, undo};
-use crate::app::facts::{Facts, Setting};
+use crate::app::facts::{ScenarioFacts, Setting};
 use crate::app::place::fold_id;
 use crate::app::theme::{colour, plain};
-use crate::app::widgets::{name, note, once};
+use crate::app::widgets::{name, note, undoable_edit};
 use crate::app::{Command, WindowCommand};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::{Value, part_of};
-use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{Holds, Key};
-use crate::settings::quantity::{self, Misread};
+use crate::settings::change::{self, DEFAULT_WORD};
+use crate::settings::key::{Key, KeyType};
+use crate::settings::quantity::{self, QuantityError};
 use crate::settings::range::shortened;
 
 /// Title of the list.
@@ -44,7 +44,7 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
 }
 
 /// Draws the list.
-pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, commands: &mut Vec<Command>) {
     fold(ui, p, (TITLE, "by key"), None, commands, |ui, commands| {
         let id = sought_id();
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
@@ -81,14 +81,14 @@ pub fn show(ui: &mut Ui, facts: &Facts<'_>, p: &Palette, commands: &mut Vec<Comm
 
 /// Parses the text typed for a key: numbers with units and arithmetic in the unit of the key, anything else as in a
 /// file.
-fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
+fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
     if text.trim().is_empty() {
-        return Ok(DEFAULT.into());
+        return Ok(DEFAULT_WORD.into());
     }
     let value = change::value(text);
     let numbers = matches!(
         key.holds,
-        Holds::Number(_) | Holds::Whole(_) | Holds::PerDrive(_) | Holds::List(..) | Holds::Bounds(_)
+        KeyType::Number(_) | KeyType::Whole(_) | KeyType::PerDrive(_) | KeyType::List(..) | KeyType::Bounds(_)
     );
     // Words, such as none, are checked by the key.
     if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
@@ -96,7 +96,7 @@ fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
     }
     let all: Vec<f64> = text.split(',').map(|part| quantity::read(part, key.unit())).collect::<Result<_, _>>()?;
     Ok(match (key.holds, all.as_slice()) {
-        (Holds::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),
+        (KeyType::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),
         (_, [one]) => Value::Float(*one),
         (_, several) => several.to_vec().into(),
     })
@@ -128,7 +128,7 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
                 let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
                 if text.trim() != shown.as_str() && !cancelled {
                     match typed(&text, key) {
-                        Ok(value) => once(commands, Edit::set(path, value)),
+                        Ok(value) => undoable_edit(commands, Edit::set(path, value)),
                         Err(why) => {
                             let text = shortened(text.trim(), 24);
                             commands.push(
@@ -139,7 +139,7 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
                 }
             }
             if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {
-                once(commands, Edit::set(path, DEFAULT));
+                undoable_edit(commands, Edit::set(path, DEFAULT_WORD));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });

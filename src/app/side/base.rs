@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
-use super::fold::{NumberField, Section, Slide, fold, segments, switch};
-use crate::app::widgets::Row;
+use super::fold::{NumberField, PanelSection, SliderScale, fold, segments, switch};
+use crate::app::widgets::NumberRow;
 use crate::app::{Command, Switch, ViewChange, ViewState, place};
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
@@ -16,8 +16,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     let (base, p) = (&session.scenario().base, &view_state.palette());
     let word = base.kind.words().file;
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
-    let back = (*base != Base::default()).then(|| Section::Base.all_back());
-    place::of(ui, Handle::Base, p, |ui| section(ui, session, view_state, (&summary, back), commands));
+    let back = (*base != Base::default()).then(|| PanelSection::Base.all_back());
+    place::place_of_thing(ui, Handle::Base, p, |ui| section(ui, session, view_state, (&summary, back), commands));
 }
 
 fn section(
@@ -31,7 +31,7 @@ fn section(
     fold(ui, p, ("Base", summary), back, commands, |ui, commands| {
         let kinds: Vec<_> =
             BaseKind::ALL.iter().map(|kind| (*kind, kind.words().screen, kind.words().meaning)).collect();
-        segments(ui, p, &kinds, base.kind, commands, |kind| Section::Base.set(&["kind"], kind.words().file));
+        segments(ui, p, &kinds, base.kind, commands, |kind| PanelSection::Base.set(&["kind"], kind.words().file));
         if base.moves() {
             body(ui, base, p, commands);
             let mut seen = view_state.exaggerates_base;
@@ -49,17 +49,17 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
     for (label, key, decimals, now, normal) in
         [("base mass", "mass", 1, base.mass, normal.mass), ("base inertia", "inertia", 2, base.inertia, normal.inertia)]
     {
-        let row = Row::of(label, &format!("base.{key}")).with(decimals, 2.0 * 0.1_f64.powi(decimals as i32));
+        let row = NumberRow::of(label, &format!("base.{key}")).with(decimals, 2.0 * 0.1_f64.powi(decimals as i32));
         let slide = 0.1_f64.powi(decimals as i32)..=1000.0;
         NumberField::of(row.sliding(slide), now, normal)
-            .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&[key], x));
+            .show(ui, p, SliderScale::Logarithmic, commands, |x| PanelSection::Base.set(&[key], x));
     }
     for (i, label) in ["CM x", "CM y"].into_iter().enumerate() {
-        let row = Row::of(label, "base.com").with(3, 0.002);
-        NumberField::of(row, base.com[i], 0.0).show(ui, p, Slide::No, commands, |x| {
+        let row = NumberRow::of(label, "base.com").with(3, 0.002);
+        NumberField::of(row, base.com[i], 0.0).show(ui, p, SliderScale::No, commands, |x| {
             let mut com = base.com;
             com[i] = x;
-            Section::Base.set(&["com"], com.to_vec())
+            PanelSection::Base.set(&["com"], com.to_vec())
         });
     }
     if base.kind != BaseKind::Compliant {
@@ -76,12 +76,12 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
                 2 => format!("{what} against the angle θ of the base"),
                 _ => format!("{what} along {axis}"),
             };
-            let row = Row::of(&label, &format!("base.{key}")).with(0, most / 1e4);
-            let row = Row { unit: units[i], tip: &tip, ..row };
-            NumberField::of(row, now[i], normal[i]).show(ui, p, Slide::No, commands, |x| {
+            let row = NumberRow::of(&label, &format!("base.{key}")).with(0, most / 1e4);
+            let row = NumberRow { unit: units[i], tip: &tip, ..row };
+            NumberField::of(row, now[i], normal[i]).show(ui, p, SliderScale::No, commands, |x| {
                 let mut all = now;
                 all[i] = x;
-                Section::Base.set(&[key], all.to_vec())
+                PanelSection::Base.set(&[key], all.to_vec())
             });
         }
     }
@@ -91,14 +91,14 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
     let normal = Wheel::default();
     let tip = "A wheel in the base that takes up the moment of the machine while it can";
     switch(ui, ("reaction wheel", tip), base.wheel.is_some(), commands, |on| match on {
-        true => Section::Base.set(&["wheel", "inertia"], normal.inertia),
-        false => Section::Base.back(&["wheel"]),
+        true => PanelSection::Base.set(&["wheel", "inertia"], normal.inertia),
+        false => PanelSection::Base.back(&["wheel"]),
     });
     let Some(wheel) = &base.wheel else { return };
     ui.indent("wheel", |ui| {
-        let row = Row::of("rotor", "base.wheel.inertia").with(4, 0.0001);
+        let row = NumberRow::of("rotor", "base.wheel.inertia").with(4, 0.0001);
         NumberField::of(row, wheel.inertia, normal.inertia)
-            .show(ui, p, Slide::No, commands, |x| Section::Base.set(&["wheel", "inertia"], x));
+            .show(ui, p, SliderScale::No, commands, |x| PanelSection::Base.set(&["wheel", "inertia"], x));
         for (key, label, unit, tip, now, usual) in [
             (
                 "torque_limit",
@@ -119,17 +119,17 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
         ] {
             ui.horizontal(|ui| {
                 let on = switch(ui, (label, tip), now.is_some(), commands, |on| match on {
-                    true => Section::Base.set(&["wheel", key], usual),
-                    false => Section::Base.back(&["wheel", key]),
+                    true => PanelSection::Base.set(&["wheel", key], usual),
+                    false => PanelSection::Base.back(&["wheel", key]),
                 });
                 if on {
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                         super::unit(ui, p, unit);
                         let mut value = now.unwrap_or(usual);
-                        let row = Row::of(label, &format!("base.wheel.{key}")).with(2, usual / 200.0);
-                        let row = Row { tip, ..row };
+                        let row = NumberRow::of(label, &format!("base.wheel.{key}")).with(2, usual / 200.0);
+                        let row = NumberRow { tip, ..row };
                         let response = row.number(ui, &mut value);
-                        super::send(commands, &[response], || Section::Base.set(&["wheel", key], value));
+                        super::send(commands, &[response], || PanelSection::Base.set(&["wheel", key], value));
                     });
                 }
             });

@@ -2,10 +2,10 @@
 
 use egui::Ui;
 
-use super::fold::{NumberField, Section, Slide, choose, fold};
-use super::plant::Gain;
+use super::fold::{NumberField, PanelSection, SliderScale, choose, fold};
+use super::plant::PerDriveField;
 use crate::app::Command;
-use crate::app::widgets::{Row, tip_of};
+use crate::app::widgets::{NumberRow, tip_of};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::settings::word::Choice;
@@ -29,23 +29,23 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     if control.is_sampled() {
         summary += ", sampled";
     }
-    let back = (*control != Control::default()).then(|| Section::Control.all_back());
+    let back = (*control != Control::default()).then(|| PanelSection::Control.all_back());
     fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
         let laws: Vec<(ControlLaw, String)> =
             ControlLaw::ALL.iter().map(|law| (*law, law.words().screen.to_owned())).collect();
         choose(ui, ("law", tip_of("control.law")), &laws, &control.law, commands, |law| {
-            Some(Section::Control.set(&["law"], law.words().file))
+            Some(PanelSection::Control.set(&["law"], law.words().file))
         });
-        let kp = Gain { label: "Kp", path: &["control", "kp"], decimals: 0, most: 2000.0, normal: 400.0 };
+        let kp = PerDriveField { label: "Kp", path: &["control", "kp"], decimals: 0, most: 2000.0, normal: 400.0 };
         kp.show(ui, &control.kp, n, p, commands);
-        let kd = Gain { label: "Kd", path: &["control", "kd"], most: 200.0, normal: 40.0, ..kp };
+        let kd = PerDriveField { label: "Kd", path: &["control", "kd"], most: 200.0, normal: 40.0, ..kp };
         kd.show(ui, &control.kd, n, p, commands);
         sampling(ui, control, step, p, commands);
         if scenario.base.moves() {
             let mut knows = control.knows_base;
             let tip = tip_of("control.knows_base");
             if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
-                crate::app::widgets::once(commands, Section::Control.set(&["knows_base"], knows));
+                crate::app::widgets::undoable_edit(commands, PanelSection::Control.set(&["knows_base"], knows));
             }
         }
     });
@@ -62,19 +62,20 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
     offered(&mut rates, control.rate, hertz(control.rate));
     choose(ui, ("rate", tip_of("control.rate")), &rates, &control.rate, commands, |x| {
-        Some(Section::Control.set(&["rate"], *x))
+        Some(PanelSection::Control.set(&["rate"], *x))
     });
-    let delay = Row::of("delay", "control.delay");
+    let delay = NumberRow::of("delay", "control.delay");
     let milliseconds = |seconds: &f64| 1e3 * seconds;
     let range = milliseconds(delay.range.start())..=milliseconds(delay.range.end());
-    let row = Row { unit: "ms", slide: range.clone(), range, ..delay.with(1, 1e3 * step) };
-    NumberField::of(row, 1e3 * control.delay, 0.0)
-        .show(ui, p, Slide::No, commands, |x| Section::Control.set(&["delay"], (1e-3 * x / step).round() * step));
+    let row = NumberRow { unit: "ms", slide: range.clone(), range, ..delay.with(1, 1e3 * step) };
+    NumberField::of(row, 1e3 * control.delay, 0.0).show(ui, p, SliderScale::No, commands, |x| {
+        PanelSection::Control.set(&["delay"], (1e-3 * x / step).round() * step)
+    });
     let words = |x: f64| format!("{x} counts");
     let mut counts = vec![(0.0, "exact".to_owned())];
     counts.extend(COUNTS.map(|x| (x, words(x))));
     offered(&mut counts, control.encoder, words(control.encoder));
     choose(ui, ("encoder", tip_of("control.encoder")), &counts, &control.encoder, commands, |x| {
-        Some(Section::Control.set(&["encoder"], *x))
+        Some(PanelSection::Control.set(&["encoder"], *x))
     });
 }

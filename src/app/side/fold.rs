@@ -4,22 +4,22 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::app::place;
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, name, once, send};
+use crate::app::widgets::{NumberRow, name, send, undoable_edit};
 use crate::app::{Command, SessionCommand};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::Value;
-use crate::settings::change::DEFAULT;
+use crate::settings::change::DEFAULT_WORD;
 
 /// The section of the panel, and of a scenario, that a setting belongs to.
 #[derive(Clone, Copy)]
-pub enum Section {
+pub enum PanelSection {
     Plant,
     Base,
     Control,
 }
 
-impl Section {
+impl PanelSection {
     fn word(self) -> &'static str {
         match self {
             Self::Plant => "plant",
@@ -35,7 +35,7 @@ impl Section {
 
     /// Returns the edit that restores the default of a key.
     pub fn back(self, path: &[&str]) -> Edit {
-        self.set(path, DEFAULT)
+        self.set(path, DEFAULT_WORD)
     }
 
     /// Returns the edit that restores the defaults of all keys.
@@ -72,7 +72,7 @@ pub fn fold(
             if let Some(edit) = back
                 && undo(ui, p, &format!("{title} back to normal"), "Put everything here back to normal")
             {
-                once(commands, edit);
+                undoable_edit(commands, edit);
             }
             let ink = colour(if differs { p.amber } else { p.dim });
             ui.add(egui::Label::new(RichText::new(summary).font(plain(11.0)).color(ink)).truncate());
@@ -103,7 +103,7 @@ pub fn switch(
 ) -> bool {
     let mut now = on;
     if ui.checkbox(&mut now, label).on_hover_text(tip).changed() {
-        once(commands, to(now));
+        undoable_edit(commands, to(now));
     }
     on
 }
@@ -144,7 +144,7 @@ pub fn segments<T: Copy + PartialEq>(
             let button = Button::new(text).fill(fill).stroke((1.0, colour(p.line))).min_size(egui::vec2(width, 22.0));
             let response = ui.add(button.selected(false)).on_hover_text(*tip);
             if response.clicked() && !chosen {
-                once(commands, to(*value));
+                undoable_edit(commands, to(*value));
             }
         }
     });
@@ -183,7 +183,7 @@ pub fn choose<T: Clone + PartialEq>(
 
 /// Whether a number has a slider, and its scale.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Slide {
+pub enum SliderScale {
     No,
     Linear,
     Logarithmic,
@@ -191,7 +191,7 @@ pub enum Slide {
 
 /// A number with a default value.
 pub struct NumberField<'a> {
-    pub row: Row<'a>,
+    pub row: NumberRow<'a>,
     pub now: f64,
     pub normal: f64,
     /// Whether the default value is shown beside it.
@@ -203,11 +203,18 @@ pub struct NumberField<'a> {
 }
 
 impl<'a> NumberField<'a> {
-    pub fn of(row: Row<'a>, now: f64, normal: f64) -> Self {
+    pub fn of(row: NumberRow<'a>, now: f64, normal: f64) -> Self {
         Self { row, now, normal, beside: false, back: None, called: None }
     }
 
-    pub fn show(self, ui: &mut Ui, p: &Palette, slide: Slide, commands: &mut Vec<Command>, edit: impl Fn(f64) -> Edit) {
+    pub fn show(
+        self,
+        ui: &mut Ui,
+        p: &Palette,
+        slide: SliderScale,
+        commands: &mut Vec<Command>,
+        edit: impl Fn(f64) -> Edit,
+    ) {
         let Self { row, now, normal, beside, back, called } = self;
         let called = called.unwrap_or_else(|| row.label.to_owned());
         let mut value = now;
@@ -225,7 +232,7 @@ impl<'a> NumberField<'a> {
                 if differs {
                     let tip = format!("Back to normal: {} {}", written(normal), row.unit);
                     if undo(ui, p, &format!("{called} back to normal"), &tip) {
-                        once(commands, back.unwrap_or_else(|| edit(normal)));
+                        undoable_edit(commands, back.unwrap_or_else(|| edit(normal)));
                     }
                 }
                 if beside {
@@ -234,8 +241,8 @@ impl<'a> NumberField<'a> {
                 }
             });
         });
-        if slide != Slide::No {
-            responses.push(row.slider(ui, &mut value, slide == Slide::Logarithmic));
+        if slide != SliderScale::No {
+            responses.push(row.slider(ui, &mut value, slide == SliderScale::Logarithmic));
         }
         send(commands, &responses, || edit(value));
     }

@@ -3,15 +3,15 @@
 
 use egui::Ui;
 
-use super::fold::{NumberField, Section, Slide, choose, fold, switch, switch_nonzero};
-use crate::app::widgets::{HELD, Row, note, once, tip_of, unit};
+use super::fold::{NumberField, PanelSection, SliderScale, choose, fold, switch, switch_nonzero};
+use crate::app::widgets::{CLICK_PAYLOAD, NumberRow, note, tip_of, undoable_edit, unit};
 use crate::app::{Command, place};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
-use crate::simulation::plant::{Each, LinkDifference, PlantDifferences};
+use crate::simulation::plant::{DriveValues, LinkDifference, PlantDifferences};
 
 /// Returns the number of differences.
 fn count(plant: &PlantDifferences) -> usize {
@@ -28,9 +28,9 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         1 => "1 difference".into(),
         n => format!("{n} differences"),
     };
-    let back = (*plant != PlantDifferences::default()).then(|| Section::Plant.all_back());
+    let back = (*plant != PlantDifferences::default()).then(|| PanelSection::Plant.all_back());
     fold(ui, p, ("Plant", &summary), back, commands, |ui, commands| {
-        place::of(ui, Handle::Payload, p, |ui| payload(ui, plant, p, commands));
+        place::place_of_thing(ui, Handle::Payload, p, |ui| payload(ui, plant, p, commands));
         friction(ui, plant, model, p, commands);
         limits(ui, plant, model, p, commands);
         force(ui, plant, p, commands);
@@ -42,49 +42,55 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     let load = &plant.payload;
     let on = switch_nonzero(ui, ("payload", tip_of("plant.payload.mass")), load.is_some(), commands, |on| match on {
-        true => Section::Plant.set(&["payload", "mass"], HELD),
-        false => Section::Plant.back(&["payload"]),
+        true => PanelSection::Plant.set(&["payload", "mass"], CLICK_PAYLOAD),
+        false => PanelSection::Plant.back(&["payload"]),
     });
     if !on {
         return;
     }
-    let of = |key: &'static str| move |x: f64| Section::Plant.set(&["payload", key], x);
+    let of = |key: &'static str| move |x: f64| PanelSection::Plant.set(&["payload", key], x);
     let field = |label, key: &str, now| NumberField {
         called: Some(format!("payload {label}")),
-        ..NumberField::of(Row::of(label, &format!("plant.payload.{key}")).with(3, 0.002), now, 0.0)
+        ..NumberField::of(NumberRow::of(label, &format!("plant.payload.{key}")).with(3, 0.002), now, 0.0)
     };
     ui.indent("payload", |ui| {
-        let row = Row::of("payload mass", "plant.payload.mass").sliding(0.01..=2.0);
-        NumberField::of(row, load.mass, load.mass).show(ui, p, Slide::Linear, commands, of("mass"));
+        let row = NumberRow::of("payload mass", "plant.payload.mass").sliding(0.01..=2.0);
+        NumberField::of(row, load.mass, load.mass).show(ui, p, SliderScale::Linear, commands, of("mass"));
         let inertia = field("inertia", "inertia", load.inertia);
-        NumberField { row: inertia.row.with(4, 0.0005), ..inertia }.show(ui, p, Slide::No, commands, of("inertia"));
+        NumberField { row: inertia.row.with(4, 0.0005), ..inertia }.show(
+            ui,
+            p,
+            SliderScale::No,
+            commands,
+            of("inertia"),
+        );
         for (i, label, tip) in [
             (0, "offset along", "Its centre of mass from the end effector, along the last link"),
             (1, "offset across", "Its centre of mass from the end effector, to the left of the last link"),
         ] {
             let field = field(label, "offset", load.offset[i]);
-            NumberField { row: Row { tip, ..field.row }, ..field }.show(ui, p, Slide::No, commands, |x| {
+            NumberField { row: NumberRow { tip, ..field.row }, ..field }.show(ui, p, SliderScale::No, commands, |x| {
                 let mut offset = load.offset;
                 offset[i] = x;
-                Section::Plant.set(&["payload", "offset"], offset.to_vec())
+                PanelSection::Plant.set(&["payload", "offset"], offset.to_vec())
             });
         }
-        field("height", "axial", load.axial).show(ui, p, Slide::No, commands, of("axial"));
+        field("height", "axial", load.axial).show(ui, p, SliderScale::No, commands, of("axial"));
         let from = field("from", "from", load.from);
-        NumberField { row: from.row.with(2, 0.01), ..from }.show(ui, p, Slide::No, commands, of("from"));
+        NumberField { row: from.row.with(2, 0.01), ..from }.show(ui, p, SliderScale::No, commands, of("from"));
         let tip = tip_of("plant.payload.until");
         ui.horizontal(|ui| {
             let on = switch(ui, ("until", tip), load.until.is_some(), commands, |on| match on {
-                true => Section::Plant.set(&["payload", "until"], load.from + 0.5),
-                false => Section::Plant.back(&["payload", "until"]),
+                true => PanelSection::Plant.set(&["payload", "until"], load.from + 0.5),
+                false => PanelSection::Plant.back(&["payload", "until"]),
             });
             if on {
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     unit(ui, p, "s");
                     let mut until = load.until.unwrap_or_default();
-                    let row = Row::of("until", "plant.payload.until");
+                    let row = NumberRow::of("until", "plant.payload.until");
                     let response = row.number(ui, &mut until);
-                    super::send(commands, &[response], || Section::Plant.set(&["payload", "until"], until));
+                    super::send(commands, &[response], || PanelSection::Plant.set(&["payload", "until"], until));
                 });
             }
         });
@@ -95,31 +101,31 @@ fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette,
     let f = &plant.friction;
     let tip = "Friction in the bearings of the drives and in the pins, unknown to control";
     let on = switch_nonzero(ui, ("friction", tip), *f != Default::default(), commands, |on| match on {
-        true => Section::Plant.set(&["friction", "viscous"], 0.02),
-        false => Section::Plant.back(&["friction"]),
+        true => PanelSection::Plant.set(&["friction", "viscous"], 0.02),
+        false => PanelSection::Plant.back(&["friction"]),
     });
     if !on {
         return;
     }
     ui.indent("friction", |ui| {
         let path = &["plant", "friction", "viscous"];
-        let viscous = Gain { label: "viscous", path, decimals: 3, most: 0.5, normal: 0.0 };
+        let viscous = PerDriveField { label: "viscous", path, decimals: 3, most: 0.5, normal: 0.0 };
         viscous.show(ui, &f.viscous, model.drives(), p, commands);
-        let coulomb = Gain { label: "Coulomb", path: &["plant", "friction", "coulomb"], ..viscous };
+        let coulomb = PerDriveField { label: "Coulomb", path: &["plant", "friction", "coulomb"], ..viscous };
         coulomb.show(ui, &f.coulomb, model.drives(), p, commands);
         for (label, key, now) in
             [("pins viscous", "pin_viscous", f.pin_viscous), ("pins Coulomb", "pin_coulomb", f.pin_coulomb)]
         {
-            let row = Row::of(label, &format!("plant.friction.{key}")).with(4, 0.0005);
+            let row = NumberRow::of(label, &format!("plant.friction.{key}")).with(4, 0.0005);
             NumberField::of(row, now, 0.0)
-                .show(ui, p, Slide::No, commands, |x| Section::Plant.set(&["friction", key], x));
+                .show(ui, p, SliderScale::No, commands, |x| PanelSection::Plant.set(&["friction", key], x));
         }
     });
 }
 
 /// A number common to all drives, or one for each.
 #[derive(Clone, Copy)]
-pub struct Gain<'a> {
+pub struct PerDriveField<'a> {
     pub label: &'a str,
     /// Path of its setting, by its parts.
     pub path: &'a [&'a str],
@@ -129,22 +135,22 @@ pub struct Gain<'a> {
     pub normal: f64,
 }
 
-impl Gain<'_> {
+impl PerDriveField<'_> {
     fn field<'a>(&'a self, label: &'a str, now: f64) -> NumberField<'a> {
-        let row = Row::of(label, &self.path.join(".")).with(self.decimals, self.most / 1000.0);
+        let row = NumberRow::of(label, &self.path.join(".")).with(self.decimals, self.most / 1000.0);
         NumberField::of(row.sliding(0.0..=self.most), now, self.normal)
     }
 
-    pub fn show(&self, ui: &mut Ui, each: &Each, n: usize, p: &Palette, commands: &mut Vec<Command>) {
+    pub fn show(&self, ui: &mut Ui, each: &DriveValues, n: usize, p: &Palette, commands: &mut Vec<Command>) {
         let values = each.of(n);
         match each {
-            Each::All(now) => {
-                self.field(self.label, *now).show(ui, p, Slide::Linear, commands, |x| Edit::at(self.path, x));
+            DriveValues::All(now) => {
+                self.field(self.label, *now).show(ui, p, SliderScale::Linear, commands, |x| Edit::at(self.path, x));
             }
-            Each::Own(_) => {
+            DriveValues::Own(_) => {
                 for k in 0..n {
                     let label = format!("{} {}", self.label, k + 1);
-                    self.field(&label, values[k]).show(ui, p, Slide::No, commands, |x| {
+                    self.field(&label, values[k]).show(ui, p, SliderScale::No, commands, |x| {
                         let mut list = values.to_vec();
                         list[k] = x;
                         Edit::at(self.path, list)
@@ -152,13 +158,13 @@ impl Gain<'_> {
                 }
             }
         }
-        let mut own = matches!(each, Each::Own(_));
+        let mut own = matches!(each, DriveValues::Own(_));
         let tip = format!("{}: one number for each drive", self.label);
         let tick = ui.checkbox(&mut own, "per drive").on_hover_text(&tip);
         super::name(&tick, &format!("{} per drive", self.label));
         if tick.changed() {
             let value = if own { values.to_vec().into() } else { Value::Float(values[0]) };
-            once(commands, Edit::at(self.path, value));
+            undoable_edit(commands, Edit::at(self.path, value));
         }
     }
 }
@@ -166,8 +172,8 @@ impl Gain<'_> {
 fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     let on =
         switch(ui, ("torque limits", tip_of("plant.torque_limits")), plant.torque_limits, commands, |on| match on {
-            true => Section::Plant.set(&["torque_limits"], true),
-            false => Section::Plant.back(&["torque_limits"]),
+            true => PanelSection::Plant.set(&["torque_limits"], true),
+            false => PanelSection::Plant.back(&["torque_limits"]),
         });
     if on {
         let limit = |d: &crate::mechanics::machine::Drive| d.torque_limit.map_or("none".into(), |t| format!("{t}"));
@@ -179,20 +185,20 @@ fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
 fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     let tip = "A constant force F at the end effector; or push it by hand: Alt and drag, or U";
     let on = switch_nonzero(ui, ("force", tip), plant.force != [0.0; 2], commands, |on| match on {
-        true => Section::Plant.set(&["force"], vec![2.0, 0.0]),
-        false => Section::Plant.back(&["force"]),
+        true => PanelSection::Plant.set(&["force"], vec![2.0, 0.0]),
+        false => PanelSection::Plant.back(&["force"]),
     });
     if !on {
         return;
     }
     ui.indent("force", |ui| {
         for (i, label) in ["force x", "force y"].into_iter().enumerate() {
-            let row = Row::of(label, "plant.force").with(2, 0.05);
+            let row = NumberRow::of(label, "plant.force").with(2, 0.05);
             let field = NumberField::of(row, plant.force[i], 0.0);
-            field.show(ui, p, Slide::No, commands, |x| {
+            field.show(ui, p, SliderScale::No, commands, |x| {
                 let mut force = plant.force;
                 force[i] = x;
-                Section::Plant.set(&["force"], force.to_vec())
+                PanelSection::Plant.set(&["force"], force.to_vec())
             });
         }
     });
@@ -223,7 +229,7 @@ fn pick(
 }
 
 fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
-    const WHAT: &str = place::LINKS;
+    const WHAT: &str = place::LINK_LIST;
     let known = |name: &str| model.links().iter().find(|link| link.name == name);
     let now = chosen(ui, WHAT, plant.link.keys().next(), |name| known(name).is_some());
     let names = model.links().iter().map(|link| (link.name.clone(), plant.link.contains_key(&link.name)));
@@ -231,7 +237,7 @@ fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, com
     let Some(link) = known(&now) else { return };
     let differs = plant.link.get(&now).copied().unwrap_or_default();
     let number = model.links().iter().position(|other| other.name == link.name).unwrap_or_default();
-    place::of(ui, Handle::Link(number), p, |ui| {
+    place::place_of_thing(ui, Handle::Link(number), p, |ui| {
         ui.indent("link", |ui| link_rows(ui, link, &differs, p, commands));
     });
 }
@@ -245,16 +251,16 @@ fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, co
     ] {
         let path = ["link", link.name.as_str(), key];
         let called = Some(format!("link {} {label}", link.name));
-        let row = Row::of(label, &format!("plant.link.*.{key}")).with(3, 0.002);
+        let row = NumberRow::of(label, &format!("plant.link.*.{key}")).with(3, 0.002);
         let field = NumberField {
             row,
             now: now.unwrap_or(normal),
             normal,
             beside: now.is_some(),
-            back: Some(Section::Plant.back(&path)),
+            back: Some(PanelSection::Plant.back(&path)),
             called,
         };
-        field.show(ui, p, Slide::No, commands, |x| Section::Plant.set(&path, x));
+        field.show(ui, p, SliderScale::No, commands, |x| PanelSection::Plant.set(&path, x));
     }
 }
 
@@ -273,15 +279,15 @@ fn length(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
     let path = ["length", now.as_str()];
     ui.indent("length", |ui| {
         let called = Some(format!("length {now}"));
-        let row = Row { tip, ..Row::of(&now, "plant.length.*").with(4, 0.0005) };
+        let row = NumberRow { tip, ..NumberRow::of(&now, "plant.length.*").with(4, 0.0005) };
         let value = differs.copied().unwrap_or(*normal);
-        let back = Some(Section::Plant.back(&path));
+        let back = Some(PanelSection::Plant.back(&path));
         NumberField { row, now: value, normal: *normal, beside: differs.is_some(), back, called }.show(
             ui,
             p,
-            Slide::No,
+            SliderScale::No,
             commands,
-            |x| Section::Plant.set(&path, x),
+            |x| PanelSection::Plant.set(&path, x),
         );
     });
 }

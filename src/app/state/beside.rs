@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use super::AppState;
 use crate::app::background::{Background, Opening};
-use crate::app::change::Source;
-use crate::app::{Activity, Below, ComparisonCommand};
-use crate::picture::scene::stage::Outlining;
-use crate::query::{Asked, Same, Shared, State, Ticket};
-use crate::session::Ahead;
+use crate::app::change::SessionSource;
+use crate::app::{Activity, BottomPanel, ComparisonCommand};
+use crate::picture::scene::stage::OutlineQuery;
+use crate::query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
+use crate::session::RunAhead;
 use crate::session::scenario::Scenario;
-use crate::study::comparison::{Compared, Comparison, Ways};
-use crate::study::tolerance::{Studied, Study, Studying};
+use crate::study::comparison::{AlternativeRuns, ComparedRun, Comparison};
+use crate::study::tolerance::{StudiedRun, Study, StudyQuery};
 
 /// Maximum number of steps that are run ahead to find the motion of the base.
 const MAX_STEPS_AHEAD: f64 = 20_000.0;
@@ -30,7 +30,8 @@ impl AppState {
     /// Takes over all finished background work; returns whether there was any.
     pub(super) fn collect(&mut self) -> bool {
         let any = self.finish();
-        if let (Some(comparison), Some(ways)) = (&mut self.comparison, self.background.queries.newest::<Ways>())
+        if let (Some(comparison), Some(ways)) =
+            (&mut self.comparison, self.background.queries.newest::<AlternativeRuns>())
             && let Some(ways) = ways.known()
         {
             comparison.follow(ways);
@@ -43,10 +44,10 @@ impl AppState {
     pub(super) fn outline(&mut self) -> bool {
         let Some(space) = self.views.unoutlined() else {
             // The outline is not needed any more.
-            self.queries().give_up::<Outlining>();
+            self.queries().give_up::<OutlineQuery>();
             return false;
         };
-        if self.queries().ask_beside::<Outlining>(&Shared(space)).known().is_none() {
+        if self.queries().ask_beside::<OutlineQuery>(&Shared(space)).known().is_none() {
             return false;
         }
         self.refresh_views();
@@ -57,28 +58,28 @@ impl AppState {
     pub(super) fn foresee(&mut self) {
         let run = self.session.run();
         if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MAX_STEPS_AHEAD {
-            let _ = self.queries().ask_beside::<Ahead>(&Same(Arc::new(run.clone())));
+            let _ = self.queries().ask_beside::<RunAhead>(&ByIdentity(Arc::new(run.clone())));
         } else {
-            self.queries().forget::<Ahead>();
+            self.queries().forget::<RunAhead>();
         }
     }
 
     /// Requests the study of tolerances for the run on display; a newer request replaces an older one.
     pub(super) fn refresh_study(&mut self) {
-        if self.view_state.below != Some(Below::Tolerances) {
-            self.queries().forget::<Studying>();
+        if self.view_state.below != Some(BottomPanel::Tolerances) {
+            self.queries().forget::<StudyQuery>();
         } else if self.view_state.gesture.grabbed.is_none() {
-            let _ = self.queries().ask_beside::<Studying>(&Studied(Arc::new(self.session.run().clone())));
+            let _ = self.queries().ask_beside::<StudyQuery>(&StudiedRun(Arc::new(self.session.run().clone())));
         }
     }
 
     /// Returns the study of tolerances, or why there is none.
     pub(super) fn study(&self) -> Option<Arc<Result<Study, String>>> {
-        let Asked { last, state } = self.queries().newest::<Studying>()?;
+        let QueryResult { last, state } = self.queries().newest::<StudyQuery>()?;
         match state {
-            State::Broken => Some(Arc::new(Err(fault("the study")))),
+            QueryStatus::Broken => Some(Arc::new(Err(fault("the study")))),
             // A stopped study is not started again until something changes.
-            State::Stopped if last.is_none() => {
+            QueryStatus::Stopped if last.is_none() => {
                 Some(Arc::new(Err("cancelled: to change something draws machines again".into())))
             }
             _ => last,
@@ -87,9 +88,9 @@ impl AppState {
 
     /// Runs the task on display in its different ways, if the table shows another task. Does nothing during a drag.
     pub(super) fn refresh_comparison(&mut self) {
-        if self.view_state.below != Some(Below::Runs) {
+        if self.view_state.below != Some(BottomPanel::Runs) {
             self.comparison = None;
-            self.queries().forget::<Ways>();
+            self.queries().forget::<AlternativeRuns>();
             self.background.stop(Activity::Kept);
             return;
         }
@@ -102,9 +103,9 @@ impl AppState {
             .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
-        let wanted = stale || self.queries().progress::<Ways>().is_some();
+        let wanted = stale || self.queries().progress::<AlternativeRuns>().is_some();
         if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
-            let _ = self.queries().ask_beside::<Ways>(&self.session.run().shared_scenario());
+            let _ = self.queries().ask_beside::<AlternativeRuns>(&self.session.run().shared_scenario());
         }
     }
 
@@ -131,7 +132,7 @@ impl AppState {
     pub(super) fn open_run(&mut self, entry: usize) {
         let entry = self.comparison.as_ref().and_then(|comparison| comparison.entries().get(entry));
         if let Some(Ok(run)) = entry.map(|entry| &entry.outcome) {
-            let source = Source::Scenario(Box::new(run.scenario.clone()));
+            let source = SessionSource::Scenario(Box::new(run.scenario.clone()));
             self.open(source, Opening::default());
         }
     }
@@ -142,14 +143,14 @@ impl AppState {
         if let Some(fork) = self.session.forks().get(branch) {
             scenario.name = format!("branch at {:.3} s", fork.from);
         }
-        self.view_state.below = Some(Below::Runs);
+        self.view_state.below = Some(BottomPanel::Runs);
         self.refresh_comparison();
         self.keep(scenario, Some("added the branch to the runs side by side"));
     }
 
     /// Runs a scenario in the background and adds it to the table of runs; `news` is the message on success.
     pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
-        let work = move |ticket: &Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
+        let work = move |ticket: &Ticket| ComparedRun::of_while(scenario, &mut |done| ticket.goes_on(done));
         self.background.run(Activity::Kept, work, move |app_state, run| {
             let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
             let said = match (run, &mut app_state.comparison) {

@@ -2,10 +2,10 @@
 
 use super::AppState;
 use crate::app::background::Opening;
-use crate::app::change::{Change, Source};
+use crate::app::change::{SessionChange, SessionSource};
 use crate::app::marks;
 use crate::app::tour::Tour;
-use crate::app::{Command, FileDialog, Purpose, SessionCommand, Switch, ViewChange, WindowCommand};
+use crate::app::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
 use crate::picture::scene::views::ViewKind;
 
 impl AppState {
@@ -44,7 +44,7 @@ impl AppState {
             Command::Session(command) => self.do_to_session(command),
             // Without an open table, the file dialog asks for one.
             Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
-                self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, Purpose::Open));
+                self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
                 Ok(None)
             }
             Command::View(change) => {
@@ -66,7 +66,7 @@ impl AppState {
             SessionCommand::Edit(edit) => {
                 let edit = self.designed(edit)?;
                 self.view_state.said.refused = None;
-                self.change(Change::Edit(edit));
+                self.change(SessionChange::Edit(edit));
                 self.view_state.gesture.dragged |=
                     self.view_state.gesture.grabbed.is_some() && self.view_state.said.refused.is_none();
             }
@@ -79,7 +79,7 @@ impl AppState {
             }
             SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
             SessionCommand::TogglePlay => self.session.play(),
-            SessionCommand::Seek(time) => self.change(Change::Seek(time)),
+            SessionCommand::Seek(time) => self.change(SessionChange::Seek(time)),
             SessionCommand::Bookmark(time, name) => {
                 let done = self.session.bookmark(time, &name)?;
                 self.saving.changes += u64::from(done.is_some());
@@ -88,10 +88,10 @@ impl AppState {
             SessionCommand::NameBookmark(time) => self.name_bookmark(time)?,
             SessionCommand::ToMark(on) => {
                 if let Some(time) = marks::beside(self.queries(), &self.session, on) {
-                    self.change(Change::Seek(time));
+                    self.change(SessionChange::Seek(time));
                 }
             }
-            SessionCommand::Branch(branch) => self.change(Change::Branch(branch)),
+            SessionCommand::Branch(branch) => self.change(SessionChange::Branch(branch)),
             SessionCommand::CompareBranch(branch) => self.compare_branch(branch),
             SessionCommand::DropBranch(branch) => {
                 let done = self.session.drop_branch(branch);
@@ -100,7 +100,7 @@ impl AppState {
             }
             SessionCommand::Step(steps) => self.session.step_by(steps),
             SessionCommand::Open(scenario) => {
-                self.open(Source::Scenario(scenario), Opening { plays: true, ..Opening::default() });
+                self.open(SessionSource::Scenario(scenario), Opening { plays: true, ..Opening::default() });
             }
             SessionCommand::Case(name) => self.open_case(name),
             SessionCommand::OpenFile(path) => self.open_file(path),
@@ -110,14 +110,14 @@ impl AppState {
             SessionCommand::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
             SessionCommand::TakeElsewhere(path) => self.take_elsewhere(&path)?,
             SessionCommand::Replace(file) => self.saving.replaces = Some(file),
-            SessionCommand::Undo => self.change(Change::Undo),
-            SessionCommand::TakeBack(since) if self.session.undo_count() > since => self.change(Change::Undo),
+            SessionCommand::Undo => self.change(SessionChange::Undo),
+            SessionCommand::TakeBack(since) if self.session.undo_count() > since => self.change(SessionChange::Undo),
             SessionCommand::TakeBack(_) => {}
-            SessionCommand::GiveUp if self.session.is_in_gesture() => self.change(Change::Undo),
+            SessionCommand::GiveUp if self.session.is_in_gesture() => self.change(SessionChange::Undo),
             SessionCommand::GiveUp => {}
-            SessionCommand::Redo => self.change(Change::Redo),
-            SessionCommand::GoTo(changes) => self.change(Change::GoTo(changes)),
-            SessionCommand::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
+            SessionCommand::Redo => self.change(SessionChange::Redo),
+            SessionCommand::GoTo(changes) => self.change(SessionChange::GoTo(changes)),
+            SessionCommand::BackToPath if self.session.is_led() => self.change(SessionChange::BackToPath),
             SessionCommand::BackToPath => {}
             SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),

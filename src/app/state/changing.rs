@@ -1,8 +1,8 @@
 //! Changes of the session made in the background, and their consequences.
 
 use super::AppState;
-use crate::app::background::Changed;
-use crate::app::change::Change;
+use crate::app::background::SessionResult;
+use crate::app::change::SessionChange;
 use crate::app::{Activity, RefusedEdit};
 use crate::query::Ticket;
 use crate::session::scenario::MAX_BRANCHES;
@@ -11,7 +11,7 @@ use crate::session::{Edit, Refusal};
 impl AppState {
     /// Changes a copy of the session in the background, and shows it once it is finished. The copy shares its frames;
     /// most changes are finished by the next repaint.
-    pub(super) fn change(&mut self, change: Change) {
+    pub(super) fn change(&mut self, change: SessionChange) {
         let mut next = self.session.clone();
         self.background.change = Some((change.clone(), 0));
         let work = move |ticket: &Ticket| {
@@ -22,7 +22,7 @@ impl AppState {
         self.finish();
     }
 
-    fn take_change(&mut self, made: Option<Changed>) {
+    fn take_change(&mut self, made: Option<SessionResult>) {
         let Some((change, _)) = self.background.change.take() else { return };
         match made {
             Some((next, done)) => {
@@ -39,9 +39,9 @@ impl AppState {
 
     /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
     /// branches left so far, the time on display, s, and whether the machine was dragged.
-    pub(super) fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
+    pub(super) fn parts(&mut self, change: &SessionChange, (partings, shown, led): (u64, f64, bool)) {
         let (now, gone) = self.session.partings();
-        if !matches!(change, Change::Edit(_)) || now == partings {
+        if !matches!(change, SessionChange::Edit(_)) || now == partings {
             return;
         }
         let kept = match led && !self.session.is_led() {
@@ -55,24 +55,26 @@ impl AppState {
     }
 
     /// Updates the state after a change of the session or its refusal.
-    pub(super) fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
-        if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
+    pub(super) fn changed(&mut self, change: &SessionChange, done: Result<Option<String>, Refusal>) {
+        if let (SessionChange::Edit(edit), Err(refusal)) = (change, &done) {
             self.view_state.said.refused = Some(RefusedEdit::of(edit, refusal));
         }
         if done.is_ok() {
-            self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
+            self.saving.changes += u64::from(!matches!(change, SessionChange::Seek(_)));
             match change {
                 // A push sends many edits a second while it lasts: too many to run ahead after each.
-                Change::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
-                Change::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
-                Change::Edit(_) => {
+                SessionChange::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
+                SessionChange::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
+                SessionChange::Edit(_) => {
                     self.view_state.said.refused = None;
                     self.foresee();
                 }
-                Change::Undo | Change::Redo | Change::GoTo(_) | Change::Branch(_) | Change::BackToPath => {
-                    self.foresee()
-                }
-                Change::Seek(_) => {}
+                SessionChange::Undo
+                | SessionChange::Redo
+                | SessionChange::GoTo(_)
+                | SessionChange::Branch(_)
+                | SessionChange::BackToPath => self.foresee(),
+                SessionChange::Seek(_) => {}
             }
         }
         self.tell(done.map_err(|refusal| refusal.to_string()));

@@ -1,17 +1,17 @@
 //! Edits in the design view, and the counterweights applied there.
 
 use super::AppState;
-use crate::app::change::Change;
+use crate::app::change::SessionChange;
 use crate::app::{FrontsCommand, studio};
 use crate::mechanics::counterweights::{MATERIALS, Objective};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::views::ViewKind;
 use crate::query::{Query, Shared};
 use crate::session::Edit;
-use crate::session::design::{becoming, briefed, weights_of};
+use crate::session::design::{brief_edit, counterweights_edit, machine_edit};
 use crate::session::scenario::Scenario;
-use crate::study::fronts::{FrontOf, Fronts};
-use crate::study::lengths::{LengthSearch, Seeking};
+use crate::study::fronts::{FrontCase, Fronts};
+use crate::study::lengths::{LengthSearch, LengthsQuery};
 
 impl AppState {
     /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if that is
@@ -26,7 +26,7 @@ impl AppState {
             let start = self.designed_from.get_or_insert_with(|| scenario.machine.clone());
             return scenario.design.edit(&scenario.machine, start, change);
         }
-        if edit.part("design").is_some() { briefed(scenario, change) } else { Ok(edit) }
+        if edit.part("design").is_some() { brief_edit(scenario, change) } else { Ok(edit) }
     }
 
     /// Stops the search for Pareto fronts that are not on display any more. Known fronts stay cached.
@@ -46,9 +46,9 @@ impl AppState {
                 let material = MATERIALS.iter().find(|(_, density)| *density == design.density);
                 let material = material.map_or_else(|| format!("{} kg/m³", design.density), |(name, _)| (*name).into());
                 let name = format!("{}, {material}, reach {:.2} m", machine.name(), machine.reach());
-                self.fronts.push(FrontOf::of(name, machine, design));
+                self.fronts.push(FrontCase::of(name, machine, design));
             }
-            FrontsCommand::Add(other) => self.fronts.push(FrontOf::of(other.name(), &other, design)),
+            FrontsCommand::Add(other) => self.fronts.push(FrontCase::of(other.name(), &other, design)),
             FrontsCommand::Remove(place) if place < self.fronts.len() => drop(self.fronts.remove(place)),
             FrontsCommand::Remove(_) => {}
         }
@@ -56,7 +56,7 @@ impl AppState {
 
     /// Returns the request of a search for lengths with the present brief, or `None` if the machine is not valid
     /// without its counterweights.
-    fn sought(&self, objective: Objective) -> Option<<Seeking as Query>::Input> {
+    fn sought(&self, objective: Objective) -> Option<<LengthsQuery as Query>::Input> {
         let Scenario { machine, design, .. } = self.session.scenario();
         let bare = machine.without_counterweights().ok()?;
         let asked = LengthSearch::of(design, &bare, objective);
@@ -65,7 +65,7 @@ impl AppState {
 
     /// Starts a new search for lengths.
     pub(super) fn seek(&mut self, objective: Objective) {
-        self.queries().forget::<Seeking>();
+        self.queries().forget::<LengthsQuery>();
         self.seeking = self.sought(objective);
     }
 
@@ -74,17 +74,18 @@ impl AppState {
         let Some(seeking) = self.seeking.take() else { return };
         self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
         match &self.seeking {
-            Some(seeking) => drop(self.queries().ask_beside::<Seeking>(seeking)),
-            None => self.queries().forget::<Seeking>(),
+            Some(seeking) => drop(self.queries().ask_beside::<LengthsQuery>(seeking)),
+            None => self.queries().forget::<LengthsQuery>(),
         }
     }
 
     /// Applies the lengths found to the machine.
     pub(super) fn take_lengths(&mut self) -> Result<(), String> {
-        let found = self.seeking.as_ref().and_then(|seeking| self.queries().known::<Seeking>(seeking));
+        let found = self.seeking.as_ref().and_then(|seeking| self.queries().known::<LengthsQuery>(seeking));
         let found = found.as_deref().and_then(|found| found.as_ref().ok()).ok_or("no lengths were found yet")?;
-        let edit = becoming(self.session.scenario(), &found.placed.machine).ok_or("the machine has these lengths")?;
-        self.change(Change::Edit(edit));
+        let edit =
+            machine_edit(self.session.scenario(), &found.placed.machine).ok_or("the machine has these lengths")?;
+        self.change(SessionChange::Edit(edit));
         Ok(())
     }
 
@@ -105,7 +106,7 @@ impl AppState {
 
     /// Applies the counterweights of another machine.
     fn take_weights(&mut self, of: &Machine) {
-        let edit = weights_of(self.session.scenario(), of);
-        self.change(Change::Edit(edit));
+        let edit = counterweights_edit(self.session.scenario(), of);
+        self.change(SessionChange::Edit(edit));
     }
 }

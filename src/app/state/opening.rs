@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::AppState;
-use crate::app::background::{File, Opening};
-use crate::app::change::{NotOpened, Opened, OpenedSession, Source};
-use crate::app::{Activity, Framing, LeftOff, Recovery};
+use crate::app::background::{Opening, SessionFile};
+use crate::app::change::{NotOpened, Opened, OpenedSession, SessionSource};
+use crate::app::{Activity, Framing, Recovery, ResumePoint};
 use crate::mechanics::machine::Machine;
 use crate::query::{Shared, Ticket};
 use crate::session::Session;
@@ -14,7 +14,7 @@ use crate::session::scenario::Scenario;
 
 impl AppState {
     /// Opens a source in the background; a newer request replaces an older one.
-    pub(super) fn open(&mut self, source: Source, opening: Opening) {
+    pub(super) fn open(&mut self, source: SessionSource, opening: Opening) {
         self.background.stop(Activity::Opening);
         let work = move |ticket: &Ticket| source.open(&mut |done| ticket.goes_on(done));
         self.background.run(Activity::Opening, work, move |app_state, opened| app_state.take_opened(opening, opened));
@@ -29,18 +29,18 @@ impl AppState {
                 let OpenedSession { session, said, left_off } = *opened;
                 let news = said.or_else(|| opening.news.clone());
                 self.take_over(session, Opening { news, ..opening });
-                if let Some(LeftOff { plots, .. }) = left_off {
+                if let Some(ResumePoint { plots, .. }) = left_off {
                     self.view_state.charts = plots;
                 }
             }
             Err(_) if opening.instead.is_some() => {
                 if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
                     let opening = Opening { news: Some(said), instead: None, ..opening };
-                    self.open(Source::Scenario(Box::new(scenario)), opening);
+                    self.open(SessionSource::Scenario(Box::new(scenario)), opening);
                 }
             }
             Err(NotOpened { why, refused }) => {
-                if let Some(File::Own(file)) = &opening.file {
+                if let Some(SessionFile::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
                 self.view_state.said.refused = refused;
@@ -53,9 +53,9 @@ impl AppState {
     pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
         self.saving.opened();
         match file {
-            Some(File::Own(file)) => self.saving.uses(&file),
+            Some(SessionFile::Own(file)) => self.saving.uses(&file),
             // The session is in no file of the user yet.
-            Some(File::LeftBehind(file)) => {
+            Some(SessionFile::LeftBehind(file)) => {
                 self.saving.changes += 1;
                 self.saving.recovered = Some(file);
             }
@@ -99,22 +99,22 @@ impl AppState {
         let (news, instead) = (other.as_ref().map(news), other.as_ref().map(instead));
         let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
         let opening = Opening { plays: true, news, instead, ..Opening::default() };
-        self.open(Source::Scenario(Box::new(scenario)), opening);
+        self.open(SessionSource::Scenario(Box::new(scenario)), opening);
     }
 
     /// Opens a file.
     pub(super) fn open_file(&mut self, path: PathBuf) {
         let news = Some(format!("opened {}", path.display()));
-        let file = Some(File::Own(path.clone()));
-        self.open(Source::File(path), Opening { closes: true, news, file, ..Opening::default() });
+        let file = Some(SessionFile::Own(path.clone()));
+        self.open(SessionSource::File(path), Opening { closes: true, news, file, ..Opening::default() });
     }
 
     pub(super) fn recover(&mut self, what: Recovery) {
         let Some((file, _)) = self.saving.found.take() else { return };
         match what {
             Recovery::Open => {
-                let (from, news) = (Some(File::LeftBehind(file.clone())), Some("here is where you were".into()));
-                self.open(Source::Journal(file), Opening { news, file: from, ..Opening::default() });
+                let (from, news) = (Some(SessionFile::LeftBehind(file.clone())), Some("here is where you were".into()));
+                self.open(SessionSource::Journal(file), Opening { news, file: from, ..Opening::default() });
             }
             Recovery::Forget => self.saving.recovered = Some(file),
             Recovery::Later => {}

@@ -1,11 +1,12 @@
 //! One pass of the user interface.
 
 use super::AppState;
-use crate::app::facts::Facts;
+use crate::app::facts::ScenarioFacts;
 use crate::app::marks::Marks;
 use crate::app::{
-    Below, Command, Drawing, Intro, Layout, Said, SessionCommand, ViewChange, WindowCommand, compare, finder, given,
-    keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport, widgets,
+    BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
+    compare, finder, given, keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
+    widgets,
 };
 use crate::picture::scene::views::ViewKind;
 
@@ -16,7 +17,7 @@ impl AppState {
     /// Returns a guard that lives while the window is drawn. Background work that nobody waits for starts after it is
     /// dropped, so that it does not delay the drawing.
     #[must_use]
-    pub fn drawing(&self) -> Drawing {
+    pub fn drawing(&self) -> DrawingGuard {
         self.background.drawing()
     }
 
@@ -51,7 +52,7 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.arrangement.layout == Layout::Present;
-        let facts = Facts::of(&queries, &self.session);
+        let facts = ScenarioFacts::of(&queries, &self.session);
         if !presents {
             let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.behind()));
             top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
@@ -62,13 +63,13 @@ impl AppState {
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
-        if self.view_state.below == Some(Below::Tolerances) {
+        if self.view_state.below == Some(BottomPanel::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
         }
-        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(Below::Table)) {
+        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table)) {
             let found = self.assessed();
             let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
-            let shown = given::Shown { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
+            let shown = given::TableView { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
             given::show(ui, shown, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
@@ -76,8 +77,8 @@ impl AppState {
         let mut chosen = Vec::new();
         if designs {
             let found = match self.view_state.arrangement.learns {
-                true => studio::Facts::learned(&queries, &self.session),
-                false => studio::Facts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
+                true => studio::DesignFacts::learned(&queries, &self.session),
+                false => studio::DesignFacts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
@@ -100,7 +101,7 @@ impl AppState {
                 plots::focus(ui.ctx());
             }
             let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
-            let what = plots::Shown { session, queries: &queries, signals, comparison: beside, view_state };
+            let what = plots::DisplayContext { session, queries: &queries, signals, comparison: beside, view_state };
             let width = plots::show(ui, &what, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
@@ -120,7 +121,7 @@ impl AppState {
         finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
-        if widgets::gave_up(ui.ctx()) {
+        if widgets::drag_cancelled(ui.ctx()) {
             // Cancelling comes before the end of the gesture.
             commands.insert(0, Command::Session(SessionCommand::GiveUp));
         }
@@ -128,7 +129,7 @@ impl AppState {
             .iter()
             .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
         {
-            self.view_state.said = Said::default();
+            self.view_state.said = StatusMessage::default();
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();
@@ -155,7 +156,7 @@ impl AppState {
         self.background.wakes(ctx);
         if !self.has_fonts {
             theme::install_fonts(ctx);
-            ctx.add_plugin(order::Order::default());
+            ctx.add_plugin(order::EventQueue::default());
             self.has_fonts = true;
         }
         if self.applied_theme != Some(self.view_state.arrangement.theme) {

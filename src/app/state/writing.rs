@@ -87,7 +87,7 @@ impl AppState {
         self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
             let Self { session, view_state, comparison, .. } = app_state;
             let (queries, signals, comparison) = (app_state.queries(), &app_state.signals(), comparison.as_ref());
-            let what = plots::Shown { session, queries, signals, comparison, view_state };
+            let what = plots::DisplayContext { session, queries, signals, comparison, view_state };
             plots::written(&what, plot, file)
         })
     }
@@ -115,7 +115,7 @@ impl AppState {
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
                 let options = crate::recording::Options { pictures: None, force };
-                let mut report = |progress: crate::recording::Progress| {
+                let mut report = |progress: crate::recording::RecordingProgress| {
                     ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64)
                 };
                 let done = crate::recording::record(&[scenario], path, &options, &mut report);
@@ -137,5 +137,5 @@ const FILE_BEING_SAVED: &str = "one file is being saved: want that to end first"
 
 /// Returns the absolute path of a file, so that the user can find it.
 fn whole(path: &Path) -> String {
-    crate::files::whole(path).unwrap_or_else(|| path.into()).display().to_string()
+    crate::files::absolute_path(path).unwrap_or_else(|| path.into()).display().to_string()
 }

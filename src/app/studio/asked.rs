@@ -3,7 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, heading, name, once, send, tip_of, unit};
+use crate::app::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit, unit};
 use crate::app::{Command, SessionCommand};
 use crate::mechanics::balance::Preset;
 use crate::mechanics::counterweights::MATERIALS;
@@ -11,10 +11,10 @@ use crate::mechanics::machine::{Drive, ranges};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
-use crate::session::design::Brief;
+use crate::session::design::DesignBrief;
 use crate::session::scenario::{Scenario, Value};
-use crate::settings::change::DEFAULT;
-use crate::settings::word::{Choice, Words};
+use crate::settings::change::DEFAULT_WORD;
+use crate::settings::word::{Choice, ChoiceWords};
 
 /// Draws the brief.
 pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, commands: &mut Vec<Command>) {
@@ -36,28 +36,28 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
             let list = egui::ComboBox::from_id_salt("material").selected_text(shown).width(172.0).show_ui(ui, |ui| {
                 for (name, density) in MATERIALS {
                     if ui.selectable_label(density == brief.density, words(name, density)).clicked() {
-                        once(commands, Edit::set("design.density", density));
+                        undoable_edit(commands, Edit::set("design.density", density));
                     }
                 }
             });
             name(&list.response, "material of the counterweights");
         });
     });
-    let millimetres = |label, path, range: std::ops::RangeInclusive<f64>| Row {
+    let millimetres = |label, path, range: std::ops::RangeInclusive<f64>| NumberRow {
         unit: "mm",
         decimals: 1,
         speed: 0.1,
         slide: range.clone(),
         range,
-        ..Row::of(label, path)
+        ..NumberRow::of(label, path)
     };
     let mut thickness = 1e3 * brief.thickness;
     let row = millimetres("thickness", "design.thickness", 0.5..=1000.0);
     let response = row.show(ui, p, &mut thickness);
     send(commands, &[response], || Edit::set("design.thickness", 1e-3 * thickness));
-    let row = Row::of("behind the root", "design.behind_root").with(3, 0.002);
+    let row = NumberRow::of("behind the root", "design.behind_root").with(3, 0.002);
     bounded(ui, p, (&row, "design.behind_root", 1.0), brief.behind_root, 0.3, commands);
-    let row = Row::of("heaviest", "design.heaviest").with(2, 0.02);
+    let row = NumberRow::of("heaviest", "design.heaviest").with(2, 0.02);
     bounded(ui, p, (&row, "design.heaviest", 1.0), brief.heaviest, 5.0, commands);
     let row = millimetres("clear of pins", "design.clearance", 0.0..=1000.0);
     bounded(ui, p, (&row, "design.clearance", 1e-3), brief.clearance, 5.0, commands);
@@ -66,7 +66,7 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
 }
 
 /// Draws the intervals for rotor ratios: rotors that turn the other way can compensate the momentum of the drives.
-fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &Brief, commands: &mut Vec<Command>) {
+fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &DesignBrief, commands: &mut Vec<Command>) {
     let geared = drives.iter().filter_map(|drive| Some((drive, drive.rotor.filter(|rotor| rotor.inertia > 0.0)?)));
     let mut any = false;
     for (drive, rotor) in geared {
@@ -87,7 +87,7 @@ fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &Brief, commands: &
                 let mut end = |what: &str, range: std::ops::RangeInclusive<f64>, value: &mut f64| {
                     let label = format!("{what} ratio of drive {}", drive.name);
                     let (slide, decimals, speed) = (range.clone(), 1, 0.5);
-                    Row { label: &label, unit: "", tip, decimals, speed, slide, range }.number(ui, value)
+                    NumberRow { label: &label, unit: "", tip, decimals, speed, slide, range }.number(ui, value)
                 };
                 let both = [
                     end("greatest", low..=ranges::RATIO.high(), &mut high),
@@ -121,8 +121,8 @@ fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, held: f64, command
                 return;
             };
             let row = |label, range: std::ops::RangeInclusive<f64>| {
-                let row = Row::of(label, path).with(3, 0.005);
-                Row { slide: range.clone(), range, ..row }
+                let row = NumberRow::of(label, path).with(3, 0.005);
+                NumberRow { slide: range.clone(), range, ..row }
             };
             let both = [
                 row("greatest payload", low..=ranges::LOAD.high()).number(ui, &mut high),
@@ -149,7 +149,7 @@ fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced
         let ticked = ui.checkbox(&mut keeps, words).on_hover_text(tip_of(path));
         name(&ticked, "Keep balanced");
         if ticked.changed() {
-            once(commands, Edit::set(path, keeps));
+            undoable_edit(commands, Edit::set(path, keeps));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(RichText::new(what).font(plain(11.5)).color(colour(tone)));
@@ -166,9 +166,9 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
             let shown = now.words().screen;
             let list = egui::ComboBox::from_id_salt("penalties").selected_text(shown).width(172.0).show_ui(ui, |ui| {
                 for preset in Preset::ALL {
-                    let Words { screen, meaning, .. } = preset.words();
+                    let ChoiceWords { screen, meaning, .. } = preset.words();
                     if ui.selectable_label(*preset == now, screen).on_hover_text(meaning).clicked() {
-                        once(commands, Edit::set(path, preset.name()));
+                        undoable_edit(commands, Edit::set(path, preset.name()));
                     }
                 }
             });
@@ -181,7 +181,7 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
 pub(super) fn bounded(
     ui: &mut Ui,
     p: &Palette,
-    (row, path, scale): (&Row<'_>, &str, f64),
+    (row, path, scale): (&NumberRow<'_>, &str, f64),
     bound: Option<f64>,
     usual: f64,
     commands: &mut Vec<Command>,
@@ -216,6 +216,6 @@ pub(super) fn optional(
 ) {
     let mut is_set = is_set;
     if ui.checkbox(&mut is_set, label).on_hover_text(tip).changed() {
-        once(commands, edit(if is_set { usual() } else { DEFAULT.into() }));
+        undoable_edit(commands, edit(if is_set { usual() } else { DEFAULT_WORD.into() }));
     }
 }

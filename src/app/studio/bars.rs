@@ -2,7 +2,7 @@
 
 use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::facts::{Facts, Term};
+use super::facts::{BalanceBars, DesignFacts};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::heading;
 use crate::app::{ViewState, place};
@@ -18,7 +18,7 @@ const SYMBOL_WIDTH_PT: f32 = 62.0;
 const RESIDUAL_WIDTH_PT: f32 = 76.0;
 
 /// Draws the bars.
-pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
+pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &ViewState) {
     let p = &view_state.palette();
     heading(ui, p, "(7) and (8)", "part of each link; below: what is left");
     let hot = hot_link(view_state, session);
@@ -50,7 +50,7 @@ fn link_of(handle: Handle, session: &Session) -> Option<usize> {
     }
 }
 
-fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usize>) {
+fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Option<usize>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT), Sense::hover());
     let painter = ui.painter();
     let top = rect.top() + 3.0;
@@ -110,7 +110,7 @@ fn draw(
     session: &Session,
     rect: Rect,
     (link, part): (usize, f64),
-    (term, hot): (&Term, Option<usize>),
+    (term, hot): (&BalanceBars, Option<usize>),
 ) {
     let machine = &session.scenario().machine;
     let tone = p.drive(machine.resolved_links()[link].drive);
@@ -125,7 +125,7 @@ fn draw(
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, bold(10.5), colour(p.background));
     }
     if ui.rect_contains_pointer(rect) {
-        place::light(ui.ctx(), Handle::Link(link));
+        place::highlight(ui.ctx(), Handle::Link(link));
         let tip = format!("link {words}: {} {}", signed(part, 6), term.unit);
         egui::Tooltip::always_open(
             ui.ctx().clone(),

@@ -3,7 +3,7 @@
 use egui::{Align, Button, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
-use super::facts::Facts;
+use super::facts::DesignFacts;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::app::{Command, FrontsCommand, WindowCommand};
@@ -13,12 +13,12 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::study::fronts::MachineFront;
 
 /// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
-pub(super) fn places(facts: &Facts) -> impl Iterator<Item = [f64; 2]> {
+pub(super) fn places(facts: &DesignFacts) -> impl Iterator<Item = [f64; 2]> {
     facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|told| told.measures())
 }
 
 /// Draws the fronts, each with its number.
-pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
+pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &DesignFacts, p: &Palette) {
     for (i, MachineFront { name, outcome }) in facts.beside().iter().enumerate() {
         let Ok(told) = outcome else { continue };
         let places = told.measures();
@@ -35,7 +35,7 @@ pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &Facts, p: &Palette) {
 }
 
 /// Draws the list of these fronts, and the buttons that add one.
-pub(super) fn list(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         let tip = "Keeps this curve, to see beside it what another machine or another material comes to";

@@ -4,32 +4,32 @@ use egui::style::ScrollAnimation;
 use egui::{Align, Label, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::bars::hot_link;
-use super::lesson::Lesson;
-use super::terms::{self, Pen};
+use super::lesson::MachineEquations;
+use super::terms::{self, TermPainter};
 use super::typeset::set;
 use crate::app::ViewState;
-use crate::app::side::BAR;
+use crate::app::side::SCROLL_BAR_WIDTH;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::numbers::{at_step, signed};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
-use crate::study::equations::{Equation, Line, When};
+use crate::study::equations::{Equality, Equation, InstantKind};
 
 /// Maximum width of the names of lines, points.
 const MAX_NAME_WIDTH_PT: f32 = 48.0;
 
 /// Draws the equations: an index of their numbers on top, and a scrolling list below.
-pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewState) {
+pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_state: &ViewState) {
     let p = &view_state.palette();
     note(ui, p, &when(lesson, session));
     let wanted = ui.scope(|ui| index(ui, p, &lesson.equations)).inner;
     ui.add_space(2.0);
     let machine = &session.scenario().machine;
-    let pen = Pen { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
+    let pen = TermPainter { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
     ScrollArea::vertical().id_salt("equations").auto_shrink(false).show(ui, |ui| {
-        ui.set_width(ui.available_width() - BAR);
+        ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
         ui.spacing_mut().item_spacing.y = 2.0;
         let mut heights = Heights::of(ui);
         for (i, equation) in lesson.equations.iter().enumerate() {
@@ -93,11 +93,11 @@ impl Heights {
 }
 
 /// Returns the instant in words.
-fn when(lesson: &Lesson, session: &Session) -> String {
+fn when(lesson: &MachineEquations, session: &Session) -> String {
     let instant = match lesson.when {
-        When::Plan(time) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
-        When::Run(time) => format!("Numbers at {} s.", signed(time, 3)),
-        When::Given => String::new(),
+        InstantKind::Plan(time) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
+        InstantKind::Run(time) => format!("Numbers at {} s.", signed(time, 3)),
+        InstantKind::Given => String::new(),
     };
     match session.scenario().base.moves() {
         true => format!("{instant} As on a base that stands still."),
@@ -117,7 +117,7 @@ fn tone(equation: &Equation, p: &Palette) -> Rgba {
 /// Draws the numbers of all equations; returns the index of the clicked one.
 fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
     let mut wanted = None;
-    ui.set_max_width(ui.available_width() - BAR);
+    ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 1.0);
         ui.spacing_mut().button_padding = vec2(3.0, 1.0);
@@ -147,7 +147,7 @@ fn verdict(equation: &Equation) -> String {
     }
 }
 
-fn block(ui: &mut Ui, equation: &Equation, pen: &Pen<'_>) {
+fn block(ui: &mut Ui, equation: &Equation, pen: &TermPainter<'_>) {
     let p = pen.p;
     ui.add_space(9.0);
     ui.horizontal(|ui| {
@@ -165,7 +165,7 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &Pen<'_>) {
     }
     match &equation.lines {
         Ok(lines) => {
-            let pen = Pen { gutter: gutter(ui, lines), ..*pen };
+            let pen = TermPainter { gutter: gutter(ui, lines), ..*pen };
             ui.add_space(2.0);
             for line in lines {
                 terms::show(ui, &pen, equation.number, line);
@@ -182,7 +182,7 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &Pen<'_>) {
 }
 
 /// Returns the width for the names of lines, points.
-fn gutter(ui: &Ui, lines: &[Line]) -> f32 {
+fn gutter(ui: &Ui, lines: &[Equality]) -> f32 {
     let names = lines.iter().filter(|line| !line.name.is_empty());
     names.map(|line| terms::label(ui, line) + 4.0).fold(0.0, f32::max).min(MAX_NAME_WIDTH_PT)
 }

@@ -1,21 +1,23 @@
-//! [`Facts`]: values shown by the panels of the design view, queried for each repaint.
+//! [`DesignFacts`]: values shown by the panels of the design view, queried for each repaint.
 
 use std::sync::Arc;
 
-use super::lengths::Sought;
-use super::lesson::Lesson;
+use super::lengths::LengthsResult;
+use super::lesson::MachineEquations;
 use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::counterweights::{Front, FrontSearch, NoWeights, Placed, Residual, over_payloads};
+use crate::mechanics::counterweights::{CounterweightError, Front, FrontSearch, Placed, Residual, over_payloads};
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::picture::scene::options::Offered;
+use crate::picture::scene::options::WeightOption;
 use crate::planning::Motion;
-use crate::query::{Asked, Portion, Queries, Query, Quick, Same, State, Watch, Whole};
+use crate::query::{
+    ByIdentity, Portion, ProgressCallback, Queries, Query, QueryResult, QueryStatus, QuickQuery, QuickWork,
+};
 use crate::session::Session;
-use crate::session::design::Brief;
+use crate::session::design::DesignBrief;
 use crate::settings::number::subscript;
 use crate::study::front_point::FrontMeasure;
-use crate::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
-use crate::study::lengths::Seeking;
+use crate::study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
+use crate::study::lengths::LengthsQuery;
 use crate::study::measures::Measures;
 
 /// Number of points of a Pareto front.
@@ -24,28 +26,28 @@ const FRONT_POINTS: usize = 25;
 const PAYLOAD_POINTS: usize = 41;
 
 /// Values of the machine on display.
-pub struct Facts {
+pub struct DesignFacts {
     /// The lines of (7) and (8).
-    pub(super) terms: Arc<Vec<Term>>,
+    pub(super) terms: Arc<Vec<BalanceBars>>,
     sums: Arc<Sums>,
     /// Cost of the balance, in comparison with the machine without its counterweights.
     pub(super) measures: Option<Arc<Measures>>,
     /// Residual of the balance over the payloads of the brief.
     pub(super) payloads: Option<Arc<Vec<Residual>>>,
     /// Pareto front of added mass and inertia; `None` while the equations are on display.
-    front: Option<Asked<Points>>,
+    front: Option<QueryResult<Points>>,
     /// The search for lengths of this machine, if there is one.
-    pub(super) sought: Option<Sought>,
+    pub(super) sought: Option<LengthsResult>,
     /// Pareto fronts of other machines; `None` while the equations are on display.
-    beside: Option<Asked<Vec<MachineFront>>>,
+    beside: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
-    pub(super) told: Option<Arc<Told>>,
+    pub(super) told: Option<Arc<MeasureValues>>,
     /// Its equations; `None` while the front is on display.
-    pub(super) lesson: Option<Arc<Lesson>>,
+    pub(super) lesson: Option<Arc<MachineEquations>>,
 }
 
 /// The points of a Pareto front, by increasing mass, or why there are none.
-type Points = Result<Vec<Point>, String>;
+type Points = Result<Vec<FrontMachine>, String>;
 
 /// Sums over a machine.
 struct Sums {
@@ -57,7 +59,7 @@ struct Sums {
     bare: Option<Machine>,
 }
 
-impl Quick for Sums {
+impl QuickQuery for Sums {
     type Input = Machine;
     type Answer = Self;
 
@@ -75,11 +77,11 @@ impl Quick for Sums {
 /// Query for the lines of (7) and (8) of a machine.
 struct Terms;
 
-impl Quick for Terms {
+impl QuickQuery for Terms {
     type Input = Machine;
-    type Answer = Vec<Term>;
+    type Answer = Vec<BalanceBars>;
 
-    fn answer(machine: &Machine) -> Vec<Term> {
+    fn answer(machine: &Machine) -> Vec<BalanceBars> {
         terms(machine)
     }
 }
@@ -87,8 +89,8 @@ impl Quick for Terms {
 /// Query for the cost of the balance of a machine in comparison with the bare one, in a motion of both.
 struct Cost;
 
-impl Quick for Cost {
-    type Input = (Machine, Machine, Option<Same<Motion>>);
+impl QuickQuery for Cost {
+    type Input = (Machine, Machine, Option<ByIdentity<Motion>>);
     type Answer = Measures;
 
     fn answer((bare, machine, motion): &Self::Input) -> Measures {
@@ -99,7 +101,7 @@ impl Quick for Cost {
 /// Query for the residual of a machine's balance over an interval of payloads, kg.
 struct OverPayloads;
 
-impl Quick for OverPayloads {
+impl QuickQuery for OverPayloads {
     type Input = (Machine, [f64; 2]);
     type Answer = Vec<Residual>;
 
@@ -111,20 +113,20 @@ impl Quick for OverPayloads {
 /// Query for the points of a Pareto front with Σ D_k of their machines.
 struct FrontPoints;
 
-impl Quick for FrontPoints {
-    type Input = Same<Result<Front, NoWeights>>;
+impl QuickQuery for FrontPoints {
+    type Input = ByIdentity<Result<Front, CounterweightError>>;
     type Answer = Points;
 
     fn answer(front: &Self::Input) -> Points {
         let front = front.0.as_ref().as_ref().map_err(ToString::to_string)?;
         let measures = front.measures().into_iter();
-        let point = |(placed, [_, inertia]): (&Placed, [f64; 2])| Point { placed: placed.clone(), inertia };
+        let point = |(placed, [_, inertia]): (&Placed, [f64; 2])| FrontMachine { placed: placed.clone(), inertia };
         Ok(front.points.iter().zip(measures).map(point).collect())
     }
 }
 
 /// A measure of the machines of a Pareto front.
-pub(super) struct Told {
+pub(super) struct MeasureValues {
     pub by: FrontMeasure,
     /// Its value for each machine; `None` where a machine has none.
     pub values: Vec<Option<f64>>,
@@ -138,14 +140,14 @@ struct MeasureQuery {
 
 impl Query for MeasureQuery {
     /// The front, the measure, and the motion.
-    type Input = (Same<Points>, FrontMeasure, Option<Same<Motion>>);
-    type Answer = Told;
+    type Input = (ByIdentity<Points>, FrontMeasure, Option<ByIdentity<Motion>>);
+    type Answer = MeasureValues;
 
     fn begin(of: Self::Input) -> Self {
         Self { of, values: Vec::new() }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<Self::Answer> {
         let (front, by, motion) = &self.of;
         let points = front.0.as_deref().unwrap_or_default();
         match points.get(self.values.len()) {
@@ -153,13 +155,13 @@ impl Query for MeasureQuery {
                 self.values.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
                 Portion::More(self.values.len() as f64 / points.len() as f64)
             }
-            None => Portion::Done(Told { by: *by, values: std::mem::take(&mut self.values) }),
+            None => Portion::Done(MeasureValues { by: *by, values: std::mem::take(&mut self.values) }),
         }
     }
 }
 
 /// A point of a Pareto front.
-pub(super) struct Point {
+pub(super) struct FrontMachine {
     /// The machine with its counterweights.
     pub placed: Placed,
     /// Σ D_k, kg m².
@@ -167,7 +169,7 @@ pub(super) struct Point {
 }
 
 /// One line of (7) or (8), shown as a bar.
-pub(super) struct Term {
+pub(super) struct BalanceBars {
     /// Its symbol.
     pub symbol: String,
     /// Meaning of a zero residual.
@@ -181,7 +183,7 @@ pub(super) struct Term {
     pub parts: Vec<(usize, f64)>,
 }
 
-impl Term {
+impl BalanceBars {
     /// Returns the larger of the sums of positive and of negative contributions.
     pub fn greatest(&self) -> f64 {
         let sum = |sign: f64| self.parts.iter().map(|(_, part)| (sign * part).max(0.0)).sum::<f64>();
@@ -192,9 +194,9 @@ impl Term {
 /// Contributions below this fraction of the largest are treated as zero.
 const ROUNDING_TOLERANCE: f64 = 1e-9;
 
-impl Facts {
+impl DesignFacts {
     /// Queries the values of the machine on display, with its Pareto front and those of other machines.
-    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontOf]) -> Self {
+    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontCase]) -> Self {
         let mut facts = Self::of(queries, session);
         facts.beside = (!others.is_empty()).then(|| {
             let machines = others.to_vec();
@@ -203,38 +205,38 @@ impl Facts {
         });
         let Some(bare) = &facts.sums.bare else { return facts };
         let front = queries.ask_beside::<FrontSearch>(&front_request(bare, &session.scenario().design));
-        let points = front.last.map(|front| queries.ask::<Whole<FrontPoints>>(&Same(front)));
+        let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
         facts.told = by.zip(points.clone()).and_then(|(by, points)| {
-            let told = queries.ask_beside::<MeasureQuery>(&(Same(points.clone()), by, motion)).last?;
+            let told = queries.ask_beside::<MeasureQuery>(&(ByIdentity(points.clone()), by, motion)).last?;
             // Values of another front do not apply to this one.
-            (told.by == by && told.values.len() == points.as_deref().map_or(0, <[Point]>::len)).then_some(told)
+            (told.by == by && told.values.len() == points.as_deref().map_or(0, <[FrontMachine]>::len)).then_some(told)
         });
-        facts.front = Some(Asked { last: points, state: front.state });
+        facts.front = Some(QueryResult { last: points, state: front.state });
         facts
     }
 
     /// Queries the values of the machine on display, with its equations.
     pub fn learned(queries: &Queries, session: &Session) -> Self {
-        let lesson = Lesson::of(queries, session, session.scenario().design.penalties);
+        let lesson = MachineEquations::of(queries, session, session.scenario().design.penalties);
         Self { lesson, ..Self::of(queries, session) }
     }
 
     fn of(queries: &Queries, session: &Session) -> Self {
         let (machine, run) = (&session.scenario().machine, session.run());
-        let sums = queries.ask::<Whole<Sums>>(machine);
+        let sums = queries.ask::<QuickWork<Sums>>(machine);
         let cost = |bare: &Machine| {
-            queries.ask_beside::<Whole<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
+            queries.ask_beside::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
         };
-        let over = |ends| queries.ask_beside::<Whole<OverPayloads>>(&(machine.clone(), ends)).last;
+        let over = |ends| queries.ask_beside::<QuickWork<OverPayloads>>(&(machine.clone(), ends)).last;
         Self {
-            terms: queries.ask::<Whole<Terms>>(machine),
+            terms: queries.ask::<QuickWork<Terms>>(machine),
             measures: sums.bare.as_ref().and_then(cost),
             payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
-            sought: queries.newest::<Seeking>(),
+            sought: queries.newest::<LengthsQuery>(),
             beside: None,
             told: None,
             lesson: None,
@@ -252,7 +254,7 @@ impl Facts {
     }
 
     /// Returns the points of the front, by increasing mass; empty before the first front is found.
-    pub(super) fn front(&self) -> Result<&[Point], &str> {
+    pub(super) fn front(&self) -> Result<&[FrontMachine], &str> {
         match self.front.as_ref().and_then(|front| front.last.as_deref()) {
             Some(Ok(points)) => Ok(points),
             Some(Err(why)) => Err(why),
@@ -268,7 +270,7 @@ impl Facts {
     /// Returns the fraction of them that is computed, while the work is under way.
     pub(super) fn beside_under_way(&self) -> Option<f64> {
         match self.beside.as_ref()?.state {
-            State::UnderWay(share) => Some(share),
+            QueryStatus::UnderWay(share) => Some(share),
             _ => None,
         }
     }
@@ -276,19 +278,19 @@ impl Facts {
     /// Returns the fraction of the front of the machine on display that is computed, while the work is under way.
     pub(super) fn front_under_way(&self) -> Option<f64> {
         match self.front.as_ref()?.state {
-            State::UnderWay(share) => Some(share),
+            QueryStatus::UnderWay(share) => Some(share),
             _ => None,
         }
     }
 
     /// Returns the counterweights of a point of the front, by its index.
-    pub fn weights(&self, i: usize) -> Vec<Offered> {
+    pub fn weights(&self, i: usize) -> Vec<WeightOption> {
         let point = self.front().ok().and_then(|points| points.get(i));
         let spec = point.map(|point| point.placed.machine.spec());
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(|weight| {
                 let link = spec.links.iter().position(|link| link.name == weight.link)?;
-                Some(Offered { link, at: weight.at, radius: weight.radius })
+                Some(WeightOption { link, at: weight.at, radius: weight.radius })
             })
         });
         weights.collect()
@@ -297,7 +299,7 @@ impl Facts {
 
 /// Returns a machine of the Pareto front for the present machine and brief, by its index.
 pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
-    let sums = queries.ask::<Whole<Sums>>(&session.scenario().machine);
+    let sums = queries.ask::<QuickWork<Sums>>(&session.scenario().machine);
     let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &session.scenario().design));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
@@ -310,13 +312,13 @@ pub fn leave(queries: &Queries) {
 }
 
 /// Returns the request for a Pareto front.
-fn front_request(bare: &Machine, brief: &Brief) -> <FrontSearch as Query>::Input {
+fn front_request(bare: &Machine, brief: &DesignBrief) -> <FrontSearch as Query>::Input {
     (bare.clone(), brief.weighing(bare), FRONT_POINTS)
 }
 
-fn terms(machine: &Machine) -> Vec<Term> {
+fn terms(machine: &Machine) -> Vec<BalanceBars> {
     let breakdown = Breakdown::of(machine);
-    let term = |term: &crate::mechanics::balance::Term| {
+    let term = |term: &crate::mechanics::balance::BalanceTerm| {
         let links = (0..machine.links().len()).map(|link| (link, breakdown.of_link(term, link).re));
         let mut parts: Vec<(usize, f64)> = links.collect();
         let most = parts.iter().fold(0.0_f64, |most, (_, part)| most.max(part.abs()));
@@ -327,13 +329,13 @@ fn terms(machine: &Machine) -> Vec<Term> {
             Condition::Coupling(k, l) => (format!("C{}{}", subscript(k + 1), subscript(l + 1)), "no coupling", "kg m²"),
         };
         let left = [term.left.re, term.left.im];
-        Term { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
+        BalanceBars { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
     };
-    let mut terms: Vec<Term> = breakdown.terms.iter().map(term).collect();
+    let mut terms: Vec<BalanceBars> = breakdown.terms.iter().map(term).collect();
     // Contributions that are rounding errors in comparison with the other lines are not drawn.
     for unit in ["kg m", "kg m²"] {
         let alike = || terms.iter().filter(|term| term.unit == unit);
-        let most = alike().map(Term::greatest).fold(0.0, f64::max);
+        let most = alike().map(BalanceBars::greatest).fold(0.0, f64::max);
         for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < ROUNDING_TOLERANCE * most) {
             term.parts.clear();
         }

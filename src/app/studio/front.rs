@@ -4,7 +4,7 @@ use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
 use super::beside;
-use super::facts::{Facts, Point};
+use super::facts::{DesignFacts, FrontMachine};
 use crate::app::plots::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{heading, name, note};
@@ -23,7 +23,7 @@ const SELECT_DISTANCE_PT: f32 = 14.0;
 const MIN_ADDED_MASS_KG: f64 = 1e-6;
 
 /// Draws the front.
-pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.add_space(8.0);
     let under_way = facts.front_under_way();
@@ -208,10 +208,10 @@ fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Comman
 /// Draws the values of the machine under the pointer, or on display, and the buttons for ends and middle of the front.
 fn summary(
     ui: &mut Ui,
-    points: &[Point],
+    points: &[FrontMachine],
     (near, told): (Option<usize>, Option<&ColourScale<'_>>),
     view_state: &ViewState,
-    facts: &Facts,
+    facts: &DesignFacts,
     commands: &mut Vec<Command>,
 ) {
     let p = &view_state.palette();

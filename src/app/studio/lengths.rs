@@ -4,23 +4,29 @@ use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
 use super::asked::{bounded, optional};
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, note, send, tip_of, unit};
+use crate::app::widgets::{NumberRow, note, send, tip_of, unit};
 use crate::app::{Command, SessionCommand, WindowCommand};
 use crate::mechanics::counterweights::Objective;
 use crate::mechanics::machine::ranges;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
-use crate::query::{Asked, State};
+use crate::query::{QueryResult, QueryStatus};
 use crate::session::Edit;
 use crate::session::scenario::Scenario;
 use crate::settings::number::counted;
-use crate::study::lengths::{Found, NoLengths};
+use crate::study::lengths::{FoundLengths, NoLengths};
 
 /// A search for lengths, and its result.
-pub type Sought = Asked<Result<Found, NoLengths>>;
+pub type LengthsResult = QueryResult<Result<FoundLengths, NoLengths>>;
 
 /// Draws the search.
-pub fn show(ui: &mut Ui, scenario: &Scenario, sought: Option<&Sought>, p: &Palette, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    scenario: &Scenario,
+    sought: Option<&LengthsResult>,
+    p: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let title = RichText::new("Lengths").font(bold(13.5)).color(colour(p.ink));
     ui.add_space(4.0);
     let is_open = !scenario.design.length.is_empty();
@@ -32,9 +38,9 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, sought: Option<&Sought>, p: &Palet
         if brief.length.is_empty() {
             return note(ui, p, "Tick those that may change: they are sought with the counterweights.");
         }
-        let row = Row::of("reach at least", "design.reach").with(3, 0.005);
+        let row = NumberRow::of("reach at least", "design.reach").with(3, 0.005);
         bounded(ui, p, (&row, "design.reach", 1.0), brief.reach, scenario.machine.reach(), commands);
-        let row = Row::of("workspace at least", "design.workspace").with(3, 0.005);
+        let row = NumberRow::of("workspace at least", "design.workspace").with(3, 0.005);
         bounded(ui, p, (&row, "design.workspace", 1.0), brief.workspace, 0.5, commands);
         ui.horizontal(|ui| {
             ui.label(RichText::new("seek").font(plain(12.5)));
@@ -68,7 +74,7 @@ fn ends(ui: &mut Ui, p: &Palette, name: &str, metres: f64, ends: Option<[f64; 2]
             };
             let row = |words: &str, range: std::ops::RangeInclusive<f64>, value: &mut f64, ui: &mut Ui| {
                 let (label, slide) = (format!("{words} length {name}"), range.clone());
-                Row { label: &label, unit: "m", tip, decimals: 3, speed: 0.002, slide, range }.number(ui, value)
+                NumberRow { label: &label, unit: "m", tip, decimals: 3, speed: 0.002, slide, range }.number(ui, value)
             };
             let both = [
                 row("greatest", low..=ranges::LENGTH.high(), &mut high, ui),
@@ -84,11 +90,11 @@ fn found<'a>(
     ui: &mut Ui,
     p: &Palette,
     names: impl Iterator<Item = &'a String>,
-    sought: &Sought,
+    sought: &LengthsResult,
     commands: &mut Vec<Command>,
 ) {
     let Some(outcome) = sought.known() else {
-        return note(ui, p, if sought.state == State::Stopped { "cancelled" } else { "seeking …" });
+        return note(ui, p, if sought.state == QueryStatus::Stopped { "cancelled" } else { "seeking …" });
     };
     let found = match &**outcome {
         Ok(found) => found,

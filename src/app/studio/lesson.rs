@@ -1,24 +1,24 @@
-//! [`Lesson`]: the equations with the numbers of the machine on display.
+//! [`MachineEquations`]: the equations with the numbers of the machine on display.
 
 use std::sync::Arc;
 
 use crate::mechanics::balance::Preset;
 use crate::mechanics::machine::Machine;
-use crate::query::{Queries, Quick, Whole};
+use crate::query::{Queries, QuickQuery, QuickWork};
 use crate::session::Session;
-use crate::study::equations::{Equation, State, When, equations};
+use crate::study::equations::{DriveState, Equation, InstantKind, equations};
 
 /// The equations of a machine at an instant.
-pub struct Lesson {
+pub struct MachineEquations {
     /// In the order of the paper.
     pub(super) equations: Vec<Equation>,
     /// The instant.
-    pub(super) when: When,
+    pub(super) when: InstantKind,
 }
 
-impl Quick for Lesson {
+impl QuickQuery for MachineEquations {
     /// The machine, the instant, and the penalties of (10).
-    type Input = (Machine, State, Preset);
+    type Input = (Machine, DriveState, Preset);
     type Answer = Self;
 
     fn answer((machine, state, penalties): &Self::Input) -> Self {
@@ -26,14 +26,14 @@ impl Quick for Lesson {
     }
 }
 
-impl Lesson {
+impl MachineEquations {
     /// Queries the equations for the machine and the instant on display.
     pub fn of(queries: &Queries, session: &Session, penalties: Preset) -> Option<Arc<Self>> {
-        let (machine, state) = (&session.scenario().machine, State::of(session.run(), session.frame()));
+        let (machine, state) = (&session.scenario().machine, DriveState::of(session.run(), session.frame()));
         // The frame of a waiting run may belong to a machine with fewer drives.
         match state.q.len() == machine.drives() {
-            true => Some(queries.ask::<Whole<Self>>(&(machine.clone(), state, penalties))),
-            false => queries.last::<Whole<Self>>(),
+            true => Some(queries.ask::<QuickWork<Self>>(&(machine.clone(), state, penalties))),
+            false => queries.last::<QuickWork<Self>>(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::facts::Facts;
+use super::facts::DesignFacts;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::heading;
 use crate::picture::numbers::signed;
@@ -13,7 +13,7 @@ const BETA: &str = "What is left of what the machine without counterweights does
                     0 is nothing, 1 as much";
 
 /// Draws the totals.
-pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
+pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     ui.add_space(8.0);
     heading(ui, p, "What it comes to", "");
     let (machine, run) = (&session.scenario().machine, session.run());

@@ -18,12 +18,12 @@ mod typeset;
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
-use super::side::BAR;
+use super::side::SCROLL_BAR_WIDTH;
 use super::theme::{colour, plain};
-use super::{Command, FileDialog, Purpose, ViewChange, ViewState};
+use super::{Command, FileDialog, FilePurpose, ViewChange, ViewState};
 use crate::session::Session;
 
-pub use facts::{Facts, leave, of_front};
+pub use facts::{DesignFacts, leave, of_front};
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -33,7 +33,7 @@ const MIN_SCENE_WIDTH_PT: f32 = 250.0;
 const MIN_BALANCE_WIDTH_PT: f32 = 280.0;
 
 /// Draws both panels.
-pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let balance =
         (ui.available_width() - TABLE_WIDTH_PT - MIN_SCENE_WIDTH_PT).clamp(MIN_BALANCE_WIDTH_PT, BALANCE_WIDTH_PT);
@@ -80,7 +80,7 @@ fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
             let link = ui.link(RichText::new("take it along →").font(plain(12.5)).color(colour(p.amber)));
             if link.on_hover_text("Write the machine for another program or a workshop: the ending says what").clicked()
             {
-                commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, Purpose::Machine))).into());
+                commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, FilePurpose::Machine))).into());
             }
         });
     });
@@ -88,7 +88,7 @@ fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
 
 fn scrolled(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.set_width(ui.available_width() - BAR);
+        ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
         add(ui);
     });
 }

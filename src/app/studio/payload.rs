@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoints, VLine};
 
-use super::facts::Facts;
+use super::facts::DesignFacts;
 use crate::app::plots::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{heading, name, note};
@@ -13,7 +13,7 @@ use crate::picture::scene::palette::{Palette, faded};
 const PLOT_HEIGHT_PT: f32 = 96.0;
 
 /// Draws the plot, if the brief has an interval of payloads; `held` is the present payload, kg.
-pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
+pub fn show(ui: &mut Ui, facts: &DesignFacts, held: f64, p: &Palette) {
     let Some(payloads) = &facts.payloads else { return };
     let Some((first, last)) = payloads.first().zip(payloads.last()) else { return };
     ui.add_space(8.0);

@@ -3,15 +3,15 @@
 use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{Row, heading, name, once, send, tip_of};
+use crate::app::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
 use crate::app::{Command, ViewState, place};
-use crate::mechanics::balance::Hold;
+use crate::mechanics::balance::ParameterBounds;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
-use crate::session::design::{Brief, length_of};
-use crate::session::scenario::{Change, Value, to_value};
+use crate::session::design::{DesignBrief, length_edit};
+use crate::session::scenario::{TaskChange, Value, to_value};
 use crate::session::{Edit, Session};
-use crate::settings::change::DEFAULT;
+use crate::settings::change::DEFAULT_WORD;
 
 /// Widths of the columns for the link's name and for each number, gap, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     let (spec, brief) = (session.scenario().machine.spec(), &session.scenario().design);
     for (i, link) in spec.links.iter().enumerate() {
         let weight = spec.counterweights.iter().position(|weight| weight.link == link.name);
-        place::of(ui, Handle::Link(i), p, |ui| {
+        place::place_of_thing(ui, Handle::Link(i), p, |ui| {
             ui.horizontal(|ui| {
                 let drive = session.scenario().machine.resolved_links()[i].drive;
                 cell(ui, NAME_WIDTH_PT, Align::Min, |ui| {
@@ -66,8 +66,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 number(ui, (&label, &path("mass"), 3), weight.mass, (brief, p, &mut *commands), |mass| {
                     // A disc of the same thickness and density.
                     let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
-                    let both = Change::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
-                    Edit::of("counterweight", Change::from_iter([(place.clone(), Value::from(both))]))
+                    let both = TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
+                    Edit::of("counterweight", TaskChange::from_iter([(place.clone(), Value::from(both))]))
                 });
                 let label = format!("place of the counterweight of link {}", link.name);
                 number(ui, (&label, &path("at"), 4), weight.at, (brief, p, &mut *commands), |x| {
@@ -99,15 +99,15 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
         head(ui, p, "length");
         let mut length = session.scenario().machine.resolved_links()[at].length;
         let label = of("length");
-        let response = Row::of(&label, "length.any").with(3, 1e-3).number(ui, &mut length);
-        send(commands, &[response], || length_of(link, length));
+        let response = NumberRow::of(&label, "length.any").with(3, 1e-3).number(ui, &mut length);
+        send(commands, &[response], || length_edit(link, length));
         head(ui, p, "m");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             head(ui, p, "kg m²");
             let mut inertia = link.inertia;
             let label = of("inertia");
             let path = format!("link.{}.inertia", link.name);
-            let response = Row::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
+            let response = NumberRow::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
             send(commands, &[response], || Edit::at(&["link", &link.name, "inertia"], inertia));
             head(ui, p, "inertia");
         });
@@ -116,13 +116,13 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
 }
 
 /// Draws the box that fixes a link while the balance is kept.
-fn fixed(ui: &mut Ui, link: &str, brief: &Brief, commands: &mut Vec<Command>) {
+fn fixed(ui: &mut Ui, link: &str, brief: &DesignBrief, commands: &mut Vec<Command>) {
     let mut is_fixed = brief.fixed.contains(link);
     let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip_of("design.fixed.*"));
     name(&ticked, &format!("link {link} stays"));
     if ticked.changed() {
-        let value = if is_fixed { true.into() } else { Value::from(DEFAULT) };
-        once(commands, Edit::at(&["design", "fixed", link], value));
+        let value = if is_fixed { true.into() } else { Value::from(DEFAULT_WORD) };
+        undoable_edit(commands, Edit::at(&["design", "fixed", link], value));
     }
 }
 
@@ -145,12 +145,12 @@ fn number(
     ui: &mut Ui,
     (label, path, decimals): (&str, &str, usize),
     now: f64,
-    (brief, p, commands): (&Brief, &Palette, &mut Vec<Command>),
+    (brief, p, commands): (&DesignBrief, &Palette, &mut Vec<Command>),
     edit: impl Fn(f64) -> Edit,
 ) {
     cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| {
         let mut value = now;
-        let row = Row::of(label, path).with(decimals, 0.002);
+        let row = NumberRow::of(label, path).with(decimals, 0.002);
         let response = row.number(ui, &mut value);
         holding(ui, &response, (label, path, decimals), (now, brief.hold.get(path).copied()), p, commands);
         send(commands, &[response], || edit(value));
@@ -163,49 +163,49 @@ fn holding(
     ui: &Ui,
     response: &Response,
     (label, path, decimals): (&str, &str, usize),
-    (now, hold): (f64, Option<Hold>),
+    (now, hold): (f64, Option<ParameterBounds>),
     p: &Palette,
     commands: &mut Vec<Command>,
 ) {
     let tone = match hold {
         None => None,
-        Some(Hold::Fixed) => Some(p.ink),
-        Some(Hold::Free) => Some(p.zero),
-        Some(Hold::Within(_)) => Some(p.amber),
+        Some(ParameterBounds::Fixed) => Some(p.ink),
+        Some(ParameterBounds::Free) => Some(p.zero),
+        Some(ParameterBounds::Within(_)) => Some(p.amber),
     };
     if let Some(tone) = tone {
         let (rect, y) = (response.rect, response.rect.bottom() - 2.0);
         ui.painter().hline(rect.x_range().shrink(3.0), y, Stroke::new(1.5, colour(tone)));
     }
     let key: Vec<&str> = ["design", "hold"].into_iter().chain(path.split('.')).collect();
-    let held = |hold: Option<Hold>| Edit::at(&key, hold.map_or_else(|| DEFAULT.into(), to_value));
+    let held = |hold: Option<ParameterBounds>| Edit::at(&key, hold.map_or_else(|| DEFAULT_WORD.into(), to_value));
     response.context_menu(|ui| {
         ui.set_min_width(190.0);
         ui.label(RichText::new(format!("{label}, while the balance is kept")).font(plain(11.0)).color(colour(p.dim)));
         let path = key.join(".");
         let away = 0.1 * now.abs().max(0.1);
-        let (least, greatest) = Row::of(label, &path).range.into_inner();
+        let (least, greatest) = NumberRow::of(label, &path).range.into_inner();
         let around = [(now - away).max(least), (now + away).min(greatest)];
-        let ends = if let Some(Hold::Within(ends)) = hold { Some(ends) } else { None };
+        let ends = if let Some(ParameterBounds::Within(ends)) = hold { Some(ends) } else { None };
         for (words, one, is) in [
             ("follows if its kind does", None, hold.is_none()),
-            ("stays", Some(Hold::Fixed), hold == Some(Hold::Fixed)),
-            ("may change", Some(Hold::Free), hold == Some(Hold::Free)),
-            ("may change within", Some(Hold::Within(ends.unwrap_or(around))), ends.is_some()),
+            ("stays", Some(ParameterBounds::Fixed), hold == Some(ParameterBounds::Fixed)),
+            ("may change", Some(ParameterBounds::Free), hold == Some(ParameterBounds::Free)),
+            ("may change within", Some(ParameterBounds::Within(ends.unwrap_or(around))), ends.is_some()),
         ] {
             if ui.radio(is, words).clicked() && hold != one {
-                once(commands, held(one));
+                undoable_edit(commands, held(one));
             }
         }
         if let Some([mut low, mut high]) = ends {
             ui.horizontal(|ui| {
                 let end = |label: &str, ui: &mut Ui, value: &mut f64| {
-                    Row::of(label, &path).with(decimals, 0.002).number(ui, value)
+                    NumberRow::of(label, &path).with(decimals, 0.002).number(ui, value)
                 };
                 let one = end(&format!("least {label}"), ui, &mut low);
                 ui.label("to");
                 let other = end(&format!("greatest {label}"), ui, &mut high);
-                send(commands, &[one, other], || held(Some(Hold::Within([low, high]))));
+                send(commands, &[one, other], || held(Some(ParameterBounds::Within([low, high]))));
             });
         }
     });

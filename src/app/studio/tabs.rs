@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let width = 0.5 * (ui.available_width() - 3.0 - crate::app::side::BAR);
+        let width = 0.5 * (ui.available_width() - 3.0 - crate::app::side::SCROLL_BAR_WIDTH);
         for (learns, words, tip) in TABS {
             let chosen = learns == view_state.arrangement.learns;
             let text = RichText::new(words).font(bold(12.5)).color(colour(if chosen { p.ink } else { p.dim }));

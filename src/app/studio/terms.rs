@@ -8,7 +8,7 @@ use crate::app::theme::{colour, plain};
 use crate::mechanics::machine::Machine;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::study::equations::{Cell, Line, Term, cells, plain as written};
+use crate::study::equations::{Equality, EquationCell, Term, cells, plain as written};
 
 /// Heights of symbols and of numbers, width of a sign before either, gaps between terms and below a row, points.
 const SYMBOL_HEIGHT_PT: f32 = 17.0;
@@ -27,7 +27,7 @@ const DECIMALS: usize = 4;
 const TIP_DECIMALS: usize = 6;
 
 /// Context in which lines are drawn.
-pub struct Pen<'a> {
+pub struct TermPainter<'a> {
     pub p: &'a Palette,
     pub machine: &'a Machine,
     /// Index of the link that is dragged, under the pointer, or mentioned by a panel.
@@ -37,7 +37,7 @@ pub struct Pen<'a> {
 }
 
 /// Draws a line of the equation with this number.
-pub fn show(ui: &mut Ui, pen: &Pen<'_>, number: &str, line: &Line) {
+pub fn show(ui: &mut Ui, pen: &TermPainter<'_>, number: &str, line: &Equality) {
     let width = ui.available_width();
     let cells = cells(line, DECIMALS);
     let inner = width - pen.gutter;
@@ -63,12 +63,12 @@ pub fn show(ui: &mut Ui, pen: &Pen<'_>, number: &str, line: &Line) {
 }
 
 /// Returns the width of the name of a line, points.
-pub fn label(ui: &Ui, line: &Line) -> f32 {
+pub fn label(ui: &Ui, line: &Equality) -> f32 {
     words(ui, &line.name, (SMALL_FONT_PT, egui::Color32::WHITE), f32::INFINITY).size().x
 }
 
 /// Returns the size of a term.
-fn size(ui: &Ui, p: &Palette, cell: &Cell<'_>, (most, room): (f32, f32)) -> Vec2 {
+fn size(ui: &Ui, p: &Palette, cell: &EquationCell<'_>, (most, room): (f32, f32)) -> Vec2 {
     if cell.symbol.is_empty() {
         return vec2(SIGN_WIDTH_PT + TERM_GAP_PT, SYMBOL_HEIGHT_PT + NUMBER_HEIGHT_PT);
     }
@@ -80,7 +80,7 @@ fn size(ui: &Ui, p: &Palette, cell: &Cell<'_>, (most, room): (f32, f32)) -> Vec2
 }
 
 /// Returns the width for the sign before a term; the first term has it too, since it may become negative.
-fn before(cell: &Cell<'_>) -> f32 {
+fn before(cell: &EquationCell<'_>) -> f32 {
     if cell.symbol.is_empty() { 0.0 } else { SIGN_WIDTH_PT }
 }
 
@@ -103,7 +103,7 @@ fn flow(sizes: &[Vec2], unit: f32, width: f32) -> (Vec<Vec2>, f32) {
 }
 
 /// Draws a term; returns the right end of its number.
-fn draw(ui: &Ui, pen: &Pen<'_>, cell: &Cell<'_>, (rect, room): (Rect, f32), unit: &str) -> f32 {
+fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, (rect, room): (Rect, f32), unit: &str) -> f32 {
     let p = pen.p;
     let (ink, dim) = (colour(p.ink), colour(p.dim));
     let is_under = cell.term.is_some() && ui.rect_contains_pointer(rect);
@@ -132,7 +132,7 @@ fn draw(ui: &Ui, pen: &Pen<'_>, cell: &Cell<'_>, (rect, room): (Rect, f32), unit
     let left = rect.left() + shift + (room - wide).max(0.0);
     painter.galley(pos2(left, lower), number, ink);
     if let Some(term) = cell.term.filter(|_| is_under) {
-        place::light_links(ui.ctx(), term.links());
+        place::highlight_links(ui.ctx(), term.links());
         tip(ui, pen, term, unit);
     }
     left + wide
@@ -148,7 +148,7 @@ fn contributes(term: Option<&Term>, link: usize) -> bool {
 /// Maximum number of parts in a tooltip.
 const MAX_TIP_PARTS: usize = 12;
 
-fn tip(ui: &Ui, pen: &Pen<'_>, term: &Term, unit: &str) {
+fn tip(ui: &Ui, pen: &TermPainter<'_>, term: &Term, unit: &str) {
     let mut parts: Vec<_> = term.parts.iter().filter(|(_, part)| *part != 0.0).collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     let mut lines = vec![format!("{} = {} {unit}", written(&term.symbol), signed(term.value, TIP_DECIMALS))];
@@ -176,8 +176,8 @@ fn tip(ui: &Ui, pen: &Pen<'_>, term: &Term, unit: &str) {
 }
 
 /// Returns the text of a line for a screen reader.
-fn aloud(line: &Line, cells: &[Cell<'_>]) -> String {
-    let joined = |of: &dyn Fn(&Cell<'_>) -> String| cells.iter().map(of).collect::<Vec<_>>().join(" ");
+fn aloud(line: &Equality, cells: &[EquationCell<'_>]) -> String {
+    let joined = |of: &dyn Fn(&EquationCell<'_>) -> String| cells.iter().map(of).collect::<Vec<_>>().join(" ");
     let symbols = joined(&|cell| format!("{} {}", cell.sign, written(cell.symbol)).trim().to_owned());
     let numbers = joined(&|cell| format!("{} {}", cell.number_sign, cell.number).trim().to_owned());
     let name = if line.name.is_empty() { String::new() } else { format!("{}: ", line.name) };

@@ -8,7 +8,7 @@ use rfd::{AsyncFileDialog, FileHandle};
 use winit::window::Window;
 
 use crate::app::jobs::Threads;
-use crate::app::{AppState, FileDialog, PlotFile, Purpose, SessionCommand, ViewChange};
+use crate::app::{AppState, FileDialog, FilePurpose, PlotFile, SessionCommand, ViewChange};
 use crate::exchange::form;
 use crate::query::{Job, Poll};
 
@@ -59,7 +59,7 @@ impl Chooser {
                 app_state.carry_out(SessionCommand::Replace(file.clone()));
                 // A file to open keeps its name.
                 let file = match dialog.purpose {
-                    Purpose::Open => file,
+                    FilePurpose::Open => file,
                     _ => with_ending(file, endings(&dialog.purpose)[0]),
                 };
                 app_state.carry_out(dialog.named(file));
@@ -76,15 +76,15 @@ impl Chooser {
 }
 
 /// Returns the file extensions for a purpose, the usual one first.
-fn endings(purpose: &Purpose) -> Vec<&'static str> {
+fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open => vec!["toml", "urdf", "xml", "csv"],
-        Purpose::Save => vec!["toml"],
-        Purpose::Record => vec!["rrd"],
-        Purpose::Plot(_, PlotFile::Csv) => vec!["csv"],
-        Purpose::Plot(_, PlotFile::Svg) => vec!["svg"],
-        Purpose::Plot(_, PlotFile::Png) => vec!["png"],
-        Purpose::Machine => {
+        FilePurpose::Open => vec!["toml", "urdf", "xml", "csv"],
+        FilePurpose::Save => vec!["toml"],
+        FilePurpose::Record => vec!["rrd"],
+        FilePurpose::Plot(_, PlotFile::Csv) => vec!["csv"],
+        FilePurpose::Plot(_, PlotFile::Svg) => vec!["svg"],
+        FilePurpose::Plot(_, PlotFile::Png) => vec!["png"],
+        FilePurpose::Machine => {
             let mut endings = form::endings().to_vec();
             endings.sort_by_key(|ending| *ending != form::USUAL_ENDING);
             endings
@@ -103,18 +103,18 @@ type DialogFuture = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + 
 fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> DialogFuture {
     let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
-        Purpose::Open => "Sessions, machines, models and tables",
-        Purpose::Save => "Sessions",
-        Purpose::Record => "Recordings",
-        Purpose::Plot(..) => "Plots",
-        Purpose::Machine => "Models, drawings and lists",
+        FilePurpose::Open => "Sessions, machines, models and tables",
+        FilePurpose::Save => "Sessions",
+        FilePurpose::Record => "Recordings",
+        FilePurpose::Plot(..) => "Plots",
+        FilePurpose::Machine => "Models, drawings and lists",
     };
     let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, &endings);
     if let Some(folder) = folder {
         asks = asks.set_directory(folder);
     }
     match (&dialog.purpose, Path::new(&dialog.path).file_name()) {
-        (Purpose::Open, _) => Box::pin(asks.add_filter("All files", &["*"]).pick_file()),
+        (FilePurpose::Open, _) => Box::pin(asks.add_filter("All files", &["*"]).pick_file()),
         (_, Some(name)) => Box::pin(asks.set_file_name(name.to_string_lossy()).save_file()),
         (_, None) => Box::pin(asks.save_file()),
     }

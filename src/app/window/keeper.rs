@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::Threads;
-use crate::app::{AppState, LeftOff, Preferences};
-use crate::files::journal::{self, Journal, Left};
+use crate::app::{AppState, Preferences, ResumePoint};
+use crate::files::journal::{self, Journal, LeftoverJournal};
 use crate::files::preferences;
 use crate::query::{Job, Poll};
 
@@ -40,7 +40,7 @@ impl Liked {
 }
 
 /// Number of changes of a session, and the state of the display that no edit contains.
-type Kept = (u64, LeftOff);
+type Kept = (u64, ResumePoint);
 
 /// Minimum time between two writes of preferences.
 const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
@@ -98,7 +98,7 @@ impl Keeper {
         let elsewhere =
             self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
         if *changes == self.held.0 && left_off.plots == self.held.1.plots && !elsewhere {
-            self.going.take().iter().for_each(|file| journal::forget(file));
+            self.going.take().iter().for_each(|file| journal::remove_journal(file));
             return;
         }
         // The write under way wakes the window at its end.
@@ -163,7 +163,7 @@ impl Keeper {
 
 /// Returns the newest session left by an earlier program run, and its age in words.
 pub fn found() -> Option<(PathBuf, String)> {
-    let Left { file, when } = journal::left(&journal::folder()?).into_iter().next()?;
+    let LeftoverJournal { file, when } = journal::leftover_journals(&journal::folder()?).into_iter().next()?;
     let ago = when.elapsed().unwrap_or_default().as_secs();
     let words = match ago {
         0..=119 => "a moment ago".into(),

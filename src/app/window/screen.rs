@@ -10,7 +10,7 @@ use egui::epaint::{ClippedPrimitive, ImageDelta, TextureAtlas};
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use crate::picture::gui::{GuiRenderer, Sheet};
+use crate::picture::gui::{GuiRenderer, RenderTarget};
 use crate::picture::render::offscreen::NoAdapter;
 
 /// A window's surface and the device that draws on it. The device may be lost at any time, with the card, its driver or
@@ -29,7 +29,7 @@ pub struct Screen {
 
 /// Outcome of drawing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum PaintOutcome {
     /// The picture was presented, or the window is hidden.
     Done,
     /// The picture was not presented, because the surface has changed: draw again.
@@ -152,11 +152,11 @@ impl Screen {
         window: &Window,
         (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
         behind: egui::Color32,
-    ) -> Outcome {
+    ) -> PaintOutcome {
         // A driver may panic in the middle of drawing when its device is lost.
         let drawn = catch_unwind(AssertUnwindSafe(|| self.draw_on(window, (shapes, pixels_per_point), behind)));
         drawn.unwrap_or_else(|panic| match self.is_lost() {
-            true => Outcome::Again,
+            true => PaintOutcome::Again,
             false => resume_unwind(panic),
         })
     }
@@ -166,28 +166,28 @@ impl Screen {
         window: &Window,
         (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
         behind: egui::Color32,
-    ) -> Outcome {
+    ) -> PaintOutcome {
         use wgpu::CurrentSurfaceTexture::{Lost, Occluded, Outdated, Suboptimal, Success, Timeout, Validation};
         let (frame, fits) = match self.surface.get_current_texture() {
             Success(frame) => (frame, true),
             Suboptimal(frame) => (frame, false),
             Outdated | Lost => {
                 self.configure();
-                return Outcome::Again;
+                return PaintOutcome::Again;
             }
-            Timeout => return Outcome::Again,
-            Occluded | Validation => return Outcome::Done,
+            Timeout => return PaintOutcome::Again,
+            Occluded | Validation => return PaintOutcome::Done,
         };
         let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let size_px = [frame.texture.width(), frame.texture.height()];
-        let sheet = Sheet { view: &view, size_px, pixels_per_point, behind };
+        let sheet = RenderTarget { view: &view, size_px, pixels_per_point, behind };
         self.gui.draw(&sheet, &mut self.textures, shapes);
         window.pre_present_notify();
         self.queue.present(frame);
         if !fits {
             self.configure();
         }
-        Outcome::Done
+        PaintOutcome::Done
     }
 }
 

@@ -13,7 +13,7 @@ use winit::window::{Window, WindowId};
 
 use super::error::{WindowError, what_is_missing};
 use super::guest::App;
-use super::screen::{Outcome, Screen};
+use super::screen::{PaintOutcome, Screen};
 use crate::picture::paint::draw_drafts;
 use crate::picture::render::offscreen::NoAdapter;
 
@@ -63,14 +63,14 @@ struct Shell<'a> {
     app: &'a mut App,
     place: ViewportBuilder,
     wakes: EventLoopProxy<Wake>,
-    open: Option<Open>,
+    open: Option<OpenWindow>,
     /// When the next pass is due.
     next: Option<Instant>,
     ended: Result<(), WindowError>,
 }
 
 /// The window while it is open.
-struct Open {
+struct OpenWindow {
     ctx: egui::Context,
     input: egui_winit::State,
     info: ViewportInfo,
@@ -85,7 +85,7 @@ struct Open {
     window: Arc<Window>,
 }
 
-impl Open {
+impl OpenWindow {
     fn new(
         events: &ActiveEventLoop,
         place: &ViewportBuilder,
@@ -182,7 +182,7 @@ impl Shell<'_> {
         }
         open.passed = Instant::now();
         let is_unseen = open.is_unseen();
-        let Open { ctx, input, info, screen: Some(screen), window, is_shown, passed, .. } = open else { return };
+        let OpenWindow { ctx, input, info, screen: Some(screen), window, is_shown, passed, .. } = open else { return };
         info.native_pixels_per_point = Some(window.scale_factor() as f32);
         info.focused = Some(window.has_focus());
         let mut raw = input.take_egui_input(window);
@@ -212,7 +212,7 @@ impl Shell<'_> {
             // Presenting may wait for the screen: the work held back starts before.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
-            if screen.draw(window, (&shapes, pixels_per_point), behind) == Outcome::Again {
+            if screen.draw(window, (&shapes, pixels_per_point), behind) == PaintOutcome::Again {
                 window.request_redraw();
             }
         }
@@ -235,7 +235,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
         if self.open.is_some() {
             return;
         }
-        match Open::new(events, &self.place, &self.wakes) {
+        match OpenWindow::new(events, &self.place, &self.wakes) {
             Ok(open) => {
                 self.app.shown_in(open.window.clone());
                 self.open = Some(open);

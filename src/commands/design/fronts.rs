@@ -3,20 +3,20 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
-use stillbase::query::answered;
-use stillbase::study::fronts::{FrontOf, Fronts, FrontsRequest, MachineFront};
+use stillbase::query::answer_now;
+use stillbase::study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
 
 use super::super::failure::Failure;
-use super::super::output::Table;
-use super::Design;
-use super::weighed::{FRONT, front_cells, tell_taken_off, unweighed};
+use super::super::output::TextTable;
+use super::DesignArguments;
+use super::weighed::{FRONT_HEADINGS, front_cells, report_removed, request_failure};
 
 #[derive(Serialize)]
 struct Answer {
     fronts: Vec<MachineFront>,
 }
 
-impl Design {
+impl DesignArguments {
     /// Prints the Pareto front of each machine, or why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
         let machines = self.machine.load_with(&self.beside)?;
@@ -24,15 +24,15 @@ impl Design {
         let of = |(name, machine)| {
             // The Pareto front is of mass and inertia, so no motion is given.
             let asked = self.weighing.asked(&machine, None).map_err(|why| why.of(&name))?;
-            tell_taken_off(&machine, &format!("{name}: "));
-            Ok(FrontOf { name, machine, asked })
+            report_removed(&machine, &format!("{name}: "));
+            Ok(FrontCase { name, machine, asked })
         };
         let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
         let motion = task.as_ref().and_then(|run| run.shared_motion());
         let request = FrontsRequest { machines, count: self.weighing.front_count(), motion, workspace: true };
-        let answer = Answer { fronts: answered::<Fronts>(request) };
+        let answer = Answer { fronts: answer_now::<Fronts>(request) };
         let mut refused = answer.fronts.iter().filter_map(|of| Some((of, of.outcome.as_ref().err()?)));
-        let mut refusals = refused.clone().map(|(of, why)| unweighed(why.clone()).of(&of.name));
+        let mut refusals = refused.clone().map(|(of, why)| request_failure(why.clone()).of(&of.name));
         if let Some(wrong) = refusals.find(|why| matches!(why, Failure::WrongInput(_))) {
             return Err(wrong);
         }
@@ -46,7 +46,7 @@ impl Design {
 /// Formats the machines of the fronts, each from the least mass to the least inertia, and below them machines without a
 /// front.
 fn text(answer: &Answer) -> String {
-    let mut table = Table::new(["machine"].into_iter().chain(FRONT));
+    let mut table = TextTable::new(["machine"].into_iter().chain(FRONT_HEADINGS));
     let mut refused = String::new();
     for MachineFront { name, outcome } in &answer.fronts {
         match outcome {

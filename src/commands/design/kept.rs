@@ -1,21 +1,21 @@
 //! `stillbase design --keep`
 
 use clap::Args;
-use stillbase::mechanics::balance::{Keep, NotKept};
+use stillbase::mechanics::balance::{RebalanceError, RebalanceRequest};
 use stillbase::mechanics::machine::Machine;
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, significant};
-use stillbase::study::centres::{KeptChange, KeptReport, kept};
+use stillbase::study::centres::{RebalanceChange, RebalanceReport, rebalance_report};
 
 use super::super::check::balance_tables;
 use super::super::failure::Failure;
 use super::super::holds::{bound, hold};
-use super::super::output::Table;
+use super::super::output::TextTable;
 use super::measures;
 
 /// What may change, and how far.
 #[derive(Args)]
-pub struct KeepArguments {
+pub struct RebalanceArguments {
     /// Change as little as possible instead: the least Σ (p Δ)², Δ in m or kg. Centres of mass along the links are free,
     /// from where they are; everything else stays
     #[arg(long)]
@@ -32,32 +32,34 @@ pub struct KeepArguments {
     bound: Vec<(String, [f64; 2])>,
 }
 
-impl KeepArguments {
+impl RebalanceArguments {
     /// Returns the machine with the least change, and the report on it.
     pub fn run(
         &self,
         machine: &Machine,
         motion: Option<&Motion>,
         penalty: &[f64],
-    ) -> Result<(Machine, KeptReport), Failure> {
-        let mut asked = Keep::coms(machine, penalty);
+    ) -> Result<(Machine, RebalanceReport), Failure> {
+        let mut asked = RebalanceRequest::coms(machine, penalty);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        kept(machine, &asked, motion).map_err(as_failure)
+        rebalance_report(machine, &asked, motion).map_err(as_failure)
     }
 }
 
 /// Converts a refusal into a failure: wrong input, or no answer.
-fn as_failure(why: NotKept) -> Failure {
+fn as_failure(why: RebalanceError) -> Failure {
     match why {
-        NotKept::OutOfRange { .. } | NotKept::NoParameter(_) | NotKept::Twice(_) => Failure::wrong_input(why),
+        RebalanceError::OutOfRange { .. } | RebalanceError::NoParameter(_) | RebalanceError::Twice(_) => {
+            Failure::wrong_input(why)
+        }
         why => Failure::no_answer(why),
     }
 }
 
 /// Formats the report as text.
-pub fn text(report: &KeptReport, machine: &Machine, by: &str) -> String {
-    let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
-    for KeptChange { key, from, to, penalty, unit } in &report.changes {
+pub fn text(report: &RebalanceReport, machine: &Machine, by: &str) -> String {
+    let mut table = TextTable::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
+    for RebalanceChange { key, from, to, penalty, unit } in &report.changes {
         let [was, is, change, p] = [*from, *to, to - from, *penalty].map(|x| fixed(x, 9));
         table.row([key.clone(), was, is, change, (*unit).into(), p]);
     }

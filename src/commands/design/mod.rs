@@ -12,19 +12,19 @@ use clap::Args;
 use stillbase::files::write_new;
 use stillbase::mechanics::balance::Preset;
 use stillbase::mechanics::machine::{Machine, to_toml};
-use stillbase::study::centres::designed;
+use stillbase::study::centres::design_centres;
 
 use super::check::balance_tables;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{MachineArgument, Settings, choice, scenario};
-use super::output::{Format, Table, check_output};
-use kept::KeepArguments;
+use super::output::{Format, TextTable, check_output};
+use kept::RebalanceArguments;
 use stillbase::planning::Motion;
-use stillbase::session::{Run, settled};
+use stillbase::session::{Run, with_start_edits};
 use stillbase::settings::number::{counted, fixed};
 use stillbase::settings::word::Choice;
-use weighed::WeighArguments;
+use weighed::WeightArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///
@@ -55,7 +55,7 @@ Examples:
   stillbase design nine-link-bare --counterweights --payload 0,0.2
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
   stillbase design counter-rotating --counterweights --rotor-ratio 1=-40,0 --objective momentum")]
-pub struct Design {
+pub struct DesignArguments {
     #[command(flatten)]
     machine: MachineArgument,
     /// More machines, for their fronts beside that of the first: the same bounds and settings are for all
@@ -68,9 +68,9 @@ pub struct Design {
     #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
     preset: Option<Preset>,
     #[command(flatten)]
-    kept: KeepArguments,
+    kept: RebalanceArguments,
     #[command(flatten)]
-    weighing: Box<WeighArguments>,
+    weighing: Box<WeightArguments>,
     /// A scenario or a TOML file of one: its motion, as planned for its own machine, counts for torque, and β says what
     /// is left of force, moment and torque on it
     #[arg(long, value_name = "SCENARIO")]
@@ -91,7 +91,7 @@ fn penalty(text: &str) -> Result<f64, String> {
     within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
 }
 
-impl Design {
+impl DesignArguments {
     /// Prints the new centres of mass and the balance that they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         if !self.beside.is_empty() {
@@ -110,12 +110,12 @@ impl Design {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let (designed, answer) = designed(&machine, &penalty, motion)?;
+        let (designed, answer) = design_centres(&machine, &penalty, motion)?;
         if let Some(file) = &self.output {
             save(&designed, file, self.force, format!("{}, balanced with {by}", machine.name()))?;
         }
         self.format.print(&answer, |answer| {
-            let mut table = Table::new(["link", "penalty", "l_c before m", "l_c m"]);
+            let mut table = TextTable::new(["link", "penalty", "l_c before m", "l_c m"]);
             for (j, link) in machine.links().iter().enumerate() {
                 table.row([link.name.clone(), fixed(penalty[j], 6), fixed(link.com, 9), fixed(answer.com[j], 9)]);
             }
@@ -140,7 +140,7 @@ impl Design {
     /// drives.
     fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
         let Some(name) = &self.task else { return Ok(None) };
-        let run = Run::new(&settled(&scenario(name, &Settings::default())?)?.0)?;
+        let run = Run::new(&with_start_edits(&scenario(name, &Settings::default())?)?.0)?;
         let has = run.scenario().machine.drives();
         let mut want: Vec<String> = machines.iter().map(|machine| machine.drives().to_string()).collect();
         want.dedup();

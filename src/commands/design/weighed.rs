@@ -3,12 +3,14 @@
 use std::time::Instant;
 
 use clap::Args;
-use stillbase::mechanics::counterweights::{Disc, Free, FreeRotor, MATERIALS, NoWeights, Objective, Relief, Weighing};
+use stillbase::mechanics::counterweights::{
+    BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
+};
 use stillbase::mechanics::machine::Machine;
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, nine_digits, significant};
 use stillbase::study::counterweights::{
-    CounterweightReport, CounterweightRequest, NoCounterweights, SoughtLengths, balanced, taken_off,
+    CounterweightReport, CounterweightRequest, LengthsReport, NoCounterweights, balance_by_weights, removed_weights,
 };
 use stillbase::study::front_point::FrontPoint;
 use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths};
@@ -18,13 +20,13 @@ use super::super::check::balance_tables;
 use super::super::ends::ends;
 use super::super::exit::say;
 use super::super::failure::Failure;
-use super::super::output::Table;
+use super::super::output::TextTable;
 use super::super::sites::{link, range, sites};
 use super::measures;
 
 /// What counterweights may be, and what is to be least.
 #[derive(Args)]
-pub struct WeighArguments {
+pub struct WeightArguments {
     /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first, but for those
     /// with fixed = true
     #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
@@ -94,9 +96,9 @@ pub struct WeighArguments {
     front: Option<u16>,
 }
 
-impl WeighArguments {
+impl WeightArguments {
     /// Returns the problem that the arguments define.
-    pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<Weighing, Failure> {
+    pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<CounterweightSpec, Failure> {
         let mut sites = sites(machine, &self.range)?;
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
@@ -124,13 +126,13 @@ impl WeighArguments {
             }
             None => {}
         }
-        Ok(Weighing {
+        Ok(CounterweightSpec {
             most_mass: self.max_added,
             most_inertia: self.max_inertia,
             clearance: self.clearance,
             rotors: self.rotors(machine)?,
             payload: self.payload,
-            ..Weighing::least(objective, sites, disc)
+            ..CounterweightSpec::least(objective, sites, disc)
         })
     }
 
@@ -147,21 +149,22 @@ impl WeighArguments {
                 Failure::wrong_input(format!("no drive {name}: want one of {}", known.join(", ")))
             })
         };
-        let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, Free::Inertia(*ends)));
-        let ratio = self.rotor_ratio.iter().map(|(name, ends)| (name, Free::Ratio(*ends)));
+        let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, RotorFreedom::Inertia(*ends)));
+        let ratio = self.rotor_ratio.iter().map(|(name, ends)| (name, RotorFreedom::Ratio(*ends)));
         inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
     }
 
     /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are
     /// also given as radii.
-    fn refusal(&self, why: NoWeights, disc: &Disc) -> Failure {
-        let (NoWeights::Conflict { would, .. } | NoWeights::Reaches { would, .. }, Some(_)) = (&why, self.max_radius)
+    fn refusal(&self, why: CounterweightError, disc: &Disc) -> Failure {
+        let (CounterweightError::Conflict { would, .. } | CounterweightError::Reaches { would, .. }, Some(_)) =
+            (&why, self.max_radius)
         else {
-            return unweighed(why);
+            return request_failure(why);
         };
         let mut said = why.to_string();
         for relief in would.iter().flatten() {
-            if let Relief::Most(most) = relief {
+            if let BoundRelaxation::Most(most) = relief {
                 let radius = (disc.radius(*most) * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
                 said.push_str(&format!("; {most:.6} kg takes a radius of {radius:.6} m"));
             }
@@ -170,7 +173,7 @@ impl WeighArguments {
     }
 
     /// Returns the search for lengths, if any are sought.
-    fn lengths(&self, weighing: &Weighing) -> Option<LengthSearch> {
+    fn lengths(&self, weighing: &CounterweightSpec) -> Option<LengthSearch> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
         (!self.length.is_empty()).then(|| LengthSearch {
             lengths: lengths.collect(),
@@ -186,7 +189,7 @@ impl WeighArguments {
     /// Finds the counterweights. Returns the machine that carries them, and the report on it.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
         let weighing = self.asked(machine, motion)?;
-        tell_taken_off(machine, "");
+        report_removed(machine, "");
         let lengths = self.lengths(&weighing);
         let within = match self.seconds.filter(|_| lengths.is_some()) {
             Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
@@ -198,18 +201,18 @@ impl WeighArguments {
         let asked = CounterweightRequest { weighing, lengths, front: self.front.map(usize::from) };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        balanced(machine, &asked, motion, &mut go_on).map_err(|why| match why {
+        balance_by_weights(machine, &asked, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
-            NoCounterweights::Front(why) => unweighed(why),
+            NoCounterweights::Front(why) => request_failure(why),
             NoCounterweights::Machine(why) => why.into(),
         })
     }
 }
 
 /// Prints which counterweights of a machine are taken off, after the name of the machine in `of`.
-pub fn tell_taken_off(machine: &Machine, of: &str) {
-    let taken_off = taken_off(machine);
+pub fn report_removed(machine: &Machine, of: &str) {
+    let taken_off = removed_weights(machine);
     if taken_off.is_empty() {
         return;
     }
@@ -226,17 +229,18 @@ pub fn tell_taken_off(machine: &Machine, of: &str) {
 fn lengths_failure(why: NoLengths) -> Failure {
     match why {
         NoLengths::None { .. } => Failure::no_answer(why),
-        NoLengths::Weights(why) => unweighed(why),
+        NoLengths::Weights(why) => request_failure(why),
         why => Failure::wrong_input(why),
     }
 }
 
 /// Converts the reason why there are no counterweights into a failure: wrong input, or no answer.
-pub fn unweighed(why: NoWeights) -> Failure {
+pub fn request_failure(why: CounterweightError) -> Failure {
     match why {
-        NoWeights::OutOfRange { .. } | NoWeights::Twice(_) | NoWeights::RotorTwice(_) | NoWeights::NoRotor(_) => {
-            Failure::wrong_input(why)
-        }
+        CounterweightError::OutOfRange { .. }
+        | CounterweightError::Twice(_)
+        | CounterweightError::RotorTwice(_)
+        | CounterweightError::NoRotor(_) => Failure::wrong_input(why),
         why => Failure::no_answer(why),
     }
 }
@@ -279,7 +283,7 @@ fn objective(text: &str) -> Result<Objective, String> {
 }
 
 /// Columns of the table of a Pareto front.
-pub const FRONT: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"];
+pub const FRONT_HEADINGS: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"];
 
 /// Returns the cells of one machine of a Pareto front.
 pub fn front_cells(point: &FrontPoint) -> [String; 5] {
@@ -290,7 +294,7 @@ pub fn front_cells(point: &FrontPoint) -> [String; 5] {
 
 /// Formats the report as text.
 pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
-    let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
+    let mut table = TextTable::new(["counterweight on link", "kg", "at m", "radius m"]);
     for w in &report.weights {
         table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
     }
@@ -309,9 +313,9 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
     }
     if let Some(sought) = &report.sought {
-        let mut table = Table::new(["length", "m"]);
+        let mut table = TextTable::new(["length", "m"]);
         sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
-        let SoughtLengths { starts, agreeing, machines, reach, .. } = sought;
+        let LengthsReport { starts, agreeing, machines, reach, .. } = sought;
         let workspace = sought.workspace.map_or(String::new(), |x| format!(", workspace {} m²", fixed(x, 6)));
         text.push_str(&format!(
             "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}\nreach {} m{workspace}\n",
@@ -319,14 +323,14 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         ));
     }
     if !report.rotors.is_empty() {
-        let mut table = Table::new(["rotor of drive", "inertia kg m²", "ratio"]);
+        let mut table = TextTable::new(["rotor of drive", "inertia kg m²", "ratio"]);
         for rotor in &report.rotors {
             table.row([rotor.drive.clone(), fixed(rotor.inertia, 9), fixed(rotor.ratio, 6)]);
         }
         text.push_str(&format!("\n{table}"));
     }
     if let Some((first, last)) = report.payload.first().zip(report.payload.last()) {
-        let mut table = Table::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
+        let mut table = TextTable::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
         for at in &report.payload {
             table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
         }
@@ -341,7 +345,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
     }
     if !report.front_points.is_empty() {
-        let mut table = Table::new(FRONT);
+        let mut table = TextTable::new(FRONT_HEADINGS);
         report.front_points.iter().for_each(|point| table.row(front_cells(point)));
         text.push_str(&format!("\n{table}"));
     }

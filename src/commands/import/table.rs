@@ -1,16 +1,16 @@
 //! The answer of `stillbase import` as a table.
 
 use stillbase::settings::number::{counted, fixed};
-use stillbase::study::import::{Imported, Line};
+use stillbase::study::import::{ComparedNumber, ImportedMotion};
 
-use crate::commands::output::{Table, yes};
+use crate::commands::output::{TextTable, yes};
 
 /// Formats the given and the proposed motion side by side.
-pub fn table(answer: &Imported) -> String {
+pub fn table(answer: &ImportedMotion) -> String {
     let usual = if answer.content == "tip" { "minimum norm" } else { "as given" };
-    let mut table = Table::new(["", usual, "proposed", ""]).with_words(3);
+    let mut table = TextTable::new(["", usual, "proposed", ""]).with_words(3);
     for line in answer.lines() {
-        let Line { name, unit, given, proposed, decimals, of_both } = line;
+        let ComparedNumber { name, unit, given, proposed, decimals, of_both } = line;
         let none = if of_both { "-" } else { "" };
         let [given, proposed] = [given, proposed].map(|x| x.map_or_else(|| none.into(), |x| fixed(x, decimals)));
         table.row([name, given, proposed, unit.into()]);

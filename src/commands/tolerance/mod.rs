@@ -8,15 +8,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use stillbase::files::shards::{Head, ShardError, StudyId, Writer, merge};
+use stillbase::files::shards::{ShardError, ShardHeader, StudyId, Writer, merge};
 use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
-use stillbase::session::{Run, settled};
-use stillbase::study::tolerance::{Distributions, Ensemble, Mode, Outcome, Part, PartReport, ToleranceError, Yields};
+use stillbase::session::{Run, with_start_edits};
+use stillbase::study::tolerance::{
+    Distributions, Ensemble, EnsemblePart, Mode, PartReport, SampleOutcome, ToleranceError, Yields,
+};
 
-use self::report::{Answer, Merged};
+use self::report::{MergedParts, ToleranceAnswer};
 use crate::commands::exit::say;
 use crate::commands::failure::Failure;
-use crate::commands::input::{DEFAULT_SCENARIO, Settings, studied};
+use crate::commands::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::commands::output::{Format, check_output};
 use stillbase::settings::number::counted;
 
@@ -46,7 +48,7 @@ moment_share, force_share}], moment_first_order, force_first_order}; bands {time
 5, 25, 50, 75, 95; agreement {tolerance, sampled_tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
 {worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
 distributions, yield.")]
-pub struct Tolerance {
+pub struct ToleranceArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file; by default case-3
     #[arg(value_name = "SCENARIO")]
     scenario: Option<String>,
@@ -129,7 +131,7 @@ impl From<ShardError> for Failure {
     }
 }
 
-impl Tolerance {
+impl ToleranceArguments {
     /// Draws and evaluates the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
         match self.merge.is_empty() {
@@ -145,7 +147,7 @@ impl Tolerance {
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("the parts hold no machine"));
         };
-        let answer = Merged {
+        let answer = MergedParts {
             file: whole.display().to_string(),
             samples: study.samples,
             seed: study.seed,
@@ -153,7 +155,7 @@ impl Tolerance {
             yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
         };
         say(format!("wrote {}", answer.file));
-        self.format.print(&answer, Merged::text)
+        self.format.print(&answer, MergedParts::text)
     }
 
     /// Returns the tolerances of the scenario; those of the command line replace its own.
@@ -170,12 +172,12 @@ impl Tolerance {
 
     fn study(&self) -> Result<(), Failure> {
         let name = self.scenario.as_deref().unwrap_or(DEFAULT_SCENARIO);
-        let (scenario, others) = settled(&studied(name, &self.settings)?)?;
+        let (scenario, others) = with_start_edits(&overlay_for_study(name, &self.settings)?)?;
         if others > 0 {
             let edits = counted(others, "edit");
             say(format!("note: {}: the planned motion counts, without {edits} after its start", scenario.name));
         }
-        let left_out = stillbase::study::tolerance::left_out(&scenario);
+        let left_out = stillbase::study::tolerance::neglected_effects(&scenario);
         if !left_out.is_empty() && !self.simulate {
             let what = left_out.join(", ");
             say(format!(
@@ -211,7 +213,7 @@ impl Tolerance {
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
         let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
-        let part = Part {
+        let part = EnsemblePart {
             run: &run,
             ensemble: &ensemble,
             samples,
@@ -222,7 +224,7 @@ impl Tolerance {
         };
         let report = PartReport::of(&part, &section).map_err(|e| Failure::from(e).of(&scenario.name))?;
         let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
-        let answer = Answer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
+        let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         if let Some(file) = &answer.file {
             say(format!("wrote {file}"));
         }
@@ -237,12 +239,12 @@ impl Tolerance {
         run: &Run,
         study: &StudyId,
         range: Range<u64>,
-    ) -> Result<(Vec<Outcome>, Vec<Outcome>), Failure> {
+    ) -> Result<(Vec<SampleOutcome>, Vec<SampleOutcome>), Failure> {
         let parameters = ensemble.parameters();
         let mut writer = match &self.output {
             Some(file) => {
                 let names = parameters.iter().map(|p| format!("{} {}", p.key, p.unit));
-                Some(Writer::create(file, self.force, &Head::new(*study, names))?)
+                Some(Writer::create(file, self.force, &ShardHeader::new(*study, names))?)
             }
             None => None,
         };

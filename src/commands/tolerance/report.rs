@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::tolerance::{Distribution, Distributions, Kept, Outcome, PartReport, Share, Yields};
+use stillbase::study::tolerance::{Distribution, Distributions, LimitYield, PartReport, SampleOutcome, Share, Yields};
 
-use crate::commands::output::Table;
+use crate::commands::output::TextTable;
 
 /// Formats the distributions of the four results of a machine, one in each row.
-fn distributions_table(all: &Distributions, nominal: Option<&Outcome>) -> Table {
+fn distributions_table(all: &Distributions, nominal: Option<&SampleOutcome>) -> TextTable {
     let head = ["", "nominal", "mean", "deviation", "least", "5 %", "50 %", "95 %", "99 %", "greatest"];
-    let mut table = Table::new(head);
-    type Row<'a> = (&'a str, &'a Distribution, fn(&Outcome) -> f64);
+    let mut table = TextTable::new(head);
+    type Row<'a> = (&'a str, &'a Distribution, fn(&SampleOutcome) -> f64);
     let rows: [Row; 4] = [
         ("peak |n_B| N m", &all.peak_moment, |o| o.peak_moment),
         ("RMS n_B N m", &all.rms_moment, |o| o.rms_moment),
@@ -27,12 +27,12 @@ fn distributions_table(all: &Distributions, nominal: Option<&Outcome>) -> Table 
 }
 
 /// Formats how many machines keep within limits; `None` if there are no limits.
-fn yields_table(yields: &Yields) -> Option<Table> {
-    let mut table = Table::new(["yield", "limit", "machines", "share %", "95 % between %"]);
+fn yields_table(yields: &Yields) -> Option<TextTable> {
+    let mut table = TextTable::new(["yield", "limit", "machines", "share %", "95 % between %"]);
     let rows = [("|n_B| N m", &yields.moment), ("|f_B| N", &yields.force), ("both", &yields.both)];
     let mut any = false;
     for (name, kept) in rows {
-        let Some(Kept { limit, count }) = kept else { continue };
+        let Some(LimitYield { limit, count }) = kept else { continue };
         let percent = |x: f64| fixed(100.0 * x, 3);
         let limit = limit.map_or_else(String::new, |x| shown(x, 6));
         let between = format!("{} … {}", percent(count.interval[0]), percent(count.interval[1]));
@@ -44,7 +44,7 @@ fn yields_table(yields: &Yields) -> Option<Table> {
 
 /// Results of merged parts.
 #[derive(Serialize)]
-pub struct Merged {
+pub struct MergedParts {
     /// The file that was written.
     pub file: String,
     /// Number of machines.
@@ -59,7 +59,7 @@ pub struct Merged {
     pub yields: Yields,
 }
 
-impl Merged {
+impl MergedParts {
     /// Formats the results as text.
     pub fn text(&self) -> String {
         let head = format!("{} · {}, seed {}", self.file, counted(self.samples, "machine"), self.seed);
@@ -70,7 +70,7 @@ impl Merged {
 
 /// Results of a study.
 #[derive(Serialize)]
-pub struct Answer {
+pub struct ToleranceAnswer {
     /// Report on its machines.
     #[serde(flatten)]
     pub report: PartReport,
@@ -123,12 +123,12 @@ pub fn text(report: &PartReport) -> String {
 }
 
 /// Returns the table of the parameters that cause the most variance, by the larger of their two shares.
-fn shares_table(report: &PartReport) -> Table {
+fn shares_table(report: &PartReport) -> TextTable {
     let mut shares: Vec<_> = report.shares.parameters.iter().collect();
     let rank = |s: &Share| s.moment_share.max(s.force_share);
     shares.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
-    let mut table =
-        Table::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"]).with_words(2);
+    let mut table = TextTable::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"])
+        .with_words(2);
     let percent = |x: f64| fixed(100.0 * x, 2);
     for s in shares.iter().take(MAX_SHARE_ROWS) {
         table.row([
@@ -154,7 +154,7 @@ fn shares_table(report: &PartReport) -> Table {
 fn orders(report: &PartReport) -> String {
     let a = &report.agreement;
     let mut table =
-        Table::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
+        TextTable::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
     let rows = [
         ("mean of n_B: nominal, exact", &a.moment_mean, a.tolerance),
         ("deviation of n_B: first order, exact", &a.moment_deviation, a.tolerance),

@@ -2,9 +2,9 @@
 
 use stillbase::mechanics::machine::Machine;
 use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::trim::{Change, Suggestion, Tried, TrimReport};
+use stillbase::study::trim::{ExcitationReport, ParameterChange, Suggestion, TrimReport};
 
-use super::super::output::{Table, yes};
+use super::super::output::{TextTable, yes};
 
 /// Maximum number of motions in the list.
 const MAX_LISTED_MOTIONS: usize = 8;
@@ -26,7 +26,7 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
         shown(report.noise[1], 4),
     );
     let mut table =
-        Table::new(["", "machine", "measured", "± 95 %", "off", "taken as", "±", "after the change", "unit"]);
+        TextTable::new(["", "machine", "measured", "± 95 %", "off", "taken as", "±", "after the change", "unit"]);
     for number in &report.numbers {
         let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| shown(x, 6));
         table.row([
@@ -53,13 +53,13 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
 }
 
 fn change_text(report: &TrimReport) -> String {
-    let changed: Vec<&Change> = report.changed().collect();
+    let changed: Vec<&ParameterChange> = report.changed().collect();
     let worth = report.worth.as_ref().map(|gain| gain.worth.words());
     if changed.is_empty() {
         return format!("{}\n\n", report.why_no_change());
     }
-    let mut table = Table::new(["change", "before", "now", "by", "unit"]);
-    for Change { key, from, to, unit, .. } in changed {
+    let mut table = TextTable::new(["change", "before", "now", "by", "unit"]);
+    for ParameterChange { key, from, to, unit, .. } in changed {
         let grams = *unit == "kg";
         let (from, to, unit) = (1e3 * from, 1e3 * to, if grams { "g" } else { "mm" });
         table.row([key.clone(), fixed(from, 1), fixed(to, 1), format!("{:+.1}", to - from), unit.into()]);
@@ -71,14 +71,14 @@ fn change_text(report: &TrimReport) -> String {
 fn suggestion_text(next: &Suggestion) -> String {
     let Some(words) = next.words() else { return String::new() };
     let (time, mut text) = (fixed(next.duration, 2), format!("{words}\n\n"));
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         format!("{time} s more of"),
         "amplitude rad".into(),
         "frequency Hz".into(),
         format!("{} ±", next.worst),
         "all narrower by".into(),
     ]);
-    for Tried { motion, candidate } in next.candidates.iter().take(MAX_LISTED_MOTIONS) {
+    for ExcitationReport { motion, candidate } in next.candidates.iter().take(MAX_LISTED_MOTIONS) {
         let list = |all: &[f64]| all.iter().map(|x| fixed(*x, 2)).collect::<Vec<_>>().join(" ");
         let alike = candidate.frequency.windows(2).all(|w| w[0] == w[1]);
         let frequencies = if alike { &candidate.frequency[..1] } else { &candidate.frequency };

@@ -7,14 +7,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use stillbase::files::table::motions;
 use stillbase::files::{finish_all, made};
-use stillbase::mechanics::balance::Keep;
-use stillbase::mechanics::counterweights::{Disc, Objective, Weighing};
+use stillbase::mechanics::balance::RebalanceRequest;
+use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective};
 use stillbase::mechanics::machine::{Machine, to_toml};
 use stillbase::mechanics::planar::Vector;
-use stillbase::query::{Shared, answered};
+use stillbase::query::{Shared, answer_now};
 use stillbase::settings::number::counted;
 use stillbase::study::trim::{
-    NoTrim, Recording, Trim as Found, TrimRequest, Trimming, Way, free_weights, identified, trimmed,
+    MeasurementSet, NoTrim, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found, corrected_as_built, free_weights,
+    identified_machine,
 };
 
 use super::exit::say;
@@ -45,7 +46,7 @@ Examples:
   stillbase trim measured.csv arm.toml --fix counterweight.2.at --bound counterweight.1.mass=1.9,2.1
   stillbase trim measured.csv nine-link --range 1=-0.3,0.1 --range 2=-0.2,0.1 --range 3=-0.2,0.1 \\
     --range 8=-0.3,0.3 --range 9=-0.3,0.3 --json")]
-pub struct Trim {
+pub struct TrimArguments {
     /// CSV files of measured motions, and last a built-in machine (`stillbase machines` lists them) or a TOML file
     #[arg(value_name = "MEASURED.csv... MACHINE", required = true, num_args = 1..)]
     words: Vec<String>,
@@ -85,7 +86,7 @@ pub struct Trim {
     format: Format,
 }
 
-impl Trim {
+impl TrimArguments {
     /// Reads the measurements, prints what was identified, and writes the machines.
     pub fn run(&self) -> Result<(), Failure> {
         for file in self.output.iter().chain(&self.identified) {
@@ -110,7 +111,7 @@ impl Trim {
             )));
         }
         let way = self.way(&machine)?;
-        let mut recording = Recording::default();
+        let mut recording = MeasurementSet::default();
         for file in files {
             recording.motions.extend(motions(&read(Path::new(file))?, file, &machine)?);
         }
@@ -122,7 +123,7 @@ impl Trim {
             way,
             accelerations: Some(self.accelerations.clone()).filter(|all| !all.is_empty()),
         };
-        let found = answered::<Trimming>(request);
+        let found = answer_now::<TrimQuery>(request);
         if let Some(noise) = found.angle_noise {
             say(format!(
                 "note: noise of the angles is {:.0} % of their accelerations, or samples are too far apart: what is found \
@@ -137,7 +138,7 @@ impl Trim {
         if self.output.is_none() && self.identified.is_none() {
             return Ok(());
         }
-        let (built, misses) = identified(&machine, &taken).map_err(Failure::no_answer)?;
+        let (built, misses) = identified_machine(&machine, &taken).map_err(Failure::no_answer)?;
         let scale = |miss: &Vector| miss.norm();
         if misses.iter().map(scale).fold(0.0, f64::max) > 1e-6 {
             say("note: centres of mass of the links do not explain all that was measured: the file comes close");
@@ -147,7 +148,7 @@ impl Trim {
             files.push((file, named(&built, file, format!("{}, as measured", machine.name()))?));
         }
         if let Some(file) = &self.output {
-            let trimmed = trimmed(&built, &machine, &mended)?;
+            let trimmed = corrected_as_built(&built, &machine, &mended)?;
             files.push((file, named(&trimmed, file, format!("{}, trimmed as measured", machine.name()))?));
         }
         let written = |(file, text): &(&PathBuf, String)| made(file, text.as_bytes(), self.force);
@@ -162,12 +163,12 @@ impl Trim {
 
     /// Returns what may change: the present counterweights, new ones if there are none, or numbers of links that are
     /// named.
-    fn way(&self, machine: &Machine) -> Result<Way, Failure> {
+    fn way(&self, machine: &Machine) -> Result<TrimMethod, Failure> {
         let weights = machine.spec().counterweights.len();
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
         if weights == 0 && !named {
             let sites = sites(machine, &self.range)?;
-            return Ok(Way::Add(Weighing::least(Objective::mass(), sites, Disc::STEEL)));
+            return Ok(TrimMethod::Add(CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL)));
         }
         if !self.range.is_empty() {
             let why =
@@ -177,13 +178,13 @@ impl Trim {
         // Only named numbers may change. If only numbers that stay are named, all other centres of mass may change.
         let mut asked = match weights {
             0 if self.free.is_empty() && self.bound.is_empty() => {
-                Keep::coms(machine, &vec![1.0; machine.links().len()])
+                RebalanceRequest::coms(machine, &vec![1.0; machine.links().len()])
             }
-            _ => Keep::default(),
+            _ => RebalanceRequest::default(),
         };
         free_weights(&mut asked, machine, |weight| !weight.fixed);
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        Ok(Way::Change(asked))
+        Ok(TrimMethod::Change(asked))
     }
 }
 

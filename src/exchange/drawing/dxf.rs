@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::sheet::{Anchor, Shape, Sheet};
+use super::sheet::{Sheet, SheetShape, TextAlign};
 use crate::settings::number::fixed;
 
 /// Layers with their colour numbers: outlines to cut, holes to drill, discs, and annotations.
@@ -127,24 +127,24 @@ impl Tags {
         self.entity("SEQEND", "OUTLINE");
     }
 
-    fn shape(&mut self, shape: &Shape) {
+    fn shape(&mut self, shape: &SheetShape) {
         match shape {
-            Shape::Bar { from, length, radius, .. } => self.bar(*from, *length, *radius),
-            Shape::Hole { at, radius } => self.circle("HOLES", *at, *radius),
-            Shape::Disc { at, radius, .. } => self.circle("COUNTERWEIGHT", *at, *radius),
-            Shape::Line(ends) => self.line(*ends),
-            Shape::Mark { at: [x, y], radius: r } => {
+            SheetShape::Bar { from, length, radius, .. } => self.bar(*from, *length, *radius),
+            SheetShape::Hole { at, radius } => self.circle("HOLES", *at, *radius),
+            SheetShape::Disc { at, radius, .. } => self.circle("COUNTERWEIGHT", *at, *radius),
+            SheetShape::Line(ends) => self.line(*ends),
+            SheetShape::Mark { at: [x, y], radius: r } => {
                 self.line([[x - r, *y], [x + r, *y]]);
                 self.line([[*x, y - r], [*x, y + r]]);
             }
-            Shape::Words { at, height, anchor, text, .. } => {
+            SheetShape::Words { at, height, anchor, text, .. } => {
                 self.entity("TEXT", "TEXT");
                 self.point(10, *at);
                 self.number(40, *height);
                 self.text(1, &ascii(text));
                 // Relative width, because letters of the default font are wide.
                 self.number(41, 0.75);
-                if *anchor == Anchor::Middle {
+                if *anchor == TextAlign::Middle {
                     self.count(72, 1);
                     self.point(11, *at);
                 }

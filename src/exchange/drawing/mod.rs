@@ -5,5 +5,5 @@ mod sheet;
 mod svg;
 
 pub use dxf::dxf;
-pub use sheet::{Anchor, Paint, Shape, Sheet};
+pub use sheet::{Sheet, SheetShape, TextAlign, TextEmphasis};
 pub use svg::svg;

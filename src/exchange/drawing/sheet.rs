@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::exchange::cut::{Cut, CutError, SAME, ends, holes};
+use crate::exchange::cut::{Cut, CutError, SAME_PIN_DISTANCE, ends, holes};
 use crate::mechanics::machine::{Counterweight, Machine};
 use crate::settings::number::{counted, fixed};
 
@@ -17,12 +17,12 @@ pub struct Sheet {
     /// Width and height, mm.
     pub size: [f64; 2],
     /// Its shapes, in the order in which they are painted.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<SheetShape>,
 }
 
 /// A shape on the sheet, mm.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum SheetShape {
     /// The outline of a link: a horizontal bar with round ends.
     Bar {
         /// Centre of its left end.
@@ -66,9 +66,9 @@ pub enum Shape {
         /// Approximate height of its capitals.
         height: f64,
         /// The point of the text at this position.
-        anchor: Anchor,
+        anchor: TextAlign,
         /// Its emphasis.
-        paint: Paint,
+        paint: TextEmphasis,
         /// Its content.
         text: String,
     },
@@ -76,7 +76,7 @@ pub enum Shape {
 
 /// The point of a text that is at its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Anchor {
+pub enum TextAlign {
     /// Its left end.
     Start,
     /// Its middle.
@@ -85,7 +85,7 @@ pub enum Anchor {
 
 /// Emphasis of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Paint {
+pub enum TextEmphasis {
     /// For a name.
     Strong,
     /// For all other text.
@@ -126,7 +126,7 @@ fn width_of(text: &str, height: f64) -> f64 {
 
 /// The drawing of a link with its annotations, with the link's root as origin.
 struct Piece {
-    shapes: Vec<Shape>,
+    shapes: Vec<SheetShape>,
     /// Its extent: left, bottom, right and top, mm.
     reach: [f64; 4],
 }
@@ -142,19 +142,19 @@ impl Piece {
         for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
             let (at, radius) = ([1e3 * weight.at, 0.0], 1e3 * weight.radius);
             piece.covers([at[0] - radius, -radius, at[0] + radius, radius]);
-            piece.shapes.push(Shape::Disc { at, radius, drive: part.drive });
+            piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive });
         }
         for at in &holes {
-            piece.shapes.push(Shape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
+            piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
         }
         let com = [1e3 * link.com, 1e3 * link.com_normal];
         let radius = 0.55 * height;
         piece.covers([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
         if piece.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
             // A line shows to which link the mark belongs.
-            piece.shapes.push(Shape::Line([[0.0, 0.0], com]));
+            piece.shapes.push(SheetShape::Line([[0.0, 0.0], com]));
         }
-        piece.shapes.push(Shape::Mark { at: com, radius });
+        piece.shapes.push(SheetShape::Mark { at: com, radius });
         piece.stations(&holes, part.length, height);
         piece.annotate(machine, cut, j, &weights, height);
         piece
@@ -168,34 +168,40 @@ impl Piece {
     fn bar(&mut self, cut: &Cut, drive: usize, [from, to]: [f64; 2]) {
         let radius = 500.0 * cut.bar_width;
         self.covers([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
-        self.shapes.push(Shape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
+        self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
     }
 
     /// Draws the distances between neighbouring holes, and to the tip.
     fn stations(&mut self, holes: &[f64], tip: f64, height: f64) {
         let mut stations = holes.to_vec();
-        if stations.iter().all(|at| (at - tip).abs() > SAME) {
+        if stations.iter().all(|at| (at - tip).abs() > SAME_PIN_DISTANCE) {
             stations.push(tip);
             stations.sort_by(f64::total_cmp);
         }
         let line = self.reach[1] - 2.6 * height;
         for at in &stations {
             let x = 1e3 * at;
-            self.shapes.push(Shape::Line([[x, line - 0.5 * height], [x, line + 0.5 * height]]));
+            self.shapes.push(SheetShape::Line([[x, line - 0.5 * height], [x, line + 0.5 * height]]));
         }
         for pair in stations.windows(2) {
             let [from, to] = [1e3 * pair[0], 1e3 * pair[1]];
-            self.shapes.push(Shape::Line([[from, line], [to, line]]));
+            self.shapes.push(SheetShape::Line([[from, line], [to, line]]));
             let text = mm(pair[1] - pair[0]);
             if width_of(&text, height) < to - from {
-                self.words([0.5 * (from + to), line + 0.45 * height], height, Anchor::Middle, Paint::Plain, text);
+                self.words(
+                    [0.5 * (from + to), line + 0.45 * height],
+                    height,
+                    TextAlign::Middle,
+                    TextEmphasis::Plain,
+                    text,
+                );
             }
         }
         self.covers([0.0, line - 0.5 * height, 0.0, 0.0]);
     }
 
-    fn words(&mut self, at: [f64; 2], height: f64, anchor: Anchor, paint: Paint, text: String) {
-        self.shapes.push(Shape::Words { at, height, anchor, paint, text });
+    fn words(&mut self, at: [f64; 2], height: f64, anchor: TextAlign, paint: TextEmphasis, text: String) {
+        self.shapes.push(SheetShape::Words { at, height, anchor, paint, text });
     }
 
     /// Writes the link's name above the bar, and its data below.
@@ -206,13 +212,13 @@ impl Piece {
         let name = format!("link {}", link.name);
         let about = format!("follows drive {drive} · {} kg · {} kg m²", fixed(link.mass, 3), fixed(link.inertia, 6));
         let shift = width_of(&name, 1.3 * height) + height;
-        self.words([left, top], 1.3 * height, Anchor::Start, Paint::Strong, name);
-        self.words([left + shift, top], height, Anchor::Start, Paint::Plain, about.clone());
+        self.words([left, top], 1.3 * height, TextAlign::Start, TextEmphasis::Strong, name);
+        self.words([left + shift, top], height, TextAlign::Start, TextEmphasis::Plain, about.clone());
         self.covers([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
         for line in below(machine, cut, j, weights) {
             let at = [left, self.reach[1] - LINE_SPACING * height];
             self.covers([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
-            self.words(at, height, Anchor::Start, Paint::Plain, line);
+            self.words(at, height, TextAlign::Start, TextEmphasis::Plain, line);
         }
     }
 }
@@ -223,7 +229,7 @@ fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> 
     let holes = holes(machine, j);
     let mut lines = Vec::new();
     let places: Vec<String> =
-        holes.iter().map(|at| if at.abs() <= SAME { "0 (root)".into() } else { signed(*at) }).collect();
+        holes.iter().map(|at| if at.abs() <= SAME_PIN_DISTANCE { "0 (root)".into() } else { signed(*at) }).collect();
     lines.push(format!("holes at {} mm", places.join(", ")));
     if machine.end_link() == j {
         let at = part.sign * (machine.end_effector()[part.drive] - part.root[part.drive]);
@@ -277,8 +283,8 @@ fn laid_out(machine: &Machine, cut: &Cut, pieces: Vec<Piece>, height: f64) -> Sh
     for (i, text) in title.iter().enumerate() {
         let height = title_height(i, height);
         y -= if i == 0 { height } else { 1.9 * height };
-        let paint = if i == 0 { Paint::Strong } else { Paint::Plain };
-        shapes.push(Shape::Words { at: [0.0, y], height, anchor: Anchor::Start, paint, text: text.clone() });
+        let paint = if i == 0 { TextEmphasis::Strong } else { TextEmphasis::Plain };
+        shapes.push(SheetShape::Words { at: [0.0, y], height, anchor: TextAlign::Start, paint, text: text.clone() });
     }
     y -= height;
     let (mut across, mut row) = (0.0_f64, Vec::new());
@@ -326,7 +332,7 @@ fn title(machine: &Machine, cut: &Cut) -> [String; 3] {
 }
 
 /// Places pieces side by side below the height `top`, and returns the height of their lower edge.
-fn put(shapes: &mut Vec<Shape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
+fn put(shapes: &mut Vec<SheetShape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
     // The axes of all links in a row are at the same height.
     let up = row.iter().map(|(_, piece)| piece.reach[3]).fold(0.0, f64::max);
     let down = row.iter().map(|(_, piece)| piece.reach[1]).fold(0.0, f64::min);
@@ -340,7 +346,7 @@ fn put(shapes: &mut Vec<Shape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
     top - up + down
 }
 
-impl Shape {
+impl SheetShape {
     /// Returns whether it is a bar whose straight part contains a point.
     fn is_around(&self, [x, y]: [f64; 2]) -> bool {
         match self {

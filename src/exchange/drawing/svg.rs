@@ -1,7 +1,7 @@
 //! A sheet as SVG at scale 1 : 1: a unit of the drawing is a millimetre.
 
-use super::sheet::{Anchor, Paint, Shape, Sheet};
-use crate::exchange::xml::{Lines, quoted};
+use super::sheet::{Sheet, SheetShape, TextAlign, TextEmphasis};
+use crate::exchange::xml::{XmlWriter, quoted};
 use crate::settings::number::fixed;
 
 /// Colours of the drives, as the window shows them on white.
@@ -12,7 +12,7 @@ const DIM: &str = "#6b7280";
 /// Returns the text of the file.
 pub fn svg(sheet: &Sheet) -> String {
     let [width, height] = sheet.size.map(|x| fixed(x, 2));
-    let mut lines = Lines::default();
+    let mut lines = XmlWriter::default();
     lines.add(0, format_args!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>"));
     lines.add(
         0,
@@ -35,10 +35,10 @@ fn n(x: f64) -> String {
     fixed(x, 3)
 }
 
-fn element(lines: &mut Lines, shape: &Shape, top: f64) {
+fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
     let at = |[x, y]: [f64; 2]| [n(x), n(top - y)];
     match shape {
-        Shape::Bar { from, length, radius, drive } => {
+        SheetShape::Bar { from, length, radius, drive } => {
             let [x, y] = at([from[0] - radius, from[1] + radius]);
             let (width, height, r, colour) =
                 (n(length + 2.0 * radius), n(2.0 * radius), n(*radius), COLOURS[drive % COLOURS.len()]);
@@ -50,7 +50,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
                 ),
             );
         }
-        Shape::Hole { at: centre, radius } => {
+        SheetShape::Hole { at: centre, radius } => {
             let ([x, y], r) = (at(*centre), n(*radius));
             let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
             lines.add(
@@ -60,7 +60,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
                 ),
             );
         }
-        Shape::Disc { at: centre, radius, drive } => {
+        SheetShape::Disc { at: centre, radius, drive } => {
             let ([x, y], r, colour) = (at(*centre), n(*radius), COLOURS[drive % COLOURS.len()]);
             let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
             lines.add(
@@ -71,7 +71,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
                 ),
             );
         }
-        Shape::Line([from, to]) => {
+        SheetShape::Line([from, to]) => {
             let ([x1, y1], [x2, y2]) = (at(*from), at(*to));
             lines.add(
                 1,
@@ -80,16 +80,16 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
                 ),
             );
         }
-        Shape::Mark { at: centre, radius } => mark(lines, at(*centre), *radius),
-        Shape::Words { at: place, height, anchor, paint, text } => {
+        SheetShape::Mark { at: centre, radius } => mark(lines, at(*centre), *radius),
+        SheetShape::Words { at: place, height, anchor, paint, text } => {
             let ([x, y], text) = (at(*place), quoted(text));
             let (weight, fill) = match paint {
-                Paint::Strong => (" font-weight=\"600\"", INK),
-                Paint::Plain => ("", DIM),
+                TextEmphasis::Strong => (" font-weight=\"600\"", INK),
+                TextEmphasis::Plain => ("", DIM),
             };
             let anchor = match anchor {
-                Anchor::Start => "",
-                Anchor::Middle => " text-anchor=\"middle\"",
+                TextAlign::Start => "",
+                TextAlign::Middle => " text-anchor=\"middle\"",
             };
             // The height of capitals is about 0.72 of the font size.
             let size = n(height / 0.72);
@@ -104,7 +104,7 @@ fn element(lines: &mut Lines, shape: &Shape, top: f64) {
 }
 
 /// Draws the symbol of a centre of mass: a circle with two filled quadrants.
-fn mark(lines: &mut Lines, [x, y]: [String; 2], radius: f64) {
+fn mark(lines: &mut XmlWriter, [x, y]: [String; 2], radius: f64) {
     let r = n(radius);
     let quarter = format!("M0 0V-{r}A{r} {r} 0 0 1 {r} 0ZM0 0V{r}A{r} {r} 0 0 1 -{r} 0Z");
     lines.add(1, format_args!("<g class=\"centre-of-mass\" transform=\"translate({x} {y})\">"));

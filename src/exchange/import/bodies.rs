@@ -1,39 +1,39 @@
-//! [`Bodies`]: the bodies of MJCF, with at most one hinge each, in the pose of the file.
+//! [`MjcfBodies`]: the bodies of MJCF, with at most one hinge each, in the pose of the file.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::compiler::{Compiler, Weighing};
+use super::compiler::{Compiler, MassSource};
 use super::defaults::{Class, Defaults, Element};
-use super::linkage::{MOST_PARTS, Part, end_rank};
-use super::read::{Source, child, each, inertia, mass, number, numbers, several, vector, word};
-use super::refusal::{ImportError, called, wrong};
-use super::shapes::{Solid, solid};
-use crate::settings::range::clipped;
+use super::linkage::{ImportedPart, MAX_PARTS, end_rank};
+use super::read::{AttributeSource, child, each, inertia, mass, number, numbers, several, vector, word};
+use super::refusal::{ImportError, element_error, element_name};
+use super::shapes::{MassProperties, solid};
+use crate::settings::range::quote_clipped;
 
 /// A point: its part, `None` for the base, and its position in the axes of the base, m.
-pub type End = (Option<usize>, Vector3<f64>);
+pub type AttachmentPoint = (Option<usize>, Vector3<f64>);
 /// Relative tolerance within which angles, rad, are equal.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
 /// Bodies, hinges and sites of a model.
-pub struct Bodies<'a> {
+pub struct MjcfBodies<'a> {
     /// The root.
     pub model: Node<'a, 'a>,
     pub defaults: Defaults<'a>,
     compiler: Compiler,
     /// The parts, depth first.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ImportedPart>,
     bodies: Vec<Node<'a, 'a>>,
     hinges: Hinges<'a>,
     /// Frames of the parts as drawn, before the keyframe turns their hinges.
     drawn: Vec<Isometry3<f64>>,
     /// Sites: name and point.
-    pub sites: Vec<(&'a str, End)>,
+    pub sites: Vec<(&'a str, AttachmentPoint)>,
     /// Second end point of the last shape with `fromto`.
-    pub last_end: Option<End>,
+    pub last_end: Option<AttachmentPoint>,
     pub notes: Vec<String>,
 }
 
@@ -61,7 +61,7 @@ struct Open<'a> {
     class: Class<'a>,
 }
 
-impl<'a> Bodies<'a> {
+impl<'a> MjcfBodies<'a> {
     /// Reads the bodies of a `<mujoco>`.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl<'a> Bodies<'a> {
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let other = |node: &Node| ["include", "replicate", "attach", "frame"].contains(&node.tag_name().name());
         if let Some(node) = model.descendants().find(other) {
-            return Err(wrong(node, "what it brings is not read", "one file, with all bodies in it"));
+            return Err(element_error(node, "what it brings is not read", "one file, with all bodies in it"));
         }
         let (compiler, defaults) = (Compiler::of(model)?, Defaults::of(model)?);
         let open = listed(model, &defaults)?;
@@ -100,7 +100,7 @@ impl<'a> Bodies<'a> {
         let mut axis_and_place = None;
         if let Some(Hinge { element, drawn, now, .. }) = &self.hinges.of[own] {
             let axis = Unit::try_new(vector(element, "axis")?.unwrap_or(Vector3::z()), 1e-6).ok_or_else(|| {
-                wrong(element.node(), "an axis without direction", "three numbers that are not all 0")
+                element_error(element.node(), "an axis without direction", "three numbers that are not all 0")
             })?;
             let at = vector(element, "pos")?.unwrap_or_default();
             let about = Translation3::from(at);
@@ -115,12 +115,22 @@ impl<'a> Bodies<'a> {
         }
         let carriers = std::iter::successors(parent, |i| self.parts[*i].parent);
         let moves = axis_and_place.is_some() || carriers.into_iter().any(|i| self.parts[i].hinge.is_some());
-        let Solid { mass, com, inertia } =
-            if moves { self.weight(open, &frame, &own_place)? } else { Solid::none(frame.translation.vector) };
+        let MassProperties { mass, com, inertia } =
+            if moves { self.weight(open, &frame, &own_place)? } else { MassProperties::none(frame.translation.vector) };
         let name = body.attribute("name").map_or_else(|| format!("body {}", own + 1), Into::into);
         let at = body.range().start;
         let hinge = axis_and_place;
-        self.parts.push(Part { name, called: called(body), at, parent, frame, hinge, mass, com, inertia });
+        self.parts.push(ImportedPart {
+            name,
+            called: element_name(body),
+            at,
+            parent,
+            frame,
+            hinge,
+            mass,
+            com,
+            inertia,
+        });
         self.drawn.push(drawn);
         Ok(())
     }
@@ -132,14 +142,14 @@ impl<'a> Bodies<'a> {
         open: &Open<'a>,
         frame: &Isometry3<f64>,
         own_place: &Isometry3<f64>,
-    ) -> Result<Solid, ImportError> {
-        let (body, none) = (open.body, Solid::none((frame * own_place).translation.vector));
+    ) -> Result<MassProperties, ImportError> {
+        let (body, none) = (open.body, MassProperties::none((frame * own_place).translation.vector));
         let inertial = child(body, "inertial");
         let mut shapes = none;
         let is_weighed = match self.compiler.weighing {
-            Weighing::Auto => inertial.is_none(),
-            Weighing::Shapes => true,
-            Weighing::Written => false,
+            MassSource::Auto => inertial.is_none(),
+            MassSource::Shapes => true,
+            MassSource::Written => false,
         };
         for shape in each(body, "geom") {
             let element = self.defaults.element(shape, &open.class)?;
@@ -159,16 +169,16 @@ impl<'a> Bodies<'a> {
             let principal = match (several::<3>(node, "diaginertia")?, several::<6>(node, "fullinertia")?) {
                 (Some([xx, yy, zz]), _) => [xx, yy, zz, 0.0, 0.0, 0.0],
                 (None, Some(all)) => all,
-                (None, None) => return Err(wrong(node, "it has no inertia", "diaginertia or fullinertia")),
+                (None, None) => return Err(element_error(node, "it has no inertia", "diaginertia or fullinertia")),
             };
             let inertia = inertia(principal, &Rotation3::from(place.rotation));
-            all = Solid { mass: mass(node, "mass")?, com: place.translation.vector, inertia };
+            all = MassProperties { mass: mass(node, "mass")?, com: place.translation.vector, inertia };
         }
         (all.mass, all.inertia) = self.compiler.bounded(all.mass, all.inertia);
         let turns = self.hinges.of[self.parts.len()].is_some();
         if written.is_none() && all.mass <= 0.0 && turns && child(body, "body").is_none() {
             let want = "<inertial> with its mass and inertia, or shapes that have mass";
-            return Err(wrong(body, "it turns and nothing gives it a mass", want));
+            return Err(element_error(body, "it turns and nothing gives it a mass", want));
         }
         Ok(all)
     }
@@ -205,7 +215,7 @@ impl<'a> Bodies<'a> {
     ///
     /// # Errors
     /// If there is no such hinge.
-    pub fn part_of(&self, node: impl Source<'a>, attribute: &'static str) -> Result<usize, ImportError> {
+    pub fn part_of(&self, node: impl AttributeSource<'a>, attribute: &'static str) -> Result<usize, ImportError> {
         self.hinges.part_of(node, attribute)
     }
 
@@ -226,7 +236,7 @@ impl<'a> Bodies<'a> {
 
     /// Finds the end effector: a site or body with a usual name of one, or else the only site that is not a pin, or
     /// else the end of the last shape.
-    pub fn end(&mut self) -> Option<End> {
+    pub fn end(&mut self) -> Option<AttachmentPoint> {
         let sites = self.sites.iter().filter_map(|(name, end)| Some((end_rank(name)?, *end)));
         let bodies = self.parts.iter().enumerate();
         let bodies =
@@ -247,7 +257,7 @@ impl<'a> Bodies<'a> {
         self.notes.push(format!(
             "no site says where the end effector is: it was put where the last shape of \"{}\" ends; a site end_effector \
              says otherwise",
-            clipped(name)
+            quote_clipped(name)
         ));
         Some(end)
     }
@@ -256,19 +266,23 @@ impl<'a> Bodies<'a> {
     ///
     /// # Errors
     /// If a site or body does not exist.
-    pub fn ends(&self, node: Node<'a, 'a>) -> Result<[End; 2], ImportError> {
+    pub fn ends(&self, node: Node<'a, 'a>) -> Result<[AttachmentPoint; 2], ImportError> {
         if node.has_attribute("site1") {
             let end = |attribute: &'static str| {
                 let name = word(node, attribute)?;
                 let known = self.sites.iter().find(|(own, _)| *own == name).map(|(_, end)| *end);
-                known.ok_or_else(|| wrong(node, format!("no site \"{}\"", clipped(name)), "the name of one in a body"))
+                known.ok_or_else(|| {
+                    element_error(node, format!("no site \"{}\"", quote_clipped(name)), "the name of one in a body")
+                })
             };
             return Ok([end("site1")?, end("site2")?]);
         }
         let body = |attribute: &'static str| -> Result<Option<usize>, ImportError> {
             let Some(name) = node.attribute(attribute).filter(|name| *name != "world") else { return Ok(None) };
             let known = self.bodies.iter().position(|body| body.attribute("name") == Some(name));
-            known.map(Some).ok_or_else(|| wrong(node, format!("no body \"{}\"", clipped(name)), "the name of one"))
+            known
+                .map(Some)
+                .ok_or_else(|| element_error(node, format!("no body \"{}\"", quote_clipped(name)), "the name of one"))
         };
         let (a, b) = (body("body1")?, body("body2")?);
         let anchor = Point3::from(vector(node, "anchor")?.unwrap_or_default());
@@ -283,7 +297,7 @@ impl<'a> Bodies<'a> {
 /// Lists the bodies depth first, which is the order of the angles of a pose.
 fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'a>>, ImportError> {
     if child(model, "worldbody").is_none() {
-        return Err(wrong(model, "it has no <worldbody>", "one, with the machine in it"));
+        return Err(element_error(model, "it has no <worldbody>", "one, with the machine in it"));
     }
     let below = |node: Node<'a, 'a>, parent: Option<usize>, class: &Class<'a>| {
         let open = |body| {
@@ -299,8 +313,8 @@ fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'
     }
     open.reverse();
     while let Some(next) = open.pop() {
-        if all.len() == MOST_PARTS {
-            return Err(wrong(next.body, "too many bodies", format!("at most {MOST_PARTS}")));
+        if all.len() == MAX_PARTS {
+            return Err(element_error(next.body, "too many bodies", format!("at most {MAX_PARTS}")));
         }
         let children = below(next.body, Some(all.len()), &next.class)?;
         open.extend(children.into_iter().rev());
@@ -336,18 +350,24 @@ impl<'a> Hinges<'a> {
             hinges.of.push(Some(Hinge { element, drawn, now, limits }));
         }
         match (key, pose) {
-            (Some(key), Some(pose)) if pose.len() != count => {
-                Err(wrong(key, format!("qpos has {} numbers", pose.len()), format!("{count}, one for each hinge")))
-            }
+            (Some(key), Some(pose)) if pose.len() != count => Err(element_error(
+                key,
+                format!("qpos has {} numbers", pose.len()),
+                format!("{count}, one for each hinge"),
+            )),
             _ => hinges.coupled(model, defaults).map(|()| hinges),
         }
     }
 
-    fn part_of(&self, node: impl Source<'a>, attribute: &'static str) -> Result<usize, ImportError> {
+    fn part_of(&self, node: impl AttributeSource<'a>, attribute: &'static str) -> Result<usize, ImportError> {
         let name = word(&node, attribute)?;
         let known = self.named.get(name).copied();
         known.ok_or_else(|| {
-            wrong(node.node(), format!("{attribute} \"{}\" is no hinge", clipped(name)), "the name of one")
+            element_error(
+                node.node(),
+                format!("{attribute} \"{}\" is no hinge", quote_clipped(name)),
+                "the name of one",
+            )
         })
     }
 
@@ -355,7 +375,7 @@ impl<'a> Hinges<'a> {
     fn coupled(&mut self, model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<(), ImportError> {
         let all = each(model, "equality").flat_map(|node| each(node, "joint"));
         let mut couplings = Vec::new();
-        for node in all.take(MOST_PARTS) {
+        for node in all.take(MAX_PARTS) {
             let element = defaults.element(node, &defaults.main())?;
             if is_active(&element) {
                 let other = node.has_attribute("joint2").then(|| self.part_of(node, "joint2")).transpose()?;
@@ -388,17 +408,17 @@ impl<'a> Hinges<'a> {
 /// Returns the hinge of a body, if it has one.
 fn hinge<'a>(open: &Open<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
     if let Some(node) = child(open.body, "freejoint") {
-        return Err(wrong(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
+        return Err(element_error(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
     }
     let mut joints = each(open.body, "joint");
     let Some(joint) = joints.next() else { return Ok(None) };
     if let Some(second) = joints.next() {
-        return Err(wrong(second, "a second joint of one body", "one hinge for each"));
+        return Err(element_error(second, "a second joint of one body", "one hinge for each"));
     }
     let element = defaults.element(joint, &open.class)?;
     match element.get("type") {
         None | Some("hinge") => Ok(Some(element)),
-        Some(kind) => Err(wrong(joint, format!("a joint of type \"{}\"", clipped(kind)), "hinges")),
+        Some(kind) => Err(element_error(joint, format!("a joint of type \"{}\"", quote_clipped(kind)), "hinges")),
     }
 }
 

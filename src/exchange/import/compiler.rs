@@ -3,13 +3,13 @@
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::read::{Source, each, number, several, vector};
-use super::refusal::{ImportError, wrong};
-use crate::settings::range::clipped;
+use super::read::{AttributeSource, each, number, several, vector};
+use super::refusal::{ImportError, element_error};
+use crate::settings::range::quote_clipped;
 
 /// Source of masses: shapes or `<inertial>` elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weighing {
+pub enum MassSource {
     /// Shapes, unless there is an `<inertial>`.
     Auto,
     /// Shapes always.
@@ -27,7 +27,7 @@ pub struct Compiler {
     sequence: [(Unit<Vector3<f64>>, bool); 3],
     /// Whether a range is a limit unless stated otherwise.
     pub are_ranges_limits: bool,
-    pub weighing: Weighing,
+    pub weighing: MassSource,
     /// Groups whose shapes have mass.
     pub groups: [f64; 2],
     /// Lower bounds of the mass of bodies, kg, and of their principal inertias, kg m².
@@ -46,8 +46,8 @@ impl Compiler {
         let word = |name: &str| last(name).and_then(|node| node.attribute(name));
         let value = |name: &'static str| last(name).map_or(Ok(None), |node| number(node, name));
         let refused = |name: &str, want: &str| {
-            let said = clipped(word(name).unwrap_or_default());
-            Err(wrong(last(name).unwrap_or(model), format!("{name} is \"{said}\""), want))
+            let said = quote_clipped(word(name).unwrap_or_default());
+            Err(element_error(last(name).unwrap_or(model), format!("{name} is \"{said}\""), want))
         };
         if word("coordinate").is_some_and(|word| word != "local") {
             return refused("coordinate", "local");
@@ -55,9 +55,9 @@ impl Compiler {
         let sequence = sequence(word("eulerseq").unwrap_or("xyz"));
         let Some(sequence) = sequence else { return refused("eulerseq", "three of x, y, z, X, Y, Z") };
         let weighing = match word("inertiafromgeom").unwrap_or("auto") {
-            "auto" => Weighing::Auto,
-            "true" => Weighing::Shapes,
-            "false" => Weighing::Written,
+            "auto" => MassSource::Auto,
+            "true" => MassSource::Shapes,
+            "false" => MassSource::Written,
             _ => return refused("inertiafromgeom", "auto, true or false"),
         };
         let groups = last("inertiagrouprange").map(|node| several::<2>(node, "inertiagrouprange")).transpose()?;
@@ -73,7 +73,7 @@ impl Compiler {
     }
 
     /// Returns whether the range of an element is a limit.
-    pub fn is_limit<'a>(&self, element: &impl Source<'a>, attribute: &str) -> bool {
+    pub fn is_limit<'a>(&self, element: &impl AttributeSource<'a>, attribute: &str) -> bool {
         match element.get(attribute) {
             Some("true") => true,
             Some("false") => false,
@@ -85,14 +85,15 @@ impl Compiler {
     ///
     /// # Errors
     /// If a vector or quaternion of its orientation is zero.
-    pub fn place<'a>(&self, element: &impl Source<'a>) -> Result<Isometry3<f64>, ImportError> {
+    pub fn place<'a>(&self, element: &impl AttributeSource<'a>) -> Result<Isometry3<f64>, ImportError> {
         let at = vector(element, "pos")?.unwrap_or_default();
         Ok(Isometry3::from_parts(Translation3::from(at), self.turn(element)?))
     }
 
-    fn turn<'a>(&self, element: &impl Source<'a>) -> Result<UnitQuaternion<f64>, ImportError> {
-        let none =
-            |what: &str| wrong(element.node(), format!("a {what} without direction"), "numbers that are not all 0");
+    fn turn<'a>(&self, element: &impl AttributeSource<'a>) -> Result<UnitQuaternion<f64>, ImportError> {
+        let none = |what: &str| {
+            element_error(element.node(), format!("a {what} without direction"), "numbers that are not all 0")
+        };
         let unit = |v: Vector3<f64>, what: &str| Unit::try_new(v, 1e-9).ok_or_else(|| none(what));
         if let Some([w, x, y, z]) = several::<4>(element, "quat")? {
             return UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9).ok_or_else(|| none("quat"));

@@ -5,9 +5,9 @@ use std::rc::Rc;
 
 use roxmltree::Node;
 
-use super::read::{Source, each};
-use super::refusal::{ImportError, wrong};
-use crate::settings::range::clipped;
+use super::read::{AttributeSource, each};
+use super::refusal::{ImportError, element_error};
+use crate::settings::range::quote_clipped;
 
 /// Maximum number of classes of a file: each holds all attributes that it inherits.
 const MAX_CLASSES: usize = 200;
@@ -44,7 +44,7 @@ pub struct Element<'a> {
     class: Class<'a>,
 }
 
-impl<'a> Source<'a> for Element<'a> {
+impl<'a> AttributeSource<'a> for Element<'a> {
     fn get(&self, name: &str) -> Option<&'a str> {
         let of_class = || self.class.0.words.get(&(kind(self.node), name)).copied();
         self.node.attribute(name).or_else(of_class)
@@ -108,13 +108,14 @@ impl<'a> Defaults<'a> {
             take(node, &mut own)?;
             let own = Class(Rc::new(own));
             open.extend(nested(node, &own));
-            let name = node.attribute("class").ok_or_else(|| wrong(node, "a class without a name", "class=\"…\""))?;
+            let name =
+                node.attribute("class").ok_or_else(|| element_error(node, "a class without a name", "class=\"…\""))?;
             if defaults.named.insert(name, own).is_some() {
-                let what = format!("a second class \"{}\"", clipped(name));
-                return Err(wrong(node, what, "names that stand once"));
+                let what = format!("a second class \"{}\"", quote_clipped(name));
+                return Err(element_error(node, what, "names that stand once"));
             }
             if defaults.named.len() > MAX_CLASSES {
-                return Err(wrong(node, "too many classes", format!("at most {MAX_CLASSES}")));
+                return Err(element_error(node, "too many classes", format!("at most {MAX_CLASSES}")));
             }
         }
         Ok(defaults)
@@ -132,7 +133,9 @@ impl<'a> Defaults<'a> {
     pub fn class(&self, node: Node<'a, 'a>, attribute: &str, usual: &Class<'a>) -> Result<Class<'a>, ImportError> {
         let Some(name) = node.attribute(attribute) else { return Ok(usual.clone()) };
         let known = self.named.get(name).cloned();
-        known.ok_or_else(|| wrong(node, format!("no class \"{}\"", clipped(name)), "the name of a <default>"))
+        known.ok_or_else(|| {
+            element_error(node, format!("no class \"{}\"", quote_clipped(name)), "the name of a <default>")
+        })
     }
 
     /// Returns an element with its own class, or with the class `usual` if it names none.
@@ -152,7 +155,7 @@ fn take<'a>(node: Node<'a, 'a>, values: &mut Values<'a>) -> Result<(), ImportErr
             over(&mut values.sizes, child.attribute("size"));
         }
         if values.words.len() > MAX_VALUES {
-            return Err(wrong(node, "too many attributes in a class", format!("at most {MAX_VALUES}")));
+            return Err(element_error(node, "too many attributes in a class", format!("at most {MAX_VALUES}")));
         }
     }
     Ok(())

@@ -9,17 +9,17 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::linkage::{Limit, Linkage, Motor, Part, common_axis, owners, plane};
+use super::linkage::{ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, common_axis, owners, plane};
 use super::refusal::ImportError;
 use crate::mechanics::machine::{
-    Angle, Attach, Closure, Drive, Length, Link, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Point, Rotor,
+    Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Rotor,
 };
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::settings::number::Short;
-use crate::settings::range::clipped;
+use crate::settings::number::ShortNumber;
+use crate::settings::range::quote_clipped;
 
 /// Masses and inertias up to this fraction of the total are treated as zero.
-pub const NOTHING: f64 = 1e-9;
+pub const NEGLIGIBLE_MASS: f64 = 1e-9;
 /// Lengths up to this fraction of the machine's size are treated as zero.
 const ZERO_LENGTH_FRACTION: f64 = 1e-9;
 /// Two directions are parallel up to this sine of the angle between them.
@@ -32,7 +32,7 @@ const MIN_LENGTH_M: f64 = 0.01;
 
 /// A machine from another program.
 #[derive(Clone, Debug)]
-pub struct Imported {
+pub struct ImportedMachine {
     /// The machine.
     pub machine: Machine,
     /// Angles of its drives in the pose of the file, rad: where all joints of URDF are at 0, in the keyframe of MJCF.
@@ -58,13 +58,13 @@ pub struct BaseBody {
 ///
 /// # Errors
 /// If the linkage is outside the family of machines.
-pub fn imported(linkage: &Linkage) -> Result<Imported, ImportError> {
+pub fn imported(linkage: &ImportedLinkage) -> Result<ImportedMachine, ImportError> {
     let flat = Flat::of(linkage)?;
     let mut notes = linkage.notes.clone();
     let (spec, pose) = Builder { linkage, flat: &flat, notes: &mut notes }.spec()?;
     let base = flat.ground(linkage)?;
     let machine = Machine::new(spec).map_err(|why| ImportError::whole(why.to_string(), "a machine of the family"))?;
-    Ok(Imported { machine, pose, base, notes })
+    Ok(ImportedMachine { machine, pose, base, notes })
 }
 
 /// A part with all parts that are fixed to it, projected onto the plane.
@@ -110,7 +110,7 @@ struct Flat {
 }
 
 impl Flat {
-    fn of(linkage: &Linkage) -> Result<Self, ImportError> {
+    fn of(linkage: &ImportedLinkage) -> Result<Self, ImportError> {
         let parts = &linkage.parts;
         let (normal, _) = common_axis(parts)?;
         let axes = plane(&normal);
@@ -118,7 +118,7 @@ impl Flat {
         let owners = owners(parts);
         let roots: Vec<Vector> =
             parts.iter().map(|part| part.hinge.map_or(Vector::default(), |(_, on)| flat(&on))).collect();
-        let own = |part: &Part| Body {
+        let own = |part: &ImportedPart| Body {
             mass: part.mass,
             com: flat(&part.com),
             height: axes[2].dot(&part.com),
@@ -130,7 +130,7 @@ impl Flat {
             let body = own(part);
             if body.inertia < 0.0 {
                 return Err(
-                    part.wrong(format!("an inertia of {} kg m²", Short(body.inertia)), "one that is not below 0")
+                    part.wrong(format!("an inertia of {} kg m²", ShortNumber(body.inertia)), "one that is not below 0")
                 );
             }
             let rotor = linkage.rotors.iter().find(|(rotor, ..)| *rotor == i);
@@ -138,7 +138,7 @@ impl Flat {
             if let Some(to) = to {
                 // Only the mass of a rotor belongs to the part that carries it.
                 match rotor {
-                    Some(_) if body.mass <= NOTHING * total => {}
+                    Some(_) if body.mass <= NEGLIGIBLE_MASS * total => {}
                     Some(_) => bodies[to] = bodies[to].and(Body { inertia: 0.0, ..body }),
                     None => bodies[to] = bodies[to].and(body),
                 }
@@ -152,7 +152,7 @@ impl Flat {
             bodies.iter().map(|body| body.inertia + body.mass * (body.com - roots[0]).norm_sqr()).sum::<f64>();
         let is_link = |i: &usize| {
             let is_rotor = linkage.rotors.iter().any(|(rotor, ..)| rotor == i);
-            let counts = bodies[*i].mass > NOTHING * total || bodies[*i].inertia > NOTHING * inertia;
+            let counts = bodies[*i].mass > NEGLIGIBLE_MASS * total || bodies[*i].inertia > NEGLIGIBLE_MASS * inertia;
             parts[*i].hinge.is_some() && !is_rotor && counts
         };
         let links: Vec<usize> = (0..parts.len()).filter(is_link).collect();
@@ -168,7 +168,7 @@ impl Flat {
     }
 
     /// Returns the axis of the drives, m: the hinge of the first link on the base.
-    fn base(&self, parts: &[Part]) -> Result<Vector, ImportError> {
+    fn base(&self, parts: &[ImportedPart]) -> Result<Vector, ImportError> {
         for i in &self.links {
             if self.carrier(parts, *i)?.is_none() {
                 return Ok(self.roots[*i]);
@@ -178,7 +178,7 @@ impl Flat {
     }
 
     /// Returns the base with all parts that are fixed to it, if it has mass and inertia.
-    fn ground(&self, linkage: &Linkage) -> Result<Option<BaseBody>, ImportError> {
+    fn ground(&self, linkage: &ImportedLinkage) -> Result<Option<BaseBody>, ImportError> {
         let Some(ground) = &linkage.ground else { return Ok(None) };
         let normal = self.axes[2];
         let own = |mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>| Body {
@@ -188,12 +188,12 @@ impl Flat {
             inertia: normal.dot(&(inertia * normal)),
         };
         let total: f64 = linkage.parts.iter().map(|part| part.mass).sum();
-        let is_still = |part: &Part| part.parent.is_none_or(|parent| self.owners[parent].is_none());
+        let is_still = |part: &ImportedPart| part.parent.is_none_or(|parent| self.owners[parent].is_none());
         let parts = linkage.parts.iter().enumerate().filter_map(|(i, part)| {
             // Only the mass of a rotor in the base belongs to the base.
             let is_rotor = linkage.rotors.iter().any(|(rotor, ..)| *rotor == i) && is_still(part);
             let inertia = if is_rotor { Matrix3::zeros() } else { part.inertia };
-            let counts = self.owners[i].is_none() || (is_rotor && part.mass > NOTHING * total);
+            let counts = self.owners[i].is_none() || (is_rotor && part.mass > NEGLIGIBLE_MASS * total);
             counts.then(|| own(part.mass, &part.com, &inertia))
         });
         let all = parts.fold(own(ground.mass, &ground.com, &ground.inertia), Body::and);
@@ -211,7 +211,7 @@ impl Flat {
     ///
     /// # Errors
     /// If a massless part between the two has length.
-    fn carrier(&self, parts: &[Part], i: usize) -> Result<Option<usize>, ImportError> {
+    fn carrier(&self, parts: &[ImportedPart], i: usize) -> Result<Option<usize>, ImportError> {
         let mut at = i;
         loop {
             let Some(next) = parts[at].parent.and_then(|parent| self.owners[parent]) else { return Ok(None) };
@@ -228,7 +228,7 @@ impl Flat {
 
 /// Checks that each motor has at most one rotor, and that the rotor's centre of mass is on its axis.
 fn check_rotors(
-    linkage: &Linkage,
+    linkage: &ImportedLinkage,
     roots: &[Vector],
     flat: &impl Fn(&Vector3<f64>) -> Vector,
 ) -> Result<(), ImportError> {
@@ -236,21 +236,22 @@ fn check_rotors(
     for (number, (i, k, _)) in linkage.rotors.iter().enumerate() {
         let part = &linkage.parts[*i];
         if linkage.rotors[..number].iter().any(|(_, other, _)| other == k) {
-            let name = clipped(&linkage.motors[*k].name);
+            let name = quote_clipped(&linkage.motors[*k].name);
             return Err(part.wrong(format!("a second rotor of \"{name}\""), "one rotor for a motor"));
         }
         let off = (flat(&part.com) - roots[*i]).norm();
-        if part.mass > NOTHING * total && off > ZERO_LENGTH_FRACTION * (1.0 + roots[*i].norm()) {
-            return Err(
-                part.wrong(format!("a rotor with its mass {} m off its axis", Short(off)), "a rotor that is balanced")
-            );
+        if part.mass > NEGLIGIBLE_MASS * total && off > ZERO_LENGTH_FRACTION * (1.0 + roots[*i].norm()) {
+            return Err(part.wrong(
+                format!("a rotor with its mass {} m off its axis", ShortNumber(off)),
+                "a rotor that is balanced",
+            ));
         }
     }
     Ok(())
 }
 
 struct Builder<'a> {
-    linkage: &'a Linkage,
+    linkage: &'a ImportedLinkage,
     flat: &'a Flat,
     notes: &'a mut Vec<String>,
 }
@@ -305,7 +306,7 @@ impl Builder<'_> {
             let set = linkage.sets[i].unwrap_or(0);
             let sign = axes[i].as_ref().map_or(1.0, |axis| axis.sign);
             let s = sign * ((at - flat.roots[i]) * Vector::from_polar(1.0, -psi[set])).re;
-            Point { link: names[i].clone(), at: PlaceOnLink::Metres(s) }
+            LinkPoint { link: names[i].clone(), at: PlaceOnLink::Metres(s) }
         };
         let links = flat.links.iter().map(|i| {
             let attach = match carriers[*i] {
@@ -340,7 +341,7 @@ impl Builder<'_> {
         let flat = self.flat;
         let own: Vec<usize> = flat.links.iter().copied().filter(|i| self.linkage.sets[*i] == Some(k)).collect();
         let Some(first) = own.first() else {
-            let what = format!("\"{}\" turns no link that has mass", clipped(&self.linkage.motors[k].name));
+            let what = format!("\"{}\" turns no link that has mass", quote_clipped(&self.linkage.motors[k].name));
             return Err(ImportError::whole(what, "a link for every motor"));
         };
         let farthest = |i: &usize| {
@@ -370,7 +371,7 @@ impl Builder<'_> {
         for at in points {
             let local = (at - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
             if local.im.abs() > ZERO_LENGTH_FRACTION * flat.size {
-                let off = Short(local.im);
+                let off = ShortNumber(local.im);
                 let what = format!("a pin {off} m beside the line that links of its drive run along");
                 return Err(part.wrong(what, "bars whose pins lie on one line, parallel for links of one drive"));
             }
@@ -429,7 +430,7 @@ impl Builder<'_> {
 
     fn drive_name(&self, k: usize) -> String {
         let motors = &self.linkage.motors;
-        let short = |motor: &Motor| {
+        let short = |motor: &ImportedMotor| {
             let name = motor.name.as_str();
             name.strip_prefix("drive_").or(name.strip_prefix("drive ")).unwrap_or(name).to_owned()
         };
@@ -444,15 +445,16 @@ impl Builder<'_> {
         let motors = self.linkage.motors.iter().enumerate();
         for (k, motor) in motors.clone().filter(|(_, motor)| motor.armature > 0.0) {
             let name = self.drive_name(k);
-            let (armature, inertia) = (Short(motor.armature), Short(motor.armature / ARMATURE_RATIO.powi(2)));
+            let (armature, inertia) =
+                (ShortNumber(motor.armature), ShortNumber(motor.armature / ARMATURE_RATIO.powi(2)));
             self.notes.push(format!(
                 "the armature of \"{0}\", {armature} kg m², became a rotor of {inertia} kg m² behind a gear of \
                  {ARMATURE_RATIO}, which adds next to nothing to the momentum: --set drive.{0}.rotor.inertia and .ratio \
                  say what it is",
-                clipped(&name)
+                quote_clipped(&name)
             ));
         }
-        let drive = |(k, motor): (usize, &Motor)| {
+        let drive = |(k, motor): (usize, &ImportedMotor)| {
             let own = self.linkage.rotors.iter().find(|(_, of, _)| *of == k);
             let of_armature = Rotor { inertia: motor.armature / ARMATURE_RATIO.powi(2), ratio: ARMATURE_RATIO };
             let of_armature = (motor.armature > 0.0).then_some(of_armature);
@@ -477,11 +479,11 @@ impl Builder<'_> {
     /// Returns the limits as those of angles between drives.
     fn angles(&mut self, psi: &[f64]) -> Vec<Angle> {
         let mut angles: Vec<Angle> = Vec::new();
-        for Limit { name, to, from, now, range } in &self.linkage.limits {
+        for JointLimit { name, to, from, now, range } in &self.linkage.limits {
             let Some(from) = from else {
                 self.notes.push(format!(
                     "limits of \"{}\" are left out: here only angles between two drives have limits",
-                    clipped(&self.linkage.motors[*to].name)
+                    quote_clipped(&self.linkage.motors[*to].name)
                 ));
                 continue;
             };

@@ -1,4 +1,4 @@
-//! [`Linkage`]: the common result of both readers: parts in space with their hinges, and the sets that turn together.
+//! [`ImportedLinkage`]: the common result of both readers: parts in space with their hinges, and the sets that turn together.
 
 use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 
@@ -7,7 +7,7 @@ use super::refusal::ImportError;
 /// Two directions are parallel up to this sine of the angle between them.
 const PARALLEL_UP_TO_SINE: f64 = 1e-9;
 /// Maximum number of parts: files with more are not machines of the family, and would take long.
-pub const MOST_PARTS: usize = 400;
+pub const MAX_PARTS: usize = 400;
 
 /// Usual names of an end effector, in lower case without separators; the most specific first.
 const ENDS: [&str; 16] = [
@@ -37,25 +37,25 @@ pub fn end_rank(name: &str) -> Option<usize> {
 
 /// Parts in a reference pose.
 #[derive(Debug)]
-pub struct Linkage {
+pub struct ImportedLinkage {
     /// Its name.
     pub name: String,
     /// Acceleration of gravity in the axes of the base, m/s².
     pub gravity: Vector3<f64>,
     /// Its parts, each after the part that carries it.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ImportedPart>,
     /// For each part, the set of parts that turn together to which it belongs; `None` for parts that do not turn.
     pub sets: Vec<Option<usize>>,
     /// The motor that turns each set, in the order of the sets.
-    pub motors: Vec<Motor>,
+    pub motors: Vec<ImportedMotor>,
     /// Limits of angles between sets.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<JointLimit>,
     /// Rotors: the part, the motor that turns it, and its gear ratio.
     pub rotors: Vec<(usize, usize, f64)>,
     /// Closures: two points of different parts that coincide.
-    pub loops: Vec<[Point; 2]>,
+    pub loops: Vec<[PartPoint; 2]>,
     /// The end effector: a part, and a position in the axes of the base in the reference pose, m.
-    pub end: Option<Point>,
+    pub end: Option<PartPoint>,
     /// Mass properties of the base, if the file has them.
     pub ground: Option<Ground>,
     /// Notes on elements that were omitted.
@@ -64,7 +64,7 @@ pub struct Linkage {
 
 /// A rigid part.
 #[derive(Debug)]
-pub struct Part {
+pub struct ImportedPart {
     /// Its name.
     pub name: String,
     /// Its name in messages.
@@ -87,7 +87,7 @@ pub struct Part {
 
 /// A motor, which turns a set of parts relative to another.
 #[derive(Clone, Debug, Default)]
-pub struct Motor {
+pub struct ImportedMotor {
     /// Its name.
     pub name: String,
     /// The part whose hinge it turns, if it turns a single hinge.
@@ -108,7 +108,7 @@ pub struct Motor {
 
 /// Limits of the angle of a set relative to another.
 #[derive(Clone, Debug)]
-pub struct Limit {
+pub struct JointLimit {
     /// Name of the angle, if it has one.
     pub name: Option<String>,
     /// The set whose angle counts positive.
@@ -122,7 +122,7 @@ pub struct Limit {
 }
 
 /// A point of a part: index of the part, and position in the axes of the base in the reference pose, m.
-pub type Point = (usize, Vector3<f64>);
+pub type PartPoint = (usize, Vector3<f64>);
 
 /// Mass properties of the base.
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +135,7 @@ pub struct Ground {
     pub inertia: Matrix3<f64>,
 }
 
-impl Part {
+impl ImportedPart {
     /// Makes an error of this part.
     pub fn wrong(&self, what: impl Into<String>, want: impl Into<String>) -> ImportError {
         ImportError::of(self.at, &self.called, what, want)
@@ -147,7 +147,7 @@ impl Part {
 ///
 /// # Errors
 /// If there is no hinge, or if the axes are not parallel.
-pub fn common_axis(parts: &[Part]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), ImportError> {
+pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), ImportError> {
     let first = parts.iter().find_map(|part| part.hinge).map(|(axis, _)| axis);
     let Some(first) = first else {
         return Err(ImportError::whole("nothing turns", "links on revolute joints or hinges"));
@@ -172,7 +172,7 @@ pub fn common_axis(parts: &[Part]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), Imp
 
 /// Returns for each part the turning part with which it moves: itself if it has a hinge, or else the part to which it
 /// is fixed; `None` for the base.
-pub fn owners(parts: &[Part]) -> Vec<Option<usize>> {
+pub fn owners(parts: &[ImportedPart]) -> Vec<Option<usize>> {
     let mut owners: Vec<Option<usize>> = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {
         let owner = if part.hinge.is_some() { Some(i) } else { part.parent.and_then(|parent| owners[parent]) };

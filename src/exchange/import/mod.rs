@@ -16,7 +16,7 @@ mod scan;
 mod shapes;
 mod urdf;
 
-pub use family::{BaseBody, Imported};
+pub use family::{BaseBody, ImportedMachine};
 pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};
@@ -28,7 +28,7 @@ const MAX_NODES: u32 = 400_000;
 ///
 /// # Errors
 /// If the file is not a machine of the family; names the first wrong element, its line, and what would be right.
-pub fn import(text: &str) -> Result<Imported, ImportError> {
+pub fn import(text: &str) -> Result<ImportedMachine, ImportError> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     scan::check_bounds(text).map_err(|error| error.located(text))?;
     let document = Document::parse_with_options(text, options).map_err(|why| refusal::syntax(&why.to_string()))?;
@@ -36,7 +36,7 @@ pub fn import(text: &str) -> Result<Imported, ImportError> {
     let linkage = match root.tag_name().name() {
         "robot" => urdf::linkage(root),
         "mujoco" => mjcf::linkage(root),
-        _ => Err(refusal::wrong(root, "neither a robot nor a model", "<robot> of URDF or <mujoco> of MJCF")),
+        _ => Err(refusal::element_error(root, "neither a robot nor a model", "<robot> of URDF or <mujoco> of MJCF")),
     };
     linkage.and_then(|linkage| family::imported(&linkage)).map_err(|error| error.located(text))
 }

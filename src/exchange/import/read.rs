@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use roxmltree::Node;
 
-use super::refusal::{ImportError, wrong};
-use crate::settings::number::Short;
-use crate::settings::range::clipped;
+use super::refusal::{ImportError, element_error};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::quote_clipped;
 
 /// Largest magnitude of a number that is read: products of larger numbers could overflow.
 const MAX_MAGNITUDE: f64 = 1e9;
@@ -14,14 +14,14 @@ const MAX_MAGNITUDE: f64 = 1e9;
 const MAX_NUMBERS: usize = 1000;
 
 /// A source of attributes: an element, or an element with the defaults of its class.
-pub trait Source<'a> {
+pub trait AttributeSource<'a> {
     /// Returns the value of an attribute.
     fn get(&self, name: &str) -> Option<&'a str>;
     /// Returns the element.
     fn node(&self) -> Node<'a, 'a>;
 }
 
-impl<'a> Source<'a> for Node<'a, 'a> {
+impl<'a> AttributeSource<'a> for Node<'a, 'a> {
     fn get(&self, name: &str) -> Option<&'a str> {
         self.attribute(name)
     }
@@ -31,7 +31,7 @@ impl<'a> Source<'a> for Node<'a, 'a> {
     }
 }
 
-impl<'a, S: Source<'a>> Source<'a> for &S {
+impl<'a, S: AttributeSource<'a>> AttributeSource<'a> for &S {
     fn get(&self, name: &str) -> Option<&'a str> {
         (**self).get(name)
     }
@@ -52,56 +52,65 @@ pub fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>>
 }
 
 /// Returns a required attribute.
-pub fn word<'a>(node: impl Source<'a>, name: &'static str) -> Result<&'a str, ImportError> {
-    node.get(name).ok_or_else(|| wrong(node.node(), format!("it has no {name}"), format!("{name}=\"…\"")))
+pub fn word<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<&'a str, ImportError> {
+    node.get(name).ok_or_else(|| element_error(node.node(), format!("it has no {name}"), format!("{name}=\"…\"")))
 }
 
 /// Returns the numbers of an attribute; `None` if it is absent.
-pub fn numbers<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vec<f64>>, ImportError> {
+pub fn numbers<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<Option<Vec<f64>>, ImportError> {
     let Some(text) = node.get(name) else { return Ok(None) };
     let number = |word: &str| {
         let value = word.parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= MAX_MAGNITUDE);
         value.ok_or_else(|| {
-            let what = format!("{name} has \"{}\"", clipped(word));
-            wrong(node.node(), what, "numbers from -1e9 to 1e9")
+            let what = format!("{name} has \"{}\"", quote_clipped(word));
+            element_error(node.node(), what, "numbers from -1e9 to 1e9")
         })
     };
     let words = text.split_whitespace().take(MAX_NUMBERS + 1);
     let all: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
     match all.len() > MAX_NUMBERS {
-        true => Err(wrong(node.node(), format!("{name} goes on and on"), format!("at most {MAX_NUMBERS} numbers"))),
+        true => {
+            Err(element_error(node.node(), format!("{name} goes on and on"), format!("at most {MAX_NUMBERS} numbers")))
+        }
         false => Ok(Some(all)),
     }
 }
 
 /// Returns the `N` numbers of an attribute; `None` if it is absent.
-pub fn several<'a, const N: usize>(node: impl Source<'a>, name: &'static str) -> Result<Option<[f64; N]>, ImportError> {
+pub fn several<'a, const N: usize>(
+    node: impl AttributeSource<'a>,
+    name: &'static str,
+) -> Result<Option<[f64; N]>, ImportError> {
     let Some(all) = numbers(&node, name)? else { return Ok(None) };
     let count = all.len();
-    all.try_into().map(Some).map_err(|_| wrong(node.node(), format!("{name} has {count} numbers"), format!("{N}")))
+    all.try_into()
+        .map(Some)
+        .map_err(|_| element_error(node.node(), format!("{name} has {count} numbers"), format!("{N}")))
 }
 
 /// Returns the number of an attribute; `None` if it is absent.
-pub fn number<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<f64>, ImportError> {
+pub fn number<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<Option<f64>, ImportError> {
     Ok(several::<1>(node, name)?.map(|[x]| x))
 }
 
 /// Returns the number of a required attribute.
-pub fn given<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
+pub fn given<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f64, ImportError> {
     word(&node, name)?;
     number(node, name).map(|x| x.unwrap_or(0.0))
 }
 
 /// Returns a point or direction; `None` if it is absent.
-pub fn vector<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vector3<f64>>, ImportError> {
+pub fn vector<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<Option<Vector3<f64>>, ImportError> {
     Ok(several::<3>(node, name)?.map(Vector3::from))
 }
 
 /// Returns a required mass, kg, not below 0.
-pub fn mass<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
+pub fn mass<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f64, ImportError> {
     match given(&node, name)? {
         mass if mass >= 0.0 => Ok(mass),
-        mass => Err(wrong(node.node(), format!("a mass of {} kg", Short(mass)), "one that is not below 0")),
+        mass => {
+            Err(element_error(node.node(), format!("a mass of {} kg", ShortNumber(mass)), "one that is not below 0"))
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use crate::settings::range::{clipped, shortened};
+use crate::settings::range::{quote_clipped, shortened};
 
 /// Error in a file, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,14 +37,14 @@ impl ImportError {
 }
 
 /// Makes the error of an element.
-pub fn wrong(node: Node<'_, '_>, what: impl Into<String>, want: impl Into<String>) -> ImportError {
-    ImportError::of(node.range().start, &called(node), what, want)
+pub fn element_error(node: Node<'_, '_>, what: impl Into<String>, want: impl Into<String>) -> ImportError {
+    ImportError::of(node.range().start, &element_name(node), what, want)
 }
 
 /// Returns the name of an element in messages: `link "arm"`.
-pub fn called(node: Node<'_, '_>) -> String {
-    let kind = clipped(node.tag_name().name());
-    node.attribute("name").map_or_else(|| format!("<{kind}>"), |name| format!("{kind} \"{}\"", clipped(name)))
+pub fn element_name(node: Node<'_, '_>) -> String {
+    let kind = quote_clipped(node.tag_name().name());
+    node.attribute("name").map_or_else(|| format!("<{kind}>"), |name| format!("{kind} \"{}\"", quote_clipped(name)))
 }
 
 /// Makes the error that the XML parser reports.

@@ -14,23 +14,23 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::compiler::{Compiler, to_axis};
 use super::defaults::Element;
-use super::read::{Source, number, numbers, several};
-use super::refusal::{ImportError, wrong};
-use crate::settings::number::Short;
-use crate::settings::range::clipped;
+use super::read::{AttributeSource, number, numbers, several};
+use super::refusal::{ImportError, element_error};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::quote_clipped;
 
 /// Density of shapes that give none, kg/m³: that of water.
 const DEFAULT_DENSITY: f64 = 1000.0;
 
 /// A rigid body: mass, kg, centre of mass, m, and inertia about it, kg m², in the same axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Solid {
+pub struct MassProperties {
     pub mass: f64,
     pub com: Vector3<f64>,
     pub inertia: Matrix3<f64>,
 }
 
-impl Solid {
+impl MassProperties {
     /// Returns a body without mass at a position.
     pub fn none(com: Vector3<f64>) -> Self {
         Self { mass: 0.0, com, inertia: Matrix3::zeros() }
@@ -59,7 +59,11 @@ fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
 ///
 /// # Errors
 /// If its mass or inertia cannot be computed.
-pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -> Result<Option<Solid>, ImportError> {
+pub fn solid(
+    shape: &Element<'_>,
+    compiler: &Compiler,
+    frame: &Isometry3<f64>,
+) -> Result<Option<MassProperties>, ImportError> {
     let group = number(shape, "group")?.unwrap_or(0.0);
     let [first, last] = compiler.groups;
     let mass = number(shape, "mass")?;
@@ -68,25 +72,29 @@ pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -
     }
     let kind = shape.get("type").unwrap_or(if shape.get("mesh").is_some() { "mesh" } else { "sphere" });
     if shape.get("shellinertia") == Some("true") {
-        return Err(wrong(shape.node(), "a hollow shape", "<inertial>, or a shape that is solid"));
+        return Err(element_error(shape.node(), "a hollow shape", "<inertial>, or a shape that is solid"));
     }
     let (place, size) = placed(shape, kind, compiler)?;
     let Some((volume, i)) = measured(kind, &size) else {
-        let what = format!("a shape of type \"{}\", which is not weighed", clipped(kind));
-        return Err(wrong(shape.node(), what, "<inertial> in its body, or mass=\"0\" here"));
+        let what = format!("a shape of type \"{}\", which is not weighed", quote_clipped(kind));
+        return Err(element_error(shape.node(), what, "<inertial> in its body, or mass=\"0\" here"));
     };
     if let Some(bad) = size.iter().find(|x| **x <= 0.0) {
-        return Err(wrong(shape.node(), format!("a size of {} m", Short(*bad)), "sizes above 0"));
+        return Err(element_error(shape.node(), format!("a size of {} m", ShortNumber(*bad)), "sizes above 0"));
     }
     let density = number(shape, "density")?.unwrap_or(DEFAULT_DENSITY);
     let mass = mass.unwrap_or(density * volume);
     if mass < 0.0 {
-        return Err(wrong(shape.node(), format!("a mass of {} kg", Short(mass)), "one that is not below 0"));
+        return Err(element_error(
+            shape.node(),
+            format!("a mass of {} kg", ShortNumber(mass)),
+            "one that is not below 0",
+        ));
     }
     let place = frame * place;
     let axes = Rotation3::from(place.rotation);
     let inertia = axes * Matrix3::from_diagonal(&(mass * i)) * axes.transpose();
-    Ok(Some(Solid { mass, com: place.translation.vector, inertia }))
+    Ok(Some(MassProperties { mass, com: place.translation.vector, inertia }))
 }
 
 /// Returns position and orientation of a shape on its body, and the sizes of its kind, m.
@@ -104,7 +112,7 @@ fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isome
     let given = if ends.is_some() { 1 } else { count };
     if size.len() < given {
         let what = format!("{kind} with {} sizes", size.len());
-        return Err(wrong(shape.node(), what, format!("{given}")));
+        return Err(element_error(shape.node(), what, format!("{given}")));
     }
     let Some(ends) = ends else {
         size.truncate(count);
@@ -113,7 +121,7 @@ fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isome
     // Along z from the first point to the second, with the same width along x and y.
     let [from, to] = [0, 3].map(|i| Vector3::new(ends[i], ends[i + 1], ends[i + 2]));
     let axis = Unit::try_new(to - from, 1e-12)
-        .ok_or_else(|| wrong(shape.node(), "its ends are one point", "fromto with two points"))?;
+        .ok_or_else(|| element_error(shape.node(), "its ends are one point", "fromto with two points"))?;
     let (across, half) = (size[0], 0.5 * (to - from).norm());
     let size = if count == 2 { vec![across, half] } else { vec![across, across, half] };
     Ok((Isometry3::from_parts(Translation3::from(0.5 * (from + to)), to_axis(&axis)), size))

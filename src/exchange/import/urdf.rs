@@ -5,13 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::linkage::{Ground, Limit, Linkage, Motor, Part, Point, common_axis, end_rank, owners};
+use super::linkage::{
+    Ground, ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, PartPoint, common_axis, end_rank, owners,
+};
 use super::read::{child, each, given, inertia, mass, number, vector, word};
-use super::refusal::{ImportError, called, wrong};
+use super::refusal::{ImportError, element_error, element_name};
 use crate::exchange::urdf::meet;
 use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::{Short, fixed};
-use crate::settings::range::{clipped, shortened};
+use crate::settings::number::{ShortNumber, fixed};
+use crate::settings::range::{quote_clipped, shortened};
 
 /// Tolerance within which rate ratios are equal; also the relative tolerance of limits.
 const RATE_TOLERANCE: f64 = 1e-9;
@@ -25,7 +27,7 @@ const MAX_JOINTS: usize = 4000;
 const MAX_FOLLOWED: usize = 100;
 
 /// Reads the linkage of a `<robot>`.
-pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
+pub fn linkage(robot: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
     let file = File::of(robot)?;
     let mut parts = Vec::new();
     let mut joints = Vec::new();
@@ -36,7 +38,7 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     let mut limits = Vec::new();
     for (k, i) in free.iter().enumerate() {
         if let Some(range) = range(joints[*i], signs[*i])? {
-            limits.push(Limit { name: None, to: k, from: motors[k].from, now: 0.0, range: Some(range) });
+            limits.push(JointLimit { name: None, to: k, from: motors[k].from, now: 0.0, range: Some(range) });
         }
     }
     let extension = Extension { robot, joints: free.iter().map(|i| joints[*i]).collect(), links: file.numbers(&parts) };
@@ -51,7 +53,7 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     let root = file.links[file.root];
     let ground = child(root, "inertial").map(|_| body(root, &Isometry3::identity(), false)).transpose()?;
     let ground = ground.or(Some((0.0, Vector3::zeros(), Matrix3::zeros())));
-    Ok(Linkage {
+    Ok(ImportedLinkage {
         name: robot.attribute("name").unwrap_or("robot").into(),
         gravity: extension.gravity()?,
         loops: extension.loops(&parts)?,
@@ -84,8 +86,8 @@ impl<'a> Extension<'a> {
     fn motor(&self, node: Node<'a, 'a>, attribute: &'static str) -> Result<usize, ImportError> {
         let name = word(node, attribute)?;
         let known = self.joints.iter().position(|joint| joint.attribute("name") == Some(name));
-        let what = || format!("no joint \"{}\" moves by itself", clipped(name));
-        known.ok_or_else(|| wrong(node, what(), "the name of one that does"))
+        let what = || format!("no joint \"{}\" moves by itself", quote_clipped(name));
+        known.ok_or_else(|| element_error(node, what(), "the name of one that does"))
     }
 
     fn gravity(&self) -> Result<Vector3<f64>, ImportError> {
@@ -94,18 +96,18 @@ impl<'a> Extension<'a> {
     }
 
     /// Adds the limits of relative angles. Limits of a joint that they already imply are removed.
-    fn limits(&self, limits: &mut Vec<Limit>) -> Result<(), ImportError> {
+    fn limits(&self, limits: &mut Vec<JointLimit>) -> Result<(), ImportError> {
         let mut own = Vec::new();
         for node in self.each("angle").take(MAX_JOINTS) {
             let (to, from) = (self.motor(node, "to")?, self.motor(node, "from")?);
             let now = number(node, "offset")?.unwrap_or(0.0);
             let range = number(node, "lower")?.zip(number(node, "upper")?).map(|(least, most)| [least, most]);
             let name = node.attribute("name").map(Into::into);
-            own.push(Limit { name, to, from: Some(from), now, range });
+            own.push(JointLimit { name, to, from: Some(from), now, range });
         }
         // The intersection of the limits of all angles between the same two drives, with the sign of the joint.
-        let intersection = |joint: &Limit| {
-            let of = |own: &Limit| {
+        let intersection = |joint: &JointLimit| {
+            let of = |own: &JointLimit| {
                 let [least, most] = own.range?.map(|x| x - own.now);
                 match (own.to, own.from) {
                     (to, from) if to == joint.to && from == joint.from => Some([least, most]),
@@ -116,7 +118,7 @@ impl<'a> Extension<'a> {
             own.iter().filter_map(of).reduce(meet)
         };
         let is_near = |a: f64, b: f64| (a - b).abs() <= RATE_TOLERANCE * (1.0 + b.abs());
-        let is_implied = |joint: &Limit| {
+        let is_implied = |joint: &JointLimit| {
             let (implied, own) = (intersection(joint), joint.range);
             implied.zip(own).is_some_and(|(implied, own)| (0..2).all(|i| is_near(implied[i], own[i])))
         };
@@ -127,7 +129,7 @@ impl<'a> Extension<'a> {
     }
 
     /// Adds limits that URDF cannot express.
-    fn motors(&self, motors: &mut [Motor]) -> Result<(), ImportError> {
+    fn motors(&self, motors: &mut [ImportedMotor]) -> Result<(), ImportError> {
         for node in self.each("limit").take(MAX_JOINTS) {
             let k = self.motor(node, "joint")?;
             motors[k].acceleration_limit = number(node, "acceleration")?;
@@ -137,15 +139,17 @@ impl<'a> Extension<'a> {
     }
 
     /// Returns the pins that close loops.
-    fn loops(&self, parts: &[Part]) -> Result<Vec<[Point; 2]>, ImportError> {
+    fn loops(&self, parts: &[ImportedPart]) -> Result<Vec<[PartPoint; 2]>, ImportError> {
         let owners = owners(parts);
         let end = |node: Node<'a, 'a>, link: &'static str, at: &'static str| {
             let name = word(node, link)?;
             let known = self.links.get(name).copied();
-            let i = known.ok_or_else(|| wrong(node, format!("no link \"{}\"", clipped(name)), "the name of one"))?;
+            let i = known.ok_or_else(|| {
+                element_error(node, format!("no link \"{}\"", quote_clipped(name)), "the name of one")
+            })?;
             let at = parts[i].frame * nalgebra::Point3::new(given(node, at)?, 0.0, 0.0);
-            let owner =
-                owners[i].ok_or_else(|| wrong(node, "a pin on what does not turn", "pins on links that turn"))?;
+            let owner = owners[i]
+                .ok_or_else(|| element_error(node, "a pin on what does not turn", "pins on links that turn"))?;
             Ok::<_, ImportError>((owner, at.coords))
         };
         let pin = |node| Ok([end(node, "a", "at_a")?, end(node, "b", "at_b")?]);
@@ -165,28 +169,35 @@ impl<'a> File<'a> {
     fn of(robot: Node<'a, 'a>) -> Result<Self, ImportError> {
         if let Some(other) = robot.descendants().find(|node| node.is_element() && node.tag_name().namespace().is_some())
         {
-            return Err(wrong(other, "an element of xacro or another language", "plain URDF, as xacro makes it"));
+            return Err(element_error(
+                other,
+                "an element of xacro or another language",
+                "plain URDF, as xacro makes it",
+            ));
         }
         if let Some(node) = robot.children().filter(|node| node.has_tag_name("joint")).nth(MAX_JOINTS) {
-            return Err(wrong(node, "too many joints", format!("at most {MAX_JOINTS}")));
+            return Err(element_error(node, "too many joints", format!("at most {MAX_JOINTS}")));
         }
         let mut links = BTreeMap::new();
         for link in each(robot, "link") {
             let name = word(link, "name")?;
             if links.insert(name, link).is_some() {
-                return Err(wrong(link, "a second link of this name", "names that stand once"));
+                return Err(element_error(link, "a second link of this name", "names that stand once"));
             }
         }
         let mut joints = Vec::new();
         for joint in each(robot, "joint") {
             let end = |what: &'static str| {
-                let node = child(joint, what).ok_or_else(|| wrong(joint, format!("it has no <{what}>"), "one"))?;
+                let node =
+                    child(joint, what).ok_or_else(|| element_error(joint, format!("it has no <{what}>"), "one"))?;
                 let name = word(node, "link")?;
                 match links.contains_key(name) {
                     true => Ok(name),
-                    false => {
-                        Err(wrong(node, format!("no link \"{}\"", clipped(name)), "the name of a link of this file"))
-                    }
+                    false => Err(element_error(
+                        node,
+                        format!("no link \"{}\"", quote_clipped(name)),
+                        "the name of a link of this file",
+                    )),
                 }
             };
             joints.push((joint, end("parent")?, end("child")?));
@@ -194,23 +205,23 @@ impl<'a> File<'a> {
         let mut held = BTreeSet::new();
         for (joint, _, child) in &joints {
             if !held.insert(*child) {
-                let what = format!("a second joint that carries \"{}\"", clipped(child));
-                return Err(wrong(*joint, what, "a tree: one for each link"));
+                let what = format!("a second joint that carries \"{}\"", quote_clipped(child));
+                return Err(element_error(*joint, what, "a tree: one for each link"));
             }
         }
         let roots: Vec<&str> = links.keys().copied().filter(|name| !held.contains(name)).collect();
         let carriers: BTreeSet<&str> = joints.iter().map(|(_, parent, _)| *parent).collect();
         let root = roots.iter().find(|name| carriers.contains(*name));
-        let root = *root.ok_or_else(|| wrong(robot, "no link is the base", "a tree of links"))?;
+        let root = *root.ok_or_else(|| element_error(robot, "no link is the base", "a tree of links"))?;
         if let Some(other) = roots.iter().find(|other| **other != root) {
-            let what = format!("it hangs on nothing, as \"{}\" does", clipped(root));
-            return Err(wrong(links[other], what, "one link that is the base"));
+            let what = format!("it hangs on nothing, as \"{}\" does", quote_clipped(root));
+            return Err(element_error(links[other], what, "one link that is the base"));
         }
         Ok(Self { links, joints, root })
     }
 
     /// Collects the parts from the base on, each with its joint.
-    fn walk(&self, parts: &mut Vec<Part>, joints: &mut Vec<Node<'a, 'a>>) -> Result<(), ImportError> {
+    fn walk(&self, parts: &mut Vec<ImportedPart>, joints: &mut Vec<Node<'a, 'a>>) -> Result<(), ImportError> {
         let mut below: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (i, (_, parent, _)) in self.joints.iter().enumerate() {
             below.entry(parent).or_default().push(i);
@@ -230,13 +241,15 @@ impl<'a> File<'a> {
         }
         // Links that carry each other in a cycle are not connected to the base.
         match below.into_values().flatten().next() {
-            Some(i) => Err(wrong(self.joints[i].0, "links that carry each other", "a tree that begins at the base")),
+            Some(i) => {
+                Err(element_error(self.joints[i].0, "links that carry each other", "a tree that begins at the base"))
+            }
             None => Ok(()),
         }
     }
 
     /// Returns the indices of the parts by the names of their links.
-    fn numbers(&self, parts: &[Part]) -> BTreeMap<&'a str, usize> {
+    fn numbers(&self, parts: &[ImportedPart]) -> BTreeMap<&'a str, usize> {
         let by_name: BTreeMap<&str, usize> =
             parts.iter().enumerate().map(|(i, part)| (part.name.as_str(), i)).collect();
         self.links.keys().filter_map(|name| Some((*name, *by_name.get(name)?))).collect()
@@ -245,7 +258,7 @@ impl<'a> File<'a> {
     /// Returns the independent joints, and for each part the ratios of its rate to theirs, about the common axis.
     fn rates(
         &self,
-        parts: &[Part],
+        parts: &[ImportedPart],
         joints: &[Node<'a, 'a>],
         signs: &[f64],
     ) -> Result<(Vec<usize>, Vec<Vec<f64>>), ImportError> {
@@ -266,7 +279,7 @@ impl<'a> File<'a> {
             if turns(i) {
                 let (driver, times) = followed(joints, &named, i)?;
                 let k = free.iter().position(|k| *k == driver).ok_or_else(|| {
-                    wrong(joints[i], "it mimics a joint that does not turn", "a revolute or continuous joint")
+                    element_error(joints[i], "it mimics a joint that does not turn", "a revolute or continuous joint")
                 })?;
                 own[k] += signs[i] * times * signs[driver];
             }
@@ -286,10 +299,14 @@ fn followed(joints: &[Node<'_, '_>], named: &BTreeMap<&str, usize>, i: usize) ->
         times *= number(mimic, "multiplier")?.unwrap_or(1.0);
         let name = word(mimic, "joint")?;
         at = named.get(name).copied().ok_or_else(|| {
-            wrong(joints[i], format!("it mimics \"{}\", which is no joint", clipped(name)), "the name of one")
+            element_error(
+                joints[i],
+                format!("it mimics \"{}\", which is no joint", quote_clipped(name)),
+                "the name of one",
+            )
         })?;
     }
-    Err(wrong(joints[i], "joints that mimic each other", "one in the end that mimics none"))
+    Err(element_error(joints[i], "joints that mimic each other", "one in the end that mimics none"))
 }
 
 fn origin(node: Node<'_, '_>) -> Result<Isometry3<f64>, ImportError> {
@@ -306,13 +323,17 @@ fn part(
     link: Node<'_, '_>,
     parent: Option<usize>,
     on: &Isometry3<f64>,
-) -> Result<Part, ImportError> {
+) -> Result<ImportedPart, ImportError> {
     let turns = match word(joint, "type")? {
         "revolute" | "continuous" => true,
         "fixed" => false,
         kind => {
-            let kind = clipped(kind);
-            return Err(wrong(joint, format!("a joint of type \"{kind}\""), "revolute, continuous or fixed joints"));
+            let kind = quote_clipped(kind);
+            return Err(element_error(
+                joint,
+                format!("a joint of type \"{kind}\""),
+                "revolute, continuous or fixed joints",
+            ));
         }
     };
     let mut frame = on * origin(joint)?;
@@ -320,7 +341,7 @@ fn part(
     if turns {
         let axis = child(joint, "axis").map(|axis| vector(axis, "xyz")).transpose()?.flatten();
         let axis = Unit::try_new(axis.unwrap_or(Vector3::x()), 1e-6)
-            .ok_or_else(|| wrong(joint, "an axis without direction", "three numbers that are not all 0"))?;
+            .ok_or_else(|| element_error(joint, "an axis without direction", "three numbers that are not all 0"))?;
         // A mimic joint may have an offset angle.
         let offset = child(joint, "mimic").map(|mimic| number(mimic, "offset")).transpose()?.flatten().unwrap_or(0.0);
         frame *= UnitQuaternion::from_axis_angle(&axis, offset);
@@ -328,7 +349,17 @@ fn part(
     }
     let (mass, com, inertia) = body(link, &frame, turns)?;
     let name = word(link, "name")?.to_owned();
-    Ok(Part { name, called: called(link), at: link.range().start, parent, frame, hinge, mass, com, inertia })
+    Ok(ImportedPart {
+        name,
+        called: element_name(link),
+        at: link.range().start,
+        parent,
+        frame,
+        hinge,
+        mass,
+        com,
+        inertia,
+    })
 }
 
 /// Reads mass, kg, centre of mass, m, and inertia, kg m², in the axes of the base.
@@ -339,13 +370,14 @@ fn body(
 ) -> Result<(f64, Vector3<f64>, Matrix3<f64>), ImportError> {
     let Some(inertial) = child(link, "inertial") else {
         return match turns {
-            true => Err(wrong(link, "it turns and has no <inertial>", "its mass, centre of mass and inertia")),
+            true => Err(element_error(link, "it turns and has no <inertial>", "its mass, centre of mass and inertia")),
             false => Ok((0.0, frame.translation.vector, Matrix3::zeros())),
         };
     };
     let place = frame * origin(inertial)?;
-    let part =
-        |name| child(inertial, name).ok_or_else(|| wrong(link, format!("its <inertial> has no <{name}>"), "one"));
+    let part = |name| {
+        child(inertial, name).ok_or_else(|| element_error(link, format!("its <inertial> has no <{name}>"), "one"))
+    };
     let mass = mass(part("mass")?, "value")?;
     let node = part("inertia")?;
     let [xx, yy, zz] = [given(node, "ixx")?, given(node, "iyy")?, given(node, "izz")?];
@@ -354,11 +386,11 @@ fn body(
     Ok((mass, place.translation.vector, inertia(all, &Rotation3::from(place.rotation))))
 }
 
-type Turning = (Vec<Option<usize>>, Vec<Motor>, Vec<(usize, usize, f64)>);
+type Turning = (Vec<Option<usize>>, Vec<ImportedMotor>, Vec<(usize, usize, f64)>);
 
 /// Returns the sets of parts that turn together, the motors that turn them, and the rotors.
 fn turning(
-    parts: &[Part],
+    parts: &[ImportedPart],
     joints: &[Node<'_, '_>],
     free: &[usize],
     rates: &[Vec<f64>],
@@ -375,11 +407,15 @@ fn turning(
         let from = match is_still(from) {
             true => None,
             false => Some(set(from).ok_or_else(|| {
-                wrong(joint, "it sits on what turns as no driven joint does", "motors on the base or on links")
+                element_error(joint, "it sits on what turns as no driven joint does", "motors on the base or on links")
             })?),
         };
         if set(&rates[*i]) != Some(k) {
-            return Err(wrong(joint, "it turns as another joint does", "joints that move by themselves or mimic"));
+            return Err(element_error(
+                joint,
+                "it turns as another joint does",
+                "joints that move by themselves or mimic",
+            ));
         }
         motors.push(motor(joint, from)?);
     }
@@ -412,18 +448,24 @@ fn turning(
 }
 
 /// Returns the mass, kg, up to which a part is treated as massless.
-fn light(parts: &[Part]) -> f64 {
-    super::family::NOTHING * parts.iter().map(|part| part.mass).sum::<f64>()
+fn light(parts: &[ImportedPart]) -> f64 {
+    super::family::NEGLIGIBLE_MASS * parts.iter().map(|part| part.mass).sum::<f64>()
 }
 
-fn motor(joint: Node<'_, '_>, from: Option<usize>) -> Result<Motor, ImportError> {
+fn motor(joint: Node<'_, '_>, from: Option<usize>) -> Result<ImportedMotor, ImportError> {
     let limit = child(joint, "limit");
     let bound = |name: &'static str| -> Result<Option<f64>, ImportError> {
         let most = limit.map(|limit| number(limit, name)).transpose()?.flatten();
         Ok(most.filter(|most| *most > 0.0 && *most < UNLIMITED))
     };
     let name = joint.attribute("name").unwrap_or("joint").into();
-    Ok(Motor { name, from, torque_limit: bound("effort")?, speed_limit: bound("velocity")?, ..Motor::default() })
+    Ok(ImportedMotor {
+        name,
+        from,
+        torque_limit: bound("effort")?,
+        speed_limit: bound("velocity")?,
+        ..ImportedMotor::default()
+    })
 }
 
 /// Reads the limits of a joint, rad about the common axis.
@@ -436,9 +478,9 @@ fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError
         (least, most) => {
             let (least, most) = (least.unwrap_or(0.0), most.unwrap_or(0.0));
             match least > most {
-                true => Err(wrong(
+                true => Err(element_error(
                     joint,
-                    format!("limits from {} to {}", Short(least), Short(most)),
+                    format!("limits from {} to {}", ShortNumber(least), ShortNumber(most)),
                     "lower not above upper",
                 )),
                 false if sign < 0.0 => Ok(Some([-most, -least])),
@@ -449,7 +491,7 @@ fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError
 }
 
 /// Finds the end effector: a part with a usual name of one, or else the only fixed part without mass and children.
-fn end(parts: &[Part], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
+fn end(parts: &[ImportedPart], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
     let ranked = parts.iter().enumerate().filter_map(|(i, part)| Some((end_rank(&part.name)?, i)));
     let named = ranked.min().map(|(_, i)| i);
     let is_leaf = |i: usize| !parts.iter().any(|other| other.parent == Some(i));

@@ -9,16 +9,16 @@ use super::hash::Checksum;
 use crate::files::{NewFile, WriteError};
 
 /// The text before the checksum.
-pub const BEFORE: &str = " check ";
+pub const CHECKSUM_PREFIX: &str = " check ";
 
 /// Placeholder of the checksum.
-pub const BLANK: &str = "0000000000000000";
+pub const CHECKSUM_BLANK: &str = "0000000000000000";
 
-const DIGITS: u64 = BLANK.len() as u64;
+const DIGITS: u64 = CHECKSUM_BLANK.len() as u64;
 
 /// The end of a file at which its checksum is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ChecksumPlace {
     /// The first bytes.
     Head,
     /// The last bytes.
@@ -30,10 +30,10 @@ const SEARCHED_BYTES: u64 = 1 << 16;
 
 /// Finds the checksum among the bytes at an end, and returns the offset of its digits and its value. Names of columns
 /// may look like a checksum, but are further from that end.
-fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
-    let before = BEFORE.as_bytes();
+fn find(bytes: &[u8], end: ChecksumPlace) -> Option<(u64, u64)> {
+    let before = CHECKSUM_PREFIX.as_bytes();
     let digits = |at: usize| {
-        let text = bytes.get(at..at + BLANK.len())?;
+        let text = bytes.get(at..at + CHECKSUM_BLANK.len())?;
         // Only lower case digits count, so that each value has one spelling and every changed bit is noticed.
         let spelled = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
         u64::from_str_radix(std::str::from_utf8(text).ok().filter(|_| spelled)?, 16).ok()
@@ -43,7 +43,7 @@ fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
         (window == before).then(|| Some((at as u64, digits(at)?)))?
     };
     let mut windows = bytes.windows(before.len()).enumerate();
-    if end == End::Head { windows.find_map(found) } else { windows.rev().find_map(found) }
+    if end == ChecksumPlace::Head { windows.find_map(found) } else { windows.rev().find_map(found) }
 }
 
 /// A file that is being written and receives its checksum at the end.
@@ -69,17 +69,17 @@ impl CheckedFile {
     ///
     /// # Errors
     /// If not everything could be written.
-    pub fn finish(mut self, end: End) -> Result<(), WriteError> {
+    pub fn finish(mut self, end: ChecksumPlace) -> Result<(), WriteError> {
         if let Err(source) = self.write_checksum(end) {
             return Err(WriteError::Failed { file: self.out.path().into(), source });
         }
         self.out.finish()
     }
 
-    fn write_checksum(&mut self, end: End) -> io::Result<()> {
+    fn write_checksum(&mut self, end: ChecksumPlace) -> io::Result<()> {
         let (from, bytes) = match end {
-            End::Head => (0, std::mem::take(&mut self.head)),
-            End::Tail => self.out.tail(SEARCHED_BYTES)?,
+            ChecksumPlace::Head => (0, std::mem::take(&mut self.head)),
+            ChecksumPlace::Tail => self.out.tail(SEARCHED_BYTES)?,
         };
         let (place, _) = find(&bytes, end).ok_or_else(|| io::Error::other("no place for its checksum"))?;
         self.out.replace(from + place, format!("{:016x}", self.sum.total()).as_bytes())
@@ -103,9 +103,9 @@ impl Write for CheckedFile {
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn holds(file: &mut File, end: End) -> io::Result<Option<bool>> {
+pub fn holds(file: &mut File, end: ChecksumPlace) -> io::Result<Option<bool>> {
     let length = file.metadata()?.len();
-    let from = if end == End::Head { 0 } else { length.saturating_sub(SEARCHED_BYTES) };
+    let from = if end == ChecksumPlace::Head { 0 } else { length.saturating_sub(SEARCHED_BYTES) };
     file.seek(SeekFrom::Start(from))?;
     let mut near = Vec::new();
     file.take(SEARCHED_BYTES).read_to_end(&mut near)?;

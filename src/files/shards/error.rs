@@ -19,6 +19,6 @@ pub enum ShardError {
 }
 
 /// Makes the error of a file.
-pub(super) fn wrong(file: &Path, why: impl Display) -> ShardError {
+pub(super) fn shard_error(file: &Path, why: impl Display) -> ShardError {
     ShardError::Wrong(format!("{}: {why}", file.display()))
 }

@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use super::error::ShardError;
-use super::rows::{Head, StudyId, StudyPart, Writer, outcome_of};
-use crate::study::tolerance::Outcome;
+use super::rows::{ShardHeader, StudyId, StudyPart, Writer, outcome_of};
+use crate::study::tolerance::SampleOutcome;
 
 /// Merges shards, given in any order, into one file, and returns the study and the outcomes of its machines.
 ///
 /// # Errors
 /// If a shard belongs to another study, or if samples are duplicate or missing.
-pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<Outcome>), ShardError> {
+pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<SampleOutcome>), ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
         let part = StudyPart::open(file)?;
@@ -62,7 +62,7 @@ fn missing(first: u64, last: u64) -> ShardError {
 }
 
 /// Returns the difference between two headers in words.
-fn difference(a: &Head, b: &Head) -> String {
+fn difference(a: &ShardHeader, b: &ShardHeader) -> String {
     let (one, two) = (a.study, b.study);
     if one.samples != two.samples {
         return format!("of {} and of {} samples", one.samples, two.samples);

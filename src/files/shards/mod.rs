@@ -9,4 +9,4 @@ mod rows;
 
 pub use error::ShardError;
 pub use merge::merge;
-pub use rows::{Head, StudyId, StudyPart, Writer};
+pub use rows::{ShardHeader, StudyId, StudyPart, Writer};

@@ -18,12 +18,12 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use super::checksum::{self, BEFORE, BLANK, CheckedFile, End};
-use super::error::{ShardError, wrong};
+use super::checksum::{self, CHECKSUM_BLANK, CHECKSUM_PREFIX, CheckedFile, ChecksumPlace};
+use super::error::{ShardError, shard_error};
 use super::hash::fnv_1a;
 use crate::files::{NewFile, WriteError};
 use crate::session::scenario::{Scenario, Tolerance};
-use crate::study::tolerance::Outcome;
+use crate::study::tolerance::SampleOutcome;
 
 /// Identifier of a study. In a CSV file its text is the title of the column of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub struct StudyId {
 impl fmt::Display for StudyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { samples, seed, problem } = self;
-        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{BEFORE}{BLANK}")
+        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{CHECKSUM_PREFIX}{CHECKSUM_BLANK}")
     }
 }
 
@@ -81,14 +81,14 @@ impl StudyId {
 
 /// Header of a file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Head {
+pub struct ShardHeader {
     /// The study to which the file belongs.
     pub study: StudyId,
     /// Names of the columns after that of the sample, with units.
     pub columns: Vec<String>,
 }
 
-impl Head {
+impl ShardHeader {
     /// Makes the header of machines that vary in the named numbers, with units.
     pub fn new(study: StudyId, numbers: impl IntoIterator<Item = String>) -> Self {
         Self { study, columns: numbers.into_iter().chain(OUTCOME_COLUMNS.map(str::to_owned)).collect() }
@@ -96,17 +96,17 @@ impl Head {
 }
 
 /// Returns the outcome of a machine, the last numbers of its row.
-pub fn outcome_of(row: &[f64]) -> Outcome {
-    let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOMES]);
+pub fn outcome_of(row: &[f64]) -> SampleOutcome {
+    let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOME_COUNT]);
     let [peak_moment, peak_force, rms_moment, rms_force] = last;
-    Outcome { peak_moment, peak_force, rms_moment, rms_force }
+    SampleOutcome { peak_moment, peak_force, rms_moment, rms_force }
 }
 
 /// Number of columns of the outcome of a machine.
-pub const OUTCOMES: usize = 4;
+pub const OUTCOME_COUNT: usize = 4;
 
 /// Names of the last columns, the outcome of each machine.
-pub const OUTCOME_COLUMNS: [&str; OUTCOMES] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
+pub const OUTCOME_COLUMNS: [&str; OUTCOME_COUNT] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
 
 /// The kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,8 +117,8 @@ enum Kind {
 
 impl Kind {
     /// Returns the end of its files at which the study is identified.
-    fn end(self) -> End {
-        if self == Self::Csv { End::Head } else { End::Tail }
+    fn end(self) -> ChecksumPlace {
+        if self == Self::Csv { ChecksumPlace::Head } else { ChecksumPlace::Tail }
     }
 }
 
@@ -126,7 +126,7 @@ fn kind_of(file: &Path) -> Result<Kind, ShardError> {
     match file.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("csv") => Ok(Kind::Csv),
         Some("parquet") => Ok(Kind::Parquet),
-        _ => Err(wrong(file, "want a name that ends in .csv or .parquet")),
+        _ => Err(shard_error(file, "want a name that ends in .csv or .parquet")),
     }
 }
 
@@ -166,7 +166,7 @@ impl Writer {
     ///
     /// # Errors
     /// If it cannot be created.
-    pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, ShardError> {
+    pub fn create(file: &Path, force: bool, head: &ShardHeader) -> Result<Self, ShardError> {
         let kind = kind_of(file)?;
         let out = CheckedFile::new(NewFile::create(file, force)?);
         match kind {
@@ -184,8 +184,8 @@ impl Writer {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn machine(&mut self, sample: u64, numbers: &[f64], outcome: &Outcome) -> Result<(), ShardError> {
-        let Outcome { peak_moment, peak_force, rms_moment, rms_force } = *outcome;
+    pub fn machine(&mut self, sample: u64, numbers: &[f64], outcome: &SampleOutcome) -> Result<(), ShardError> {
+        let SampleOutcome { peak_moment, peak_force, rms_moment, rms_force } = *outcome;
         self.row(sample, &[numbers, &[peak_moment, peak_force, rms_moment, rms_force]].concat())
     }
 
@@ -212,7 +212,7 @@ impl Writer {
             Self::Csv(writer) => {
                 let file = writer.get_ref().path().to_owned();
                 let out = writer.into_inner().map_err(|e| csv_failure(&file, e.into_error().into()))?;
-                Ok(out.finish(End::Head)?)
+                Ok(out.finish(ChecksumPlace::Head)?)
             }
             Self::Parquet(groups) => groups.finish(),
         }
@@ -222,17 +222,17 @@ impl Writer {
 fn csv_failure(file: &Path, error: csv::Error) -> ShardError {
     match error.into_kind() {
         csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
-        other => wrong(file, format!("{other:?}")),
+        other => shard_error(file, format!("{other:?}")),
     }
 }
 
 fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> ShardError + use<> {
     let file = file.to_owned();
-    move |e| wrong(&file, format!("{e}: want a Parquet file that can be read, or a place to write one"))
+    move |e| shard_error(&file, format!("{e}: want a Parquet file that can be read, or a place to write one"))
 }
 
 impl Groups {
-    fn create(out: CheckedFile, head: &Head) -> Result<Self, ShardError> {
+    fn create(out: CheckedFile, head: &ShardHeader) -> Result<Self, ShardError> {
         let file = out.path().to_owned();
         let failed = parquet_failure(&file);
         let column = |name: &str, physical| {
@@ -285,7 +285,7 @@ impl Groups {
         }
         let mut out = self.writer.into_inner().map_err(&failed)?;
         out.flush().map_err(|source| WriteError::Failed { file: self.file.clone(), source })?;
-        Ok(out.finish(End::Tail)?)
+        Ok(out.finish(ChecksumPlace::Tail)?)
     }
 }
 
@@ -294,7 +294,7 @@ pub struct StudyPart {
     /// Path of the file.
     pub file: PathBuf,
     /// Its header.
-    pub head: Head,
+    pub head: ShardHeader,
     reader: Reader,
 }
 
@@ -310,12 +310,12 @@ impl StudyPart {
     /// If this program did not write the file, or if the file has changed since.
     pub fn open(file: &Path) -> Result<Self, ShardError> {
         let (kind, mut opened) = plain_file(file)?;
-        let unreadable = |e| wrong(file, e);
+        let unreadable = |e| shard_error(file, e);
         match checksum::holds(&mut opened, kind.end()).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
                 let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
-                Err(wrong(file, why))
+                Err(shard_error(file, why))
             }
             None => Err(foreign(file)),
         }
@@ -370,7 +370,7 @@ impl StudyPart {
         if columns.len() > MAX_COLUMNS || !columns.ends_with(&OUTCOME_COLUMNS.map(str::to_owned)) {
             return Err(foreign(file));
         }
-        let head = Head { study: study.ok_or_else(|| foreign(file))?, columns };
+        let head = ShardHeader { study: study.ok_or_else(|| foreign(file))?, columns };
         Ok(Self { file: file.into(), head, reader })
     }
 
@@ -382,9 +382,9 @@ impl StudyPart {
         self,
         mut see: impl FnMut(u64, &[f64]) -> Result<ControlFlow<()>, ShardError>,
     ) -> Result<(), ShardError> {
-        let Self { file, head: Head { study, columns: names }, reader } = self;
+        let Self { file, head: ShardHeader { study, columns: names }, reader } = self;
         let mut see = |sample: u64, row: &[f64]| {
-            plausible(&study, &names, sample, row).map_err(|why| wrong(&file, why))?;
+            plausible(&study, &names, sample, row).map_err(|why| shard_error(&file, why))?;
             see(sample, row)
         };
         let mut row = vec![0.0; names.len()];
@@ -432,13 +432,13 @@ impl StudyPart {
 
 fn foreign(file: &Path) -> ShardError {
     let why = "want a file that this version's `stillbase tolerance -o` wrote";
-    wrong(file, why)
+    shard_error(file, why)
 }
 
 /// Opens a plain file.
 fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
     let kind = kind_of(file)?;
-    let unreadable = |e| wrong(file, format!("{e}: want a plain file that can be read"));
+    let unreadable = |e| shard_error(file, format!("{e}: want a plain file that can be read"));
     // Opening a pipe would block until its other end is opened.
     let there = std::fs::metadata(file).and_then(|there| crate::files::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
@@ -526,7 +526,7 @@ fn plausible(study: &StudyId, names: &[String], sample: u64, row: &[f64]) -> Res
     if sample >= study.samples {
         return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));
     }
-    let outcomes = row.len().saturating_sub(OUTCOMES);
+    let outcomes = row.len().saturating_sub(OUTCOME_COUNT);
     let wrong = |(i, x): (usize, &f64)| !x.is_finite() || (i >= outcomes && *x < 0.0);
     match row.iter().enumerate().position(wrong) {
         None => Ok(()),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::settings::number::Short;
+use crate::settings::number::ShortNumber;
 
 /// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is refused.
 const MAX_PLAIN_ANGLE_RAD: f64 = 2.0 * TAU;
@@ -18,7 +18,7 @@ const MIN_JUMP_M: f64 = 0.02;
 pub(super) const GAP_FACTOR: f64 = 10.0;
 
 /// The reason why a column is not a continuous motion.
-pub(super) struct Broken {
+pub(super) struct AngleBreak {
     /// Index of the row, from 0.
     pub row: usize,
     what: String,
@@ -26,7 +26,7 @@ pub(super) struct Broken {
     jump: Option<String>,
 }
 
-impl Broken {
+impl AngleBreak {
     fn jump(name: &str, row: usize, step: f64, unit: &str) -> Self {
         let turns = if unit == "rad" { ", which no whole turn explains" } else { "" };
         let rest = format!("{turns}: want a continuous motion, sampled more often if it is that fast");
@@ -47,26 +47,31 @@ impl Broken {
 ///
 /// # Errors
 /// If the angles are not in rad, or if they jump.
-pub(super) fn continuous_angle(rows: &mut [Vec<f64>], k: usize, name: &str, has_unit: bool) -> Result<usize, Broken> {
+pub(super) fn continuous_angle(
+    rows: &mut [Vec<f64>],
+    k: usize,
+    name: &str,
+    has_unit: bool,
+) -> Result<usize, AngleBreak> {
     if let Some(row) = rows.iter().position(|row| !has_unit && row[k].abs() > MAX_PLAIN_ANGLE_RAD) {
         let what = format!(
             "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
              \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
-            Short(rows[row][k])
+            ShortNumber(rows[row][k])
         );
-        return Err(Broken { row, what, jump: None });
+        return Err(AngleBreak { row, what, jump: None });
     }
     let turns = unwrap(rows, k);
     match jump(rows, k, MIN_JUMP_RAD, MAX_STEP_RAD) {
-        Some((row, step)) => Err(Broken::jump(name, row, step, "rad")),
+        Some((row, step)) => Err(AngleBreak::jump(name, row, step, "rad")),
         None => Ok(turns),
     }
 }
 
 /// Checks that column `k` of lengths, m, does not jump. Column 0 is the time, s.
-pub(super) fn continuous_length(rows: &[Vec<f64>], k: usize, name: &str) -> Result<(), Broken> {
+pub(super) fn continuous_length(rows: &[Vec<f64>], k: usize, name: &str) -> Result<(), AngleBreak> {
     match jump(rows, k, MIN_JUMP_M, f64::INFINITY) {
-        Some((row, step)) => Err(Broken::jump(name, row, step, "m")),
+        Some((row, step)) => Err(AngleBreak::jump(name, row, step, "m")),
         None => Ok(()),
     }
 }

@@ -1,19 +1,20 @@
-//! [`Column`]: a column of a table, found by its name, with its unit.
+//! [`TableColumn`]: a column of a table, found by its name, with its unit.
 
 use std::f64::consts::PI;
 
 use crate::mechanics::machine::Machine;
-use crate::settings::range::{clipped, shortened};
+use crate::settings::range::{quote_clipped, shortened};
 
 /// Names of units, each with its value in SI units.
-pub(super) type Units = &'static [(&'static str, f64)];
+pub(super) type UnitNames = &'static [(&'static str, f64)];
 
 pub(super) const DEGREE: f64 = PI / 180.0;
-pub(super) const TIME: Units = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
-pub(super) const ANGLE: Units = &[("rad", 1.0), ("radians", 1.0), ("deg", DEGREE), ("degrees", DEGREE), ("°", DEGREE)];
+pub(super) const TIME: UnitNames = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
+pub(super) const ANGLE: UnitNames =
+    &[("rad", 1.0), ("radians", 1.0), ("deg", DEGREE), ("degrees", DEGREE), ("°", DEGREE)];
 
 /// A column of a table.
-pub(super) struct Column {
+pub(super) struct TableColumn {
     /// Index of the column, from 0.
     pub place: usize,
     pub name: String,
@@ -23,12 +24,16 @@ pub(super) struct Column {
     pub has_unit: bool,
 }
 
-impl Column {
+impl TableColumn {
     /// Finds the column with one of these names among header cells, given as names with units; `None` if there is none.
     ///
     /// # Errors
     /// If there are two such columns, or if the unit is unknown.
-    pub fn find(cells: &[(String, Option<String>)], names: &[String], units: Units) -> Result<Option<Self>, String> {
+    pub fn find(
+        cells: &[(String, Option<String>)],
+        names: &[String],
+        units: UnitNames,
+    ) -> Result<Option<Self>, String> {
         let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
         let Some((place, (name, unit))) = found.next() else { return Ok(None) };
         if let Some((other, _)) = found.next() {
@@ -40,7 +45,7 @@ impl Column {
                 let known = units.iter().find(|(known, _)| known == unit);
                 known.map(|known| known.1).ok_or_else(|| {
                     let all: Vec<&str> = units.iter().map(|u| u.0).collect();
-                    format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
+                    format!("column {name}: unit {:?}: want one of {}", quote_clipped(unit), all.join(", "))
                 })?
             }
         };
@@ -50,7 +55,7 @@ impl Column {
 
 /// Returns the message that a column is missing in a table.
 pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> String {
-    let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
+    let have: Vec<String> = head.iter().map(|word| format!("{:?}", quote_clipped(word))).collect();
     format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
 }
 

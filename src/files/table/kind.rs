@@ -1,35 +1,35 @@
-//! [`Table`]: a motion or a measurement, distinguished by its columns.
+//! [`TableData`]: a motion or a measurement, distinguished by its columns.
 
 use std::path::Path;
 
 use super::column::angles;
 use super::error::TableError;
 use super::measured::{feels, motions_or};
-use super::reader::Reader;
+use super::reader::TableReader;
 use super::samples::{SampleTable, samples_or};
 use crate::files::text::read;
 use crate::mechanics::machine::Machine;
-use crate::settings::text::MOST_BYTES;
-use crate::study::trim::Motion;
+use crate::settings::text::MAX_TEXT_BYTES;
+use crate::study::trim::MeasuredMotion;
 
 /// Content of a table.
 #[derive(Debug)]
-pub enum Table {
+pub enum TableData {
     /// A motion, given by samples.
     Motion(SampleTable),
     /// Measured motions of a built machine, with forces and moments on its base.
-    Measurement(Vec<Motion>),
+    Measurement(Vec<MeasuredMotion>),
 }
 
-impl Table {
-    /// Reads a file that is either a motion or a measurement of a machine: see [`Table::of`].
+impl TableData {
+    /// Reads a file that is either a motion or a measurement of a machine: see [`TableData::of`].
     ///
     /// # Errors
     /// If it cannot be read, or is neither.
     pub fn open(file: &Path, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let name = file.display().to_string();
         let text = read(file).map_err(|e| {
-            let want = format!("want a plain file that can be read, of at most {MOST_BYTES} bytes");
+            let want = format!("want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
             TableError::whole(&name, format!("{e}: {want}"))
         })?;
         Self::of(&text, &name, machine, gaps)
@@ -43,7 +43,7 @@ impl Table {
     /// If the text is neither; the error has its place and the expected columns of both.
     pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let want = head_wanted(machine);
-        match feels(Reader::new(text, file, &want)?.head()) {
+        match feels(TableReader::new(text, file, &want)?.head()) {
             true => motions_or(text, file, machine, &want).map(Self::Measurement),
             false => samples_or(text, file, machine, (None, gaps), &want).map(Self::Motion),
         }

@@ -1,20 +1,20 @@
 //! Measured motions of a built machine, with forces and moments on its base.
 
 use super::angle::{GAP_FACTOR, continuous_angle};
-use super::column::{ANGLE, Column, DEGREE, TIME, Units, angles, named, no_column, unit_in_brackets};
+use super::column::{ANGLE, DEGREE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
-use super::reader::Reader;
+use super::reader::TableReader;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{PerDrive, Vector};
-use crate::settings::number::{Short, counted};
-use crate::settings::range::clipped;
-use crate::study::trim::Motion;
+use crate::settings::number::{ShortNumber, counted};
+use crate::settings::range::quote_clipped;
+use crate::study::trim::MeasuredMotion;
 
 /// Maximum number of rows of a table.
 pub const MAX_ROWS: usize = 100_000;
 
-const RATE: Units = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE)];
-const ACCELERATION: Units = &[
+const RATE: UnitNames = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE)];
+const ACCELERATION: UnitNames = &[
     ("rad/s²", 1.0),
     ("rad/s^2", 1.0),
     ("rad/s2", 1.0),
@@ -23,8 +23,8 @@ const ACCELERATION: Units = &[
     ("deg/s2", DEGREE),
     ("°/s²", DEGREE),
 ];
-const FORCE: Units = &[("n", 1.0), ("mn", 1e-3), ("kn", 1e3)];
-const MOMENT: Units = &[
+const FORCE: UnitNames = &[("n", 1.0), ("mn", 1e-3), ("kn", 1e3)];
+const MOMENT: UnitNames = &[
     ("n m", 1.0),
     ("nm", 1.0),
     ("n·m", 1.0),
@@ -35,7 +35,7 @@ const MOMENT: Units = &[
     ("nmm", 1e-3),
     ("kn m", 1e3),
 ];
-const LENGTH: Units = &[("m", 1.0)];
+const LENGTH: UnitNames = &[("m", 1.0)];
 // Names of the columns of forces and moments on the base.
 const FORCE_X: &[&str] = &["fx", "f_x", "force/x", "force/dynamic_x"];
 const FORCE_Y: &[&str] = &["fy", "f_y", "force/y", "force/dynamic_y"];
@@ -45,14 +45,14 @@ const MAX_BASE_MOTION: f64 = 1e-9;
 
 /// The columns of a measurement.
 struct Columns {
-    time: Column,
-    q: Vec<Column>,
-    qd: Vec<Column>,
-    qdd: Vec<Column>,
-    force: [Column; 2],
-    moment: Column,
+    time: TableColumn,
+    q: Vec<TableColumn>,
+    qd: Vec<TableColumn>,
+    qdd: Vec<TableColumn>,
+    force: [TableColumn; 2],
+    moment: TableColumn,
     /// Position and angle of the base, as far as the file has them.
-    base: Vec<Column>,
+    base: Vec<TableColumn>,
     /// Index of the column with the name of the motion.
     motion: Option<usize>,
 }
@@ -63,7 +63,7 @@ struct Columns {
 ///
 /// # Errors
 /// If the text is not such a table; the error has its place and what was expected.
-pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, TableError> {
+pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<MeasuredMotion>, TableError> {
     motions_or(text, file, machine, &head_wanted(machine))
 }
 
@@ -71,8 +71,13 @@ pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>,
 ///
 /// # Errors
 /// As [`motions`].
-pub(super) fn motions_or(text: &str, file: &str, machine: &Machine, want: &str) -> Result<Vec<Motion>, TableError> {
-    let mut reader = Reader::new(text, file, want)?;
+pub(super) fn motions_or(
+    text: &str,
+    file: &str,
+    machine: &Machine,
+    want: &str,
+) -> Result<Vec<MeasuredMotion>, TableError> {
+    let mut reader = TableReader::new(text, file, want)?;
     let columns = Columns::of(reader.head(), machine, want).map_err(|why| reader.head_error(why))?;
     let all = columns.all();
     let (mut read, mut last, mut count) = (Split::default(), None::<String>, 0);
@@ -107,7 +112,7 @@ pub(super) fn motions_or(text: &str, file: &str, machine: &Machine, want: &str) 
 
 /// Returns whether a table has a column of a force or a moment on the base.
 pub(super) fn feels(head: &csv::StringRecord) -> bool {
-    let is = |cell: &str, names: &[&str], units: Units| names.contains(&name_and_unit(cell, units).0.as_str());
+    let is = |cell: &str, names: &[&str], units: UnitNames| names.contains(&name_and_unit(cell, units).0.as_str());
     head.iter().any(|cell| is(cell, FORCE_X, FORCE) || is(cell, FORCE_Y, FORCE) || is(cell, MOMENT_Z, MOMENT))
 }
 
@@ -139,7 +144,7 @@ impl Split {
         let (first, last) = (now.and_then(|part| part.rows.first()), now.and_then(|part| part.rows.last()));
         let again = first.zip(last).is_some_and(|(first, last)| row[0] <= first[0] && row[0] < last[0]);
         if let Some(last) = last.filter(|last| !again && row[0] <= last[0]) {
-            let (now, before) = (Short(row[0]), Short(last[0]));
+            let (now, before) = (ShortNumber(row[0]), ShortNumber(last[0]));
             return Err(format!("{now} s after {before} s: want times that rise, or begin anew with each motion"));
         }
         if fresh || again || self.named.is_empty() {
@@ -175,13 +180,13 @@ impl Split {
 
 impl Columns {
     fn of(head: &csv::StringRecord, machine: &Machine, wanted: &str) -> Result<Self, String> {
-        let find = |names: &[String], units: Units| {
+        let find = |names: &[String], units: UnitNames| {
             let cells: Vec<_> = head.iter().map(|cell| name_and_unit(cell, units)).collect();
-            Column::find(&cells, names, units)
+            TableColumn::find(&cells, names, units)
         };
         let missing = |name: &str| no_column(name, head, wanted);
         let drives = machine.drives();
-        let each = |short: [&str; 2], long: &str, units: Units| -> Result<Vec<Option<Column>>, String> {
+        let each = |short: [&str; 2], long: &str, units: UnitNames| -> Result<Vec<Option<TableColumn>>, String> {
             let of = |k: usize| {
                 let own = machine.spec().drives[k].name.to_lowercase();
                 let [a, b] = short.map(|word| format!("{word}{}", k + 1));
@@ -190,15 +195,16 @@ impl Columns {
             (0..drives).map(of).collect()
         };
         // Rates and accelerations are used only if all drives have them.
-        let all = |of: Vec<Option<Column>>| of.into_iter().collect::<Option<Vec<Column>>>().unwrap_or_default();
-        let want = |found: Option<Column>, name: &str| found.ok_or_else(|| missing(name));
+        let all =
+            |of: Vec<Option<TableColumn>>| of.into_iter().collect::<Option<Vec<TableColumn>>>().unwrap_or_default();
+        let want = |found: Option<TableColumn>, name: &str| found.ok_or_else(|| missing(name));
         // A file with more drives belongs to another machine.
         let number = |cell: &str| {
             cell.to_lowercase().strip_prefix('q').and_then(|rest| rest.trim_start_matches('_').parse::<usize>().ok())
         };
         if let Some(other) = head.iter().find(|cell| number(cell).is_some_and(|k| k > drives)) {
             let has = counted(drives, "drive");
-            return Err(format!("column {} is of no drive: {} has {has}", clipped(other), machine.name()));
+            return Err(format!("column {} is of no drive: {} has {has}", quote_clipped(other), machine.name()));
         }
         let q = each(["q", "q"], "angle", ANGLE)?.into_iter().enumerate();
         Ok(Self {
@@ -221,7 +227,7 @@ impl Columns {
     }
 
     /// Returns every column of numbers, in the order of the numbers of a row.
-    fn all(&self) -> Vec<&Column> {
+    fn all(&self) -> Vec<&TableColumn> {
         let angles = self.q.iter().chain(&self.qd).chain(&self.qdd);
         [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
     }
@@ -237,14 +243,14 @@ impl Columns {
         })
     }
 
-    fn motion_of(&self, rows: &[Vec<f64>]) -> Motion {
+    fn motion_of(&self, rows: &[Vec<f64>]) -> MeasuredMotion {
         let n = self.q.len();
-        let list = |from: usize, columns: &[Column]| match columns.is_empty() {
+        let list = |from: usize, columns: &[TableColumn]| match columns.is_empty() {
             true => Vec::new(),
             false => rows.iter().map(|row| PerDrive::from_fn(n, |k| row[from + k])).collect(),
         };
         let force = 1 + n + self.qd.len() + self.qdd.len();
-        Motion {
+        MeasuredMotion {
             t: rows.iter().map(|row| row[0]).collect(),
             q: list(1, &self.q),
             qd: list(1 + n, &self.qd),
@@ -257,7 +263,7 @@ impl Columns {
 
 /// Splits a header cell into name and unit: `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone. Without
 /// brackets only one of `units` counts as a unit.
-fn name_and_unit(cell: &str, units: Units) -> (String, Option<String>) {
+fn name_and_unit(cell: &str, units: UnitNames) -> (String, Option<String>) {
     let cell = cell.trim().to_lowercase();
     if let Some(both) = unit_in_brackets(&cell) {
         return both;

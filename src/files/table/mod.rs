@@ -5,7 +5,7 @@
 //! |---|---|
 //! | a motion given by samples of the drive angles or of the end effector | [`samples()`] |
 //! | measured motions of a built machine, with forces and moments on its base | [`motions`] |
-//! | either, distinguished by the columns | [`Table`] |
+//! | either, distinguished by the columns | [`TableData`] |
 
 mod angle;
 mod column;
@@ -16,6 +16,6 @@ mod reader;
 mod samples;
 
 pub use error::TableError;
-pub use kind::Table;
+pub use kind::TableData;
 pub use measured::{MAX_ROWS, motions};
 pub use samples::{SampleTable, samples};

@@ -1,8 +1,8 @@
-//! [`Reader`]: reads a header, and rows of numbers with their lines.
+//! [`TableReader`]: reads a header, and rows of numbers with their lines.
 
-use super::column::Column;
+use super::column::TableColumn;
 use super::error::TableError;
-use crate::settings::range::clipped;
+use crate::settings::range::quote_clipped;
 
 /// Largest magnitude of a number, in SI units.
 const MAX_NUMBER: f64 = 1e11;
@@ -10,7 +10,7 @@ const MAX_NUMBER: f64 = 1e11;
 const MAX_COLUMNS: usize = 1000;
 
 /// Reads the rows of a table, one after the other.
-pub(super) struct Reader<'a> {
+pub(super) struct TableReader<'a> {
     /// Name used in errors.
     file: &'a str,
     head: csv::StringRecord,
@@ -18,13 +18,13 @@ pub(super) struct Reader<'a> {
 }
 
 /// A row, and its line, counted from 1.
-pub(super) struct Row<'a> {
+pub(super) struct TableRow<'a> {
     file: &'a str,
     pub line: u64,
     cells: csv::StringRecord,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> TableReader<'a> {
     /// Reads the header; errors describe the expected one by `want`. The delimiter is the semicolon or the tab if the
     /// first line that is not a comment has one, otherwise the comma.
     ///
@@ -71,14 +71,14 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If the text is not CSV.
-    pub fn row(&mut self) -> Result<Option<Row<'a>>, TableError> {
+    pub fn row(&mut self) -> Result<Option<TableRow<'a>>, TableError> {
         let Some(cells) = self.records.next() else { return Ok(None) };
         let cells = cells.map_err(|e| TableError::whole(self.file, format!("{e}: want a CSV file")))?;
-        Ok(Some(Row { file: self.file, line: line_of(&cells), cells }))
+        Ok(Some(TableRow { file: self.file, line: line_of(&cells), cells }))
     }
 }
 
-impl Row<'_> {
+impl TableRow<'_> {
     /// Returns the text of a column.
     pub fn cell(&self, place: usize) -> Option<&str> {
         self.cells.get(place)
@@ -88,17 +88,17 @@ impl Row<'_> {
     ///
     /// # Errors
     /// If one is missing, or is not a number within ±1e11.
-    pub fn numbers<'c>(&self, columns: impl IntoIterator<Item = &'c Column>) -> Result<Vec<f64>, TableError> {
+    pub fn numbers<'c>(&self, columns: impl IntoIterator<Item = &'c TableColumn>) -> Result<Vec<f64>, TableError> {
         columns.into_iter().map(|column| self.number(column)).collect()
     }
 
-    fn number(&self, column: &Column) -> Result<f64, TableError> {
+    fn number(&self, column: &TableColumn) -> Result<f64, TableError> {
         let name = &column.name;
         let Some(cell) = self.cell(column.place).filter(|cell| !cell.is_empty()) else {
             return Err(self.error(format!("column {name}: nothing there: want a number")));
         };
         cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MAX_NUMBER).ok_or_else(|| {
-            let cell = clipped(cell);
+            let cell = quote_clipped(cell);
             self.error(format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
         })
     }

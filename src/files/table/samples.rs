@@ -1,17 +1,17 @@
 //! A motion given by samples of the drive angles or of the end effector over time.
 
 use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
-use super::column::{ANGLE, Column, TIME, Units, angles, named, no_column, unit_in_brackets};
+use super::column::{ANGLE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
-use super::reader::Reader;
+use super::reader::TableReader;
 use crate::mechanics::machine::Machine;
 use crate::planning::curves::given::MAX_SAMPLES;
-use crate::planning::curves::spline::FEWEST;
+use crate::planning::curves::spline::MIN_SPLINE_SAMPLES;
 use crate::planning::curves::{Coordinates, Samples};
-use crate::settings::number::{Short, counted};
+use crate::settings::number::{ShortNumber, counted};
 use crate::study::advice::{Advice, Remedy};
 
-const LENGTH: Units = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
+const LENGTH: UnitNames = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 
 /// Samples that were read.
 #[derive(Debug)]
@@ -53,14 +53,14 @@ pub(super) fn samples_or(
     (wanted, gaps): (Option<Coordinates>, bool),
     want: &str,
 ) -> Result<SampleTable, TableError> {
-    let mut reader = Reader::new(text, file, want)?;
+    let mut reader = TableReader::new(text, file, want)?;
     let columns = Columns::of(reader.head(), machine, wanted, want).map_err(|why| reader.head_error(why))?;
     let time = &columns.all[0].name;
     let (mut rows, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
     while let Some(read) = reader.row()? {
         let row = read.numbers(&columns.all)?;
         if let Some(before) = rows.last().map(|row| row[0]).filter(|before| row[0] <= *before) {
-            let (now, before) = (Short(row[0]), Short(before));
+            let (now, before) = (ShortNumber(row[0]), ShortNumber(before));
             return Err(read.error(format!("column {time}: {now} s after {before} s: want times that rise")));
         }
         rows.push(row);
@@ -69,8 +69,8 @@ pub(super) fn samples_or(
             return Err(read.error(format!("more than {MAX_SAMPLES} rows: want fewer, such as every second one")));
         }
     }
-    if rows.len() < FEWEST {
-        let why = format!("{} of numbers: want at least {FEWEST}", counted(rows.len(), "row"));
+    if rows.len() < MIN_SPLINE_SAMPLES {
+        let why = format!("{} of numbers: want at least {MIN_SPLINE_SAMPLES}", counted(rows.len(), "row"));
         return Err(TableError::whole(file, why));
     }
     if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
@@ -82,7 +82,7 @@ pub(super) fn samples_or(
         return Err(TableError { why, ..TableError::at(file, lines[i], "") });
     }
     let mut unwrapped = vec![0; columns.all.len() - 1];
-    for (k, Column { name, has_unit, .. }) in columns.all.iter().enumerate().skip(1) {
+    for (k, TableColumn { name, has_unit, .. }) in columns.all.iter().enumerate().skip(1) {
         let turns = match columns.coordinates {
             Coordinates::Drives => continuous_angle(&mut rows, k, name, *has_unit),
             Coordinates::EndEffector => continuous_length(&rows, k, name).map(|()| 0),
@@ -101,7 +101,7 @@ fn head_wanted(machine: &Machine) -> String {
 struct Columns {
     coordinates: Coordinates,
     /// All columns, the time first.
-    all: Vec<Column>,
+    all: Vec<TableColumn>,
 }
 
 impl Columns {
@@ -112,14 +112,14 @@ impl Columns {
         want: &str,
     ) -> Result<Self, String> {
         let cells: Vec<(String, Option<String>)> = head.iter().map(name_and_unit).collect();
-        let find = |names: &[String], units: Units| Column::find(&cells, names, units);
+        let find = |names: &[String], units: UnitNames| TableColumn::find(&cells, names, units);
         let missing = |name: &str| no_column(name, head, want);
         let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;
         let drive = |k: usize| {
             let own = &machine.spec().drives[k].name;
             find(&[format!("q{}", k + 1), format!("q_{}", k + 1), format!("angle/{}", own.to_lowercase())], ANGLE)
         };
-        let drives: Vec<Option<Column>> = (0..machine.drives()).map(drive).collect::<Result<_, _>>()?;
+        let drives: Vec<Option<TableColumn>> = (0..machine.drives()).map(drive).collect::<Result<_, _>>()?;
         let tip = [find(&named(&["x", "tip/x"]), LENGTH)?, find(&named(&["y", "tip/y"]), LENGTH)?];
         let has_drives = drives.iter().any(Option::is_some) || tip.iter().all(Option::is_none);
         let usual = if has_drives { Coordinates::Drives } else { Coordinates::EndEffector };

@@ -17,7 +17,7 @@ pub enum Body {
 
 /// A body, and the link that carries it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct CarriedBody {
     /// The body.
     pub body: Body,
     /// The link that it is, or that carries it.
@@ -26,7 +26,7 @@ pub struct Source {
 
 /// One condition of (7) or (8), with its residual.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Term {
+pub struct BalanceTerm {
     /// The condition.
     pub condition: Condition,
     /// Its residual, computed from [`Inertia`]: kg m for (7), kg m² for (8).
@@ -37,7 +37,7 @@ pub struct Term {
     pub balanced: bool,
 }
 
-impl Term {
+impl BalanceTerm {
     /// Returns the sum of the magnitudes of all contributions: the residual if all had the same direction.
     pub fn gross(&self) -> f64 {
         self.parts.iter().map(|part| part.norm()).sum()
@@ -49,9 +49,9 @@ impl Term {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakdown {
     /// The links, the counterweights, and the payload if there is one.
-    pub sources: Vec<Source>,
+    pub sources: Vec<CarriedBody>,
     /// The conditions: first (7) by drives, then (8) by pairs of drives.
-    pub terms: Vec<Term>,
+    pub terms: Vec<BalanceTerm>,
 }
 
 impl Breakdown {
@@ -63,19 +63,19 @@ impl Breakdown {
             let left = condition.left(&inertia);
             let balanced = left.norm() <= condition.nothing(&inertia);
             let parts = masses.iter().map(|(_, mass, a)| condition.of(*mass, a)).collect();
-            Term { condition, left, parts, balanced }
+            BalanceTerm { condition, left, parts, balanced }
         });
         Self { terms: terms.collect(), sources: masses.iter().map(|(source, ..)| *source).collect() }
     }
 
     /// Returns the contribution of a link to a term, with all bodies that it carries.
-    pub fn of_link(&self, term: &Term, link: usize) -> Vector {
+    pub fn of_link(&self, term: &BalanceTerm, link: usize) -> Vector {
         let both = self.sources.iter().zip(&term.parts);
         both.filter(|(source, _)| source.link == link).map(|(_, part)| *part).sum()
     }
 }
 
-type Mass = (Source, f64, [Vector; MAX_DRIVES]);
+type Mass = (CarriedBody, f64, [Vector; MAX_DRIVES]);
 
 /// Returns each body, its mass, kg, and its CM as a sum of unit vectors, m.
 fn masses(machine: &Machine) -> Vec<Mass> {
@@ -86,15 +86,15 @@ fn masses(machine: &Machine) -> Vec<Mass> {
         a
     };
     let links = spec.links.iter().enumerate().map(|(link, body)| {
-        let source = Source { body: Body::Link(link), link };
+        let source = CarriedBody { body: Body::Link(link), link };
         (source, body.mass, on(link, body.com, body.com_normal))
     });
     let weights = spec.counterweights.iter().enumerate().filter_map(|(i, weight)| {
         let link = spec.links.iter().position(|link| link.name == weight.link)?;
-        Some((Source { body: Body::Counterweight(i), link }, weight.mass, on(link, weight.at, 0.0)))
+        Some((CarriedBody { body: Body::Counterweight(i), link }, weight.mass, on(link, weight.at, 0.0)))
     });
     let payload = (spec.payload.mass > 0.0).then(|| {
-        let source = Source { body: Body::Payload, link: machine.end_link() };
+        let source = CarriedBody { body: Body::Payload, link: machine.end_link() };
         (source, spec.payload.mass, machine.payload_chain())
     });
     links.chain(weights).chain(payload).collect()

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::condition::Condition;
-use super::plane::{Equation, Plane};
+use super::plane::{LinearEquation, SolutionSpace};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::settings::number::counted;
 use crate::settings::word::{Choice, words};
@@ -117,12 +117,12 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     }
     let (a, k) = conditions(machine);
     // The residual is checked on the finished machine.
-    let equation = |row: usize| Equation {
+    let equation = |row: usize| LinearEquation {
         a: penalty.iter().enumerate().map(|(j, p)| a[(row, j)] / p).collect(),
         right: k[row],
         tolerance: f64::INFINITY,
     };
-    let x = Plane::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).start;
+    let x = SolutionSpace::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).start;
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
         let (body, com) = (&links[j], x[j] / penalty[j]);

@@ -2,7 +2,7 @@
 //!
 //! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are n + n(n−1)/2 conditions, each a sum over the bodies of the
 //! machine: [`Breakdown`] lists the contributions. The conditions are linear in the mass m of a body and its first
-//! moment m l_c. So [`design`](design()) solves them in one step for all centres of mass. [`keep`](keep()) solves them
+//! moment m l_c. So [`design`](design()) solves them in one step for all centres of mass. [`rebalance`](rebalance()) solves them
 //! with the least change of chosen parameters within bounds.
 
 mod basis;
@@ -14,9 +14,12 @@ mod keep;
 mod parameter;
 mod plane;
 
-pub use breakdown::{Body, Breakdown, Source, Term};
+pub use breakdown::{BalanceTerm, Body, Breakdown, CarriedBody};
 pub use condition::Condition;
 pub use design::{DesignError, Preset, conditions, design};
-pub use keep::{Adjusted, Hold, Keep, Kept, Limit, NotKept, Relief, Side, keep, keep_with, unreachable_by_changes};
-pub use parameter::{Parameter, Quantity};
-pub(crate) use plane::{Equation, Plane};
+pub use keep::{
+    LimitRelaxation, LimitSide, ListedParameter, ParameterBounds, ParameterLimit, RebalanceError, RebalanceRequest,
+    RebalancedMachine, rebalance, rebalance_with, unreachable_by_changes,
+};
+pub use parameter::{BodyQuantity, Parameter};
+pub(crate) use plane::{LinearEquation, SolutionSpace};

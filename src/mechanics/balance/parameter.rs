@@ -6,7 +6,7 @@ use crate::settings::range::Range;
 
 /// A quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Quantity {
+pub enum BodyQuantity {
     /// Its mass, kg.
     Mass,
     /// Position of its centre of mass along the link, from the root, m.
@@ -21,28 +21,29 @@ pub struct Parameter {
     /// The body.
     pub body: Body,
     /// The quantity of the body.
-    pub quantity: Quantity,
+    pub quantity: BodyQuantity,
 }
 
 impl Parameter {
     /// Makes the parameter of a body.
-    pub const fn new(body: Body, quantity: Quantity) -> Self {
+    pub const fn new(body: Body, quantity: BodyQuantity) -> Self {
         Self { body, quantity }
     }
 
     /// Returns the parameter for the position of a link's centre of mass along the link.
     pub const fn com(link: usize) -> Self {
-        Self::new(Body::Link(link), Quantity::Along)
+        Self::new(Body::Link(link), BodyQuantity::Along)
     }
 
     /// Returns all parameters of a machine: mass and both positions of each link, mass and position of each
     /// counterweight.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let links = (0..machine.links().len()).flat_map(|j| {
-            [Quantity::Mass, Quantity::Along, Quantity::Across].map(|quantity| Self::new(Body::Link(j), quantity))
+            [BodyQuantity::Mass, BodyQuantity::Along, BodyQuantity::Across]
+                .map(|quantity| Self::new(Body::Link(j), quantity))
         });
         let weights = (0..machine.spec().counterweights.len()).flat_map(|i| {
-            [Quantity::Mass, Quantity::Along].map(|quantity| Self::new(Body::Counterweight(i), quantity))
+            [BodyQuantity::Mass, BodyQuantity::Along].map(|quantity| Self::new(Body::Counterweight(i), quantity))
         });
         links.chain(weights).collect()
     }
@@ -50,10 +51,10 @@ impl Parameter {
     /// Returns its key, as `--set` names it.
     pub fn key(self, machine: &Machine) -> String {
         let what = match (self.quantity, self.body) {
-            (Quantity::Mass, _) => "mass",
-            (Quantity::Along, Body::Counterweight(_)) => "at",
-            (Quantity::Along, _) => "com",
-            (Quantity::Across, _) => "com_normal",
+            (BodyQuantity::Mass, _) => "mass",
+            (BodyQuantity::Along, Body::Counterweight(_)) => "at",
+            (BodyQuantity::Along, _) => "com",
+            (BodyQuantity::Across, _) => "com_normal",
         };
         match self.body {
             Body::Link(j) => format!("link.{}.{what}", machine.links()[j].name),
@@ -68,17 +69,17 @@ impl Parameter {
             Body::Link(j) => {
                 let link = spec.links.get(j)?;
                 Some(match self.quantity {
-                    Quantity::Mass => link.mass,
-                    Quantity::Along => link.com,
-                    Quantity::Across => link.com_normal,
+                    BodyQuantity::Mass => link.mass,
+                    BodyQuantity::Along => link.com,
+                    BodyQuantity::Across => link.com_normal,
                 })
             }
             Body::Counterweight(i) => {
                 let weight = spec.counterweights.get(i)?;
                 match self.quantity {
-                    Quantity::Mass => Some(weight.mass),
-                    Quantity::Along => Some(weight.at),
-                    Quantity::Across => None,
+                    BodyQuantity::Mass => Some(weight.mass),
+                    BodyQuantity::Along => Some(weight.at),
+                    BodyQuantity::Across => None,
                 }
             }
             Body::Payload => None,
@@ -88,8 +89,8 @@ impl Parameter {
     /// Returns its range.
     pub const fn range(self) -> Range {
         match self.quantity {
-            Quantity::Mass => ranges::MASS,
-            Quantity::Along | Quantity::Across => ranges::PLACE,
+            BodyQuantity::Mass => ranges::MASS,
+            BodyQuantity::Along | BodyQuantity::Across => ranges::PLACE,
         }
     }
 
@@ -97,16 +98,16 @@ impl Parameter {
     /// inertia of a link about its own centre of mass stays.
     pub(crate) fn set(self, spec: &mut MachineSpec, value: f64) {
         match (self.body, self.quantity) {
-            (Body::Link(j), Quantity::Mass) => spec.links[j].mass = value,
-            (Body::Link(j), Quantity::Along) => spec.links[j].com = value,
-            (Body::Link(j), Quantity::Across) => spec.links[j].com_normal = value,
-            (Body::Counterweight(i), Quantity::Mass) => {
+            (Body::Link(j), BodyQuantity::Mass) => spec.links[j].mass = value,
+            (Body::Link(j), BodyQuantity::Along) => spec.links[j].com = value,
+            (Body::Link(j), BodyQuantity::Across) => spec.links[j].com_normal = value,
+            (Body::Counterweight(i), BodyQuantity::Mass) => {
                 let weight = &mut spec.counterweights[i];
                 weight.radius *= (value / weight.mass).sqrt();
                 weight.mass = value;
             }
-            (Body::Counterweight(i), Quantity::Along) => spec.counterweights[i].at = value,
-            (Body::Counterweight(_), Quantity::Across) | (Body::Payload, _) => {}
+            (Body::Counterweight(i), BodyQuantity::Along) => spec.counterweights[i].at = value,
+            (Body::Counterweight(_), BodyQuantity::Across) | (Body::Payload, _) => {}
         }
     }
 }

@@ -1,24 +1,24 @@
-//! [`Plane`]: the solution set of linear equations, and its point nearest to the start within bounds.
+//! [`SolutionSpace`]: the solution set of linear equations, and its point nearest to the start within bounds.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{extended, least_squares};
 use super::distance::nearest;
-use crate::convex::Row;
+use crate::convex::LinearRow;
 
 /// Relative pivot tolerance: a row whose independent part is at most this fraction of it is treated as dependent.
 const RANK_TOLERANCE: f64 = 1e-11;
 
 /// One equation a · y = right, with the tolerance of its residual.
 #[derive(Clone, Debug)]
-pub(crate) struct Equation {
+pub(crate) struct LinearEquation {
     pub a: Vec<f64>,
     pub right: f64,
     pub tolerance: f64,
 }
 
 /// The solutions y = start + free z of linear equations, for any z.
-pub(crate) struct Plane {
+pub(crate) struct SolutionSpace {
     /// Particular solution nearest to 0.
     pub start: DVector<f64>,
     /// Orthonormal basis of the null space, in columns.
@@ -29,16 +29,16 @@ pub(crate) struct Plane {
     pub exists: bool,
 }
 
-impl Plane {
+impl SolutionSpace {
     /// Solves equations over `n` unknowns; the least squares solution if they contradict each other.
-    pub fn of(equations: &[Equation], n: usize) -> Self {
+    pub fn of(equations: &[LinearEquation], n: usize) -> Self {
         if n == 0 {
             let missed: Vec<f64> = equations.iter().map(|row| -row.right).collect();
             let exists = equations.iter().all(|row| row.right.abs() <= row.tolerance);
             return Self { start: DVector::zeros(0), free: DMatrix::zeros(0, 0), missed, exists };
         }
         // Rows are scaled to unit norm, so that kg m and kg m² count alike.
-        let size = |row: &Equation| row.a.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let size = |row: &LinearEquation| row.a.iter().map(|a| a * a).sum::<f64>().sqrt();
         let sized: Vec<_> = equations.iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).collect();
         let rows: Vec<DVector<f64>> =
             sized.iter().map(|(row, size)| DVector::from_vec(row.a.clone()) / *size).collect();
@@ -51,7 +51,7 @@ impl Plane {
         let right = DVector::from_fn(rows.len(), |i, _| sized[i].0.right / sized[i].1);
         let by = least_squares(&within, &right).unwrap_or_else(|| DVector::zeros(rank));
         let start = (0..rank).fold(DVector::zeros(n), |sum, j| sum + &all[j] * by[j]);
-        let missed = |row: &Equation| row.a.iter().zip(start.iter()).map(|(a, y)| a * y).sum::<f64>() - row.right;
+        let missed = |row: &LinearEquation| row.a.iter().zip(start.iter()).map(|(a, y)| a * y).sum::<f64>() - row.right;
         let missed: Vec<f64> = equations.iter().map(missed).collect();
         let exists = equations.iter().zip(&missed).all(|(row, missed)| missed.abs() <= row.tolerance);
         let free = DMatrix::from_fn(n, n - rank, |i, j| all[rank + j][i]);
@@ -62,14 +62,15 @@ impl Plane {
     ///
     /// # Errors
     /// If there is no such point; returns the weight of each bound in the certificate of infeasibility.
-    pub fn nearest(&self, bounds: &[Row]) -> Result<DVector<f64>, Vec<f64>> {
+    pub fn nearest(&self, bounds: &[LinearRow]) -> Result<DVector<f64>, Vec<f64>> {
         let (m, c) = self.cut(bounds);
         Ok(&self.start + &self.free * nearest(&m, &c)?)
     }
 
     /// Returns the bounds as constraints on z: M z ≤ c.
-    pub fn cut(&self, bounds: &[Row]) -> (DMatrix<f64>, DVector<f64>) {
-        let at = |row: &Row, y: &dyn Fn(usize) -> f64| row.terms.iter().map(|&(j, value)| value * y(j)).sum::<f64>();
+    pub fn cut(&self, bounds: &[LinearRow]) -> (DMatrix<f64>, DVector<f64>) {
+        let at =
+            |row: &LinearRow, y: &dyn Fn(usize) -> f64| row.terms.iter().map(|&(j, value)| value * y(j)).sum::<f64>();
         let k = self.free.ncols();
         let m = DMatrix::from_fn(bounds.len(), k, |i, j| at(&bounds[i], &|l| self.free[(l, j)]));
         let c = DVector::from_fn(bounds.len(), |i, _| bounds[i].right - at(&bounds[i], &|l| self.start[l]));

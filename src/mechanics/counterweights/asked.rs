@@ -1,8 +1,8 @@
-//! [`Weighing`]: a request for counterweights.
+//! [`CounterweightSpec`]: a request for counterweights.
 
 use std::f64::consts::PI;
 
-use super::refusal::NoWeights;
+use super::refusal::CounterweightError;
 use crate::mechanics::machine::{Machine, ranges};
 use crate::settings::range::Range;
 
@@ -41,9 +41,9 @@ pub const MATERIALS: [(&str, f64); 5] =
     [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
 
 /// Range of the density of a plate.
-pub const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
+pub const DENSITY_RANGE: Range = Range::new(1.0, 1e5, "kg/m³");
 /// Range of the thickness of a plate.
-pub const THICKNESS: Range = Range::new(1e-4, 1.0, "m");
+pub const THICKNESS_RANGE: Range = Range::new(1e-4, 1.0, "m");
 
 impl Disc {
     /// Steel, 30 mm thick.
@@ -104,7 +104,7 @@ impl Objective {
 
 /// The free parameter of a motor's rotor. The other of the two keeps its value in the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Free {
+pub enum RotorFreedom {
     /// Inertia, kg m², with lower and upper bound.
     Inertia([f64; 2]),
     /// Gear ratio, with lower and upper bound: turns for one turn of its drive, negative if it reverses.
@@ -117,12 +117,12 @@ pub struct FreeRotor {
     /// The drive to whose motor it belongs, counted from 0.
     pub drive: usize,
     /// The free parameter.
-    pub free: Free,
+    pub free: RotorFreedom,
 }
 
 /// A request for counterweights.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Weighing {
+pub struct CounterweightSpec {
     /// Links that may carry a counterweight.
     pub sites: Vec<Sites>,
     /// Material of the counterweights.
@@ -144,7 +144,7 @@ pub struct Weighing {
 
 const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
-impl Weighing {
+impl CounterweightSpec {
     /// Minimises an objective, without other bounds.
     pub fn least(objective: Objective, sites: Vec<Sites>, disc: Disc) -> Self {
         let (most_mass, most_inertia, clearance, payload) = (None, None, None, None);
@@ -152,17 +152,19 @@ impl Weighing {
     }
 
     /// Checks that the request is valid for a machine.
-    pub(super) fn check(&self, machine: &Machine) -> Result<(), NoWeights> {
+    pub(super) fn check(&self, machine: &Machine) -> Result<(), CounterweightError> {
         let within = |what: &str, value: f64, range: Range| match range.contains(value) {
             true => Ok(()),
-            false => Err(NoWeights::out(what, value, range)),
+            false => Err(CounterweightError::out(what, value, range)),
         };
         let positive = |what: &str, value: Option<f64>| match value {
-            Some(value) if !(value.is_finite() && value > 0.0) => Err(NoWeights::out(what, value, "a number above 0")),
+            Some(value) if !(value.is_finite() && value > 0.0) => {
+                Err(CounterweightError::out(what, value, "a number above 0"))
+            }
             _ => Ok(()),
         };
-        within("density", self.disc.density, DENSITY)?;
-        within("thickness", self.disc.thickness, THICKNESS)?;
+        within("density", self.disc.density, DENSITY_RANGE)?;
+        within("thickness", self.disc.thickness, THICKNESS_RANGE)?;
         positive("the most Σ D_k may be, kg m²,", self.most_inertia)?;
         positive("the most that may be added, kg,", self.most_mass)?;
         if let Some(clearance) = self.clearance {
@@ -171,7 +173,7 @@ impl Weighing {
         let Objective { mass, inertia, momentum, torque, .. } = self.objective;
         for (what, value) in [("mass", mass), ("inertia", inertia), ("momentum", momentum), ("torque", torque)] {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(NoWeights::out(&format!("the weight of {what}"), value, "a number not below 0"));
+                return Err(CounterweightError::out(&format!("the weight of {what}"), value, "a number not below 0"));
             }
         }
         if let Some(ends) = self.payload {
@@ -180,10 +182,10 @@ impl Weighing {
         for (j, site) in self.sites.iter().enumerate() {
             let Some(link) = machine.links().get(site.link) else {
                 let want = "one of the machine's links, counted from 0";
-                return Err(NoWeights::out("link number", site.link as f64, want));
+                return Err(CounterweightError::out("link number", site.link as f64, want));
             };
             let bad = |what: &str, value, want: &str| {
-                Err(NoWeights::out(&format!("link {}: {what}", link.name), value, want))
+                Err(CounterweightError::out(&format!("link {}: {what}", link.name), value, want))
             };
             if let Some(end) = [site.from, site.to].into_iter().find(|x| !x.is_finite()) {
                 return bad("a range that ends at", end, "finite places, m");
@@ -195,28 +197,28 @@ impl Weighing {
                 return bad("at most, kg,", site.most, "a mass above 0");
             }
             if self.sites[..j].iter().any(|other| other.link == site.link) {
-                return Err(NoWeights::Twice(link.name.clone()));
+                return Err(CounterweightError::Twice(link.name.clone()));
             }
         }
         self.check_rotors(machine)
     }
 
-    fn check_rotors(&self, machine: &Machine) -> Result<(), NoWeights> {
+    fn check_rotors(&self, machine: &Machine) -> Result<(), CounterweightError> {
         for (i, FreeRotor { drive, free }) in self.rotors.iter().enumerate() {
             let Some(of) = machine.spec().drives.get(*drive) else {
                 let want = "one of the machine's drives, counted from 0";
-                return Err(NoWeights::out("drive number", *drive as f64, want));
+                return Err(CounterweightError::out("drive number", *drive as f64, want));
             };
             if self.rotors[..i].iter().any(|other| other.drive == *drive) {
-                return Err(NoWeights::RotorTwice(of.name.clone()));
+                return Err(CounterweightError::RotorTwice(of.name.clone()));
             }
             let what = format!("the rotor of drive {}:", of.name);
             match free {
-                Free::Inertia(ends) => rising(&format!("{what} inertia"), *ends, ranges::INERTIA)?,
-                Free::Ratio(ends) => rising(&format!("{what} ratio"), *ends, ranges::RATIO)?,
+                RotorFreedom::Inertia(ends) => rising(&format!("{what} inertia"), *ends, ranges::INERTIA)?,
+                RotorFreedom::Ratio(ends) => rising(&format!("{what} ratio"), *ends, ranges::RATIO)?,
             }
-            if matches!(free, Free::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
-                return Err(NoWeights::NoRotor(of.name.clone()));
+            if matches!(free, RotorFreedom::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
+                return Err(CounterweightError::NoRotor(of.name.clone()));
             }
         }
         Ok(())
@@ -224,12 +226,12 @@ impl Weighing {
 }
 
 /// Checks that two bounds are in a range, the first not above the second.
-fn rising(what: &str, [low, high]: [f64; 2], range: Range) -> Result<(), NoWeights> {
+fn rising(what: &str, [low, high]: [f64; 2], range: Range) -> Result<(), CounterweightError> {
     if let Some(end) = [low, high].into_iter().find(|end| !range.contains(*end)) {
-        return Err(NoWeights::out(what, end, range));
+        return Err(CounterweightError::out(what, end, range));
     }
     match low <= high {
         true => Ok(()),
-        false => Err(NoWeights::out(&format!("{what} up to"), high, "an end not below its start")),
+        false => Err(CounterweightError::out(&format!("{what} up to"), high, "an end not below its start")),
     }
 }

@@ -1,14 +1,14 @@
-//! [`Cell`]: a range of mass and position of a counterweight, and upper bounds of its inertia there.
+//! [`SearchCell`]: a range of mass and position of a counterweight, and upper bounds of its inertia there.
 //!
 //! If D_k is negative, more inertia reduces |D_k|, so s²/w and w² need upper bounds. For x from a to b,
 //! s²/w ≤ (a + b) s − a b w. For w from a to b, w² ≤ (a + b) w − a b. Both are equalities at a and at b.
 
-use super::asked::{Sites, Weighing};
-use crate::convex::{Program, Row};
+use super::asked::{CounterweightSpec, Sites};
+use crate::convex::{LinearRow, Program};
 
 /// Range of mass, kg, and of position, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cell {
+pub(super) struct SearchCell {
     pub mass: [f64; 2],
     pub at: [f64; 2],
 }
@@ -16,16 +16,16 @@ pub(super) struct Cell {
 /// Cells narrower than this, relative to 1 plus the magnitude of their lower bound, are not split.
 const MIN_WIDTH: f64 = 1e-6;
 
-impl Cell {
+impl SearchCell {
     /// Returns the whole range of a site.
-    pub fn of(asked: &Weighing, site: &Sites) -> Self {
+    pub fn of(asked: &CounterweightSpec, site: &Sites) -> Self {
         Self { mass: [0.0, site.most.min(asked.most_mass.unwrap_or(f64::INFINITY))], at: [site.from, site.to] }
     }
 
     /// Adds rows that keep w and s in the cell, and upper bounds of the inertias u and v.
-    pub fn enter(&self, asked: &Weighing, [w, s, u, v]: [usize; 4], program: &mut Program) {
+    pub fn enter(&self, asked: &CounterweightSpec, [w, s, u, v]: [usize; 4], program: &mut Program) {
         let ([light, heavy], [from, to]) = (self.mass, self.at);
-        let mut most = |terms: &[(usize, f64)], right: f64| program.at_most.push(Row::new(terms, right));
+        let mut most = |terms: &[(usize, f64)], right: f64| program.at_most.push(LinearRow::new(terms, right));
         most(&[(w, from), (s, -1.0)], 0.0);
         most(&[(s, 1.0), (w, -to)], 0.0);
         most(&[(u, 1.0), (s, -(from + to)), (w, from * to)], 0.0);

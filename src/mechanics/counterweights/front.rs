@@ -1,10 +1,10 @@
 //! [`front`]: the Pareto front of added mass and inertia.
 
-use super::asked::{Objective, Weighing};
-use super::place::{Placed, place};
-use super::refusal::NoWeights;
+use super::asked::{CounterweightSpec, Objective};
+use super::place::{Placed, place_weights};
+use super::refusal::CounterweightError;
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::query::{Portion, Query, Watch, answered};
+use crate::query::{Portion, ProgressCallback, Query, answer_now};
 
 /// Points of the Pareto front, from the least added mass to the least inertia: no machine is better than another in
 /// both.
@@ -33,33 +33,33 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// which its neighbours differ most.
 ///
 /// # Errors
-/// As [`place`].
-pub fn front(machine: &Machine, asked: &Weighing, count: usize) -> Result<Front, NoWeights> {
-    answered::<FrontSearch>((machine.clone(), asked.clone(), count))
+/// As [`place_weights`].
+pub fn front(machine: &Machine, asked: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
+    answer_now::<FrontSearch>((machine.clone(), asked.clone(), count))
 }
 
 /// The search for the Pareto front of a machine, as [`front`] returns it: one machine a portion.
 #[derive(Clone, Debug)]
 pub struct FrontSearch {
     machine: Machine,
-    mass: Weighing,
-    inertia: Weighing,
+    mass: CounterweightSpec,
+    inertia: CounterweightSpec,
     count: usize,
     /// The points found so far, by increasing mass, with their measures.
     points: Vec<([f64; 2], Placed)>,
 }
 
 impl Query for FrontSearch {
-    type Input = (Machine, Weighing, usize);
-    type Answer = Result<Front, NoWeights>;
+    type Input = (Machine, CounterweightSpec, usize);
+    type Answer = Result<Front, CounterweightError>;
 
     fn begin((machine, asked, count): Self::Input) -> Self {
-        let mass = Weighing { objective: Objective::mass(), ..asked.clone() };
-        let inertia = Weighing { objective: Objective::inertia(), ..asked };
+        let mass = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
+        let inertia = CounterweightSpec { objective: Objective::inertia(), ..asked };
         Self { machine, mass, inertia, count, points: Vec::with_capacity(count) }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<Self::Answer> {
         match self.one_more() {
             Ok(true) => Portion::More(self.points.len() as f64 / self.count.max(2) as f64),
             Ok(false) => {
@@ -78,7 +78,7 @@ fn alike(a: f64, b: f64) -> bool {
 
 impl FrontSearch {
     /// Adds one more point; returns whether there was one to add.
-    fn one_more(&mut self) -> Result<bool, NoWeights> {
+    fn one_more(&mut self) -> Result<bool, CounterweightError> {
         let Self { machine, mass, inertia, count, points } = self;
         let (i, asked) = match points.len() {
             // The point of least inertia first: errors in requirements of both are reported by it.
@@ -103,13 +103,13 @@ impl FrontSearch {
                 };
                 let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
                 let between = match by_mass > by_inertia {
-                    true => Weighing { most_mass: halfway(0), ..inertia.clone() },
-                    false => Weighing { most_inertia: halfway(1), ..mass.clone() },
+                    true => CounterweightSpec { most_mass: halfway(0), ..inertia.clone() },
+                    false => CounterweightSpec { most_inertia: halfway(1), ..mass.clone() },
                 };
                 (i + 1, between)
             }
         };
-        let placed = place(machine, &asked)?;
+        let placed = place_weights(machine, &asked)?;
         points.insert(i, (measures(&placed), placed));
         Ok(true)
     }

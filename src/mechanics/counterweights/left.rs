@@ -1,13 +1,13 @@
-//! [`Left`]: residual of each condition of (7) and (8), and its change with counterweights.
+//! [`ConditionResidual`]: residual of each condition of (7) and (8), and its change with counterweights.
 
-use super::asked::{Sites, Weighing};
-use super::refusal::NoWeights;
+use super::asked::{CounterweightSpec, Sites};
+use super::refusal::CounterweightError;
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 
 /// The residual of one condition of (7) or (8).
-pub(super) struct Left {
+pub(super) struct ConditionResidual {
     pub of: Condition,
     /// Residual of the bare machine along and across the axes, kg m or kg m², with the mean payload.
     pub left: Vector,
@@ -17,7 +17,7 @@ pub(super) struct Left {
     pub changes: Vec<[f64; 2]>,
 }
 
-impl Left {
+impl ConditionResidual {
     /// Returns whether a counterweight at any site changes it.
     pub fn is_touched(&self) -> bool {
         self.changes.iter().flatten().any(|by| *by != 0.0)
@@ -28,11 +28,11 @@ impl Left {
 pub(super) fn conditions(
     bare: &Machine,
     inertia: &Inertia,
-    asked: &Weighing,
+    asked: &CounterweightSpec,
     beyond: &[Vector],
-) -> Result<Vec<Left>, NoWeights> {
+) -> Result<Vec<ConditionResidual>, CounterweightError> {
     let parts = bare.resolved_links();
-    let holding = |mass: f64| -> Result<Inertia, NoWeights> {
+    let holding = |mass: f64| -> Result<Inertia, CounterweightError> {
         let mut spec = bare.spec().clone();
         spec.payload.mass = mass;
         Ok(Inertia::of(&Machine::new(spec)?))
@@ -44,7 +44,7 @@ pub(super) fn conditions(
     let of = |(i, condition): (usize, Condition)| {
         let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
         let more = beyond.get(i).copied().unwrap_or_default();
-        Left {
+        ConditionResidual {
             of: condition,
             left: condition.left(inertia) + more,
             ends: [0, 1].map(|i| (condition.left(&ends[i]) + more).re),

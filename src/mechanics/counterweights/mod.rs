@@ -29,9 +29,11 @@ mod tolerance;
 mod unknowns;
 mod way;
 
-pub use asked::{DENSITY, Disc, Free, FreeRotor, MATERIALS, Objective, Sites, THICKNESS, Weighing};
+pub use asked::{
+    CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom, Sites, THICKNESS_RANGE,
+};
 pub use front::{Front, FrontSearch, front};
 pub use payload::{Residual, over_payloads};
-pub use place::{Placed, place, place_with, unreachable_by_weights};
-pub use refusal::{Bound, NoWeights, Relief};
-pub use tolerance::{OffBy, Tolerance, off_by};
+pub use place::{Placed, place_weights, place_weights_with, unreachable_by_weights};
+pub use refusal::{Bound, BoundRelaxation, CounterweightError};
+pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

@@ -1,13 +1,13 @@
-//! [`place`]: counterweights that balance a machine and minimise an objective.
+//! [`place_weights`]: counterweights that balance a machine and minimise an objective.
 
-use super::asked::{Objective, Sites, Weighing};
-use super::problem::Problem;
+use super::asked::{CounterweightSpec, Objective, Sites};
+use super::problem::CounterweightProblem;
 use super::program::SOLVER_ROUNDING;
-use super::question::One;
-use super::refusal::NoWeights;
+use super::question::CounterweightTask;
+use super::refusal::CounterweightError;
 use super::relief::sufficient_reliefs;
-use super::way::Balance;
-use crate::convex::{Least, NoX};
+use super::way::BalanceGoal;
+use crate::convex::{NoOptimum, Optimum};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 
@@ -50,24 +50,28 @@ const MAX_GAP: f64 = 5e-7;
 ///
 /// # Errors
 /// If the request is not valid, or if its requirements contradict each other.
-pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
-    place_with(machine, asked, &[])
+pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Placed, CounterweightError> {
+    place_weights_with(machine, asked, &[])
 }
 
 /// As [`place`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
 /// the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
 ///
 /// # Errors
-/// As [`place`].
-pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Placed, NoWeights> {
-    let problem = Problem::new(machine, asked, beyond)?;
+/// As [`place_weights`].
+pub fn place_weights_with(
+    machine: &Machine,
+    asked: &CounterweightSpec,
+    beyond: &[Vector],
+) -> Result<Placed, CounterweightError> {
+    let problem = CounterweightProblem::new(machine, asked, beyond)?;
     problem.check()?;
     if problem.needs_nothing(asked) {
         let inertia = Inertia::of(&problem.bare);
         let value = asked.objective.of(0.0, &inertia);
         return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
-    let one = One { problem: &problem, machine, asked, beyond };
+    let one = CounterweightTask { problem: &problem, machine, asked, beyond };
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
@@ -79,41 +83,41 @@ pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Res
 /// If the request is not valid.
 pub fn unreachable_by_weights(
     machine: &Machine,
-    asked: &Weighing,
+    asked: &CounterweightSpec,
     beyond: &[Vector],
-) -> Result<Vec<Vector>, NoWeights> {
-    Ok(Problem::new(machine, asked, beyond)?.unreachable(asked.sites.len()))
+) -> Result<Vec<Vector>, CounterweightError> {
+    Ok(CounterweightProblem::new(machine, asked, beyond)?.unreachable(asked.sites.len()))
 }
 
-impl One<'_> {
+impl CounterweightTask<'_> {
     /// Finds the counterweights. If there are none, returns the weights of the bounds in the certificate of
     /// infeasibility without clearance, empty if only the clearance of pins makes it infeasible.
-    fn found(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
-        if self.balance() == Balance::Nearest {
+    fn found(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
+        if self.balance() == BalanceGoal::Nearest {
             return self.nearest();
         }
-        match self.least(Balance::Exact)? {
+        match self.least(BalanceGoal::Exact)? {
             Ok(least) => {
-                let best = self.placed(&least, Balance::Exact)?;
+                let best = self.placed(&least, BalanceGoal::Exact)?;
                 Ok(Ok(self.simpler(self.least_inertia(best, &least))))
             }
-            Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
-            Err(NoX::Contradiction(_)) if self.asked.payload.is_some() => self.nearest(),
-            Err(NoX::Contradiction(weights)) => Ok(Err(weights)),
+            Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),
+            Err(NoOptimum::Contradiction(_)) if self.asked.payload.is_some() => self.nearest(),
+            Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
         }
     }
 
     /// Returns the solution of least inertia among those of the same mass, if mass alone is minimised.
-    fn least_inertia(&self, best: Placed, least: &Least) -> Placed {
-        let Weighing { objective, most_inertia, .. } = self.asked;
+    fn least_inertia(&self, best: Placed, least: &Optimum) -> Placed {
+        let CounterweightSpec { objective, most_inertia, .. } = self.asked;
         if objective.turns() || objective.mass == 0.0 || most_inertia.is_some() {
             return best;
         }
         let objective = Objective { inertia: TIE_BREAK_WEIGHT * objective.mass, ..objective.clone() };
-        let tied = Weighing { objective, ..self.asked.clone() };
-        let one = One { asked: &tied, ..*self };
-        let found = one.least(Balance::Exact).ok().and_then(Result::ok);
-        let found = found.and_then(|tied| one.placed(&tied, Balance::Exact).ok());
+        let tied = CounterweightSpec { objective, ..self.asked.clone() };
+        let one = CounterweightTask { asked: &tied, ..*self };
+        let found = one.least(BalanceGoal::Exact).ok().and_then(Result::ok);
+        let found = found.and_then(|tied| one.placed(&tied, BalanceGoal::Exact).ok());
         found.and_then(|found| self.as_good(found, least.value - least.gap)).unwrap_or(best)
     }
 
@@ -129,17 +133,17 @@ impl One<'_> {
             weights().any(|weight| weight.link == *link && !is_light(weight.mass))
         };
         let sites: Vec<Sites> = self.asked.sites.iter().copied().filter(carries).collect();
-        let fewer = Weighing { sites, ..self.asked.clone() };
+        let fewer = CounterweightSpec { sites, ..self.asked.clone() };
         self.exact(&fewer).and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
     }
 
     /// Returns the optimum of another request with exact balance, if there is one.
-    fn exact(&self, asked: &Weighing) -> Option<Placed> {
-        let problem = Problem::new(self.machine, asked, self.beyond).ok()?;
+    fn exact(&self, asked: &CounterweightSpec) -> Option<Placed> {
+        let problem = CounterweightProblem::new(self.machine, asked, self.beyond).ok()?;
         problem.check().ok()?;
-        let one = One { problem: &problem, asked, ..*self };
-        let least = one.least(Balance::Exact).ok()?.ok()?;
-        let best = one.placed(&least, Balance::Exact).ok()?;
+        let one = CounterweightTask { problem: &problem, asked, ..*self };
+        let least = one.least(BalanceGoal::Exact).ok()?.ok()?;
+        let best = one.placed(&least, BalanceGoal::Exact).ok()?;
         Some(one.least_inertia(best, &least))
     }
 
@@ -152,30 +156,30 @@ impl One<'_> {
 
     /// Minimises the largest residual over all payloads, then the objective. If exact balance with the mean payload has
     /// the same objective, returns that.
-    fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
+    fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
-            Err(NoX::Contradiction(weights)) => Ok(Err(weights)),
-            Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
+            Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
+            Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),
         };
-        let worst = match found(Balance::Nearest)? {
+        let worst = match found(BalanceGoal::Nearest)? {
             Ok(least) => least.value,
             Err(weights) => return Ok(Err(weights)),
         };
-        let balance = Balance::Within(worst * (1.0 + SOLVER_ROUNDING[0]) + SOLVER_ROUNDING[1]);
+        let balance = BalanceGoal::Within(worst * (1.0 + SOLVER_ROUNDING[0]) + SOLVER_ROUNDING[1]);
         let least = match found(balance)? {
             Ok(least) => least,
             Err(weights) => return Ok(Err(weights)),
         };
-        if let Ok(Ok(exact)) = self.least(Balance::Exact)
+        if let Ok(Ok(exact)) = self.least(BalanceGoal::Exact)
             && exact.value <= least.value + MAX_GAP
         {
-            return Ok(Ok(self.placed(&exact, Balance::Exact)?));
+            return Ok(Ok(self.placed(&exact, BalanceGoal::Exact)?));
         }
         Ok(Ok(self.placed(&least, balance)?))
     }
 
-    fn placed(&self, least: &Least, balance: Balance) -> Result<Placed, NoWeights> {
+    fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<Placed, CounterweightError> {
         let (added_mass, machine) = self.problem.machine(self.machine, self.asked, &least.x, balance)?;
         let value = self.asked.objective.of(added_mass, &Inertia::of(&machine));
         // The gap is that of the finished machine: the dual value is a lower bound of the objective.
@@ -183,16 +187,17 @@ impl One<'_> {
     }
 
     /// Returns the reason why there are no counterweights; `weights` as [`found`](Self::found) returns them.
-    fn refusal(&self, weights: &[f64]) -> NoWeights {
-        let is_feasible = |asked: &Weighing| One { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
+    fn refusal(&self, weights: &[f64]) -> CounterweightError {
+        let is_feasible =
+            |asked: &CounterweightSpec| CounterweightTask { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
         let would = || sufficient_reliefs(self, &is_feasible);
         match self.asked.clearance {
-            Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: would() },
+            Some(asked) if weights.is_empty() => CounterweightError::Reaches { asked, would: would() },
             _ => {
                 let bounds = self.problem.conflict(self.machine, self.asked, self.balance(), weights);
                 match bounds.is_empty() {
-                    true => NoWeights::TooFew,
-                    false => NoWeights::Conflict { bounds, would: would() },
+                    true => CounterweightError::TooFew,
+                    false => CounterweightError::Conflict { bounds, would: would() },
                 }
             }
         }

@@ -1,28 +1,28 @@
-//! [`Problem`]: a machine without counterweights, except fixed ones, and the conditions that counterweights must meet.
+//! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that counterweights must meet.
 
-use super::asked::Weighing;
-use super::left::{Left, conditions};
-use super::refusal::NoWeights;
-use crate::mechanics::balance::{Equation, Plane};
+use super::asked::CounterweightSpec;
+use super::left::{ConditionResidual, conditions};
+use super::refusal::CounterweightError;
+use crate::mechanics::balance::{LinearEquation, SolutionSpace};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 
 /// A machine without counterweights, except fixed ones, and without the rotors that have a free parameter.
-pub(super) struct Problem {
+pub(super) struct CounterweightProblem {
     pub bare: Machine,
     pub inertia: Inertia,
-    pub conditions: Vec<Left>,
+    pub conditions: Vec<ConditionResidual>,
     /// Upper bound of the end effector's distance from B, m.
     pub reach: f64,
 }
 
-impl Problem {
+impl CounterweightProblem {
     /// Derives the problem of a request. `beyond`: known additional residuals of the conditions (7) and (8), in their
     /// order.
     ///
     /// # Errors
     /// If the request is not valid.
-    pub fn new(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Self, NoWeights> {
+    pub fn new(machine: &Machine, asked: &CounterweightSpec, beyond: &[Vector]) -> Result<Self, CounterweightError> {
         asked.check(machine)?;
         let mut spec = machine.without_counterweights()?.spec().clone();
         asked.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
@@ -33,7 +33,7 @@ impl Problem {
         let inertia = Inertia::of(&bare);
         let of_rotors = asked.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
         if asked.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
-            return Err(NoWeights::Coupled);
+            return Err(CounterweightError::Coupled);
         }
         let reach = bare.reach();
         let conditions = conditions(&bare, &inertia, asked, beyond)?;
@@ -44,11 +44,11 @@ impl Problem {
     ///
     /// # Errors
     /// If they cannot.
-    pub fn check(&self) -> Result<(), NoWeights> {
-        for Left { of, left, .. } in &self.conditions {
+    pub fn check(&self) -> Result<(), CounterweightError> {
+        for ConditionResidual { of, left, .. } in &self.conditions {
             if left.im.abs() > 1e-9 {
                 let left = format!("{:.3e} {}", left.im, of.unit());
-                return Err(NoWeights::OffAxis { condition: of.name(&self.bare), left });
+                return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), left });
             }
         }
         for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
@@ -58,7 +58,7 @@ impl Problem {
                 let of = |part| condition.of.by_mass(part) != 0.0 || condition.of.by_moment(part) != 0.0;
                 let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
                 let want = format!("one of {}", would.join(", "));
-                return Err(NoWeights::Untouched { condition: condition.of.name(&self.bare), left, want });
+                return Err(CounterweightError::Untouched { condition: condition.of.name(&self.bare), left, want });
             }
         }
         Ok(())
@@ -67,19 +67,19 @@ impl Problem {
     /// Returns the residual of each condition that no masses at the sites remove, even negative ones: the least squares
     /// residual, with all equations scaled to unit norm.
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
-        let equation = |condition: &Left| Equation {
+        let equation = |condition: &ConditionResidual| LinearEquation {
             a: condition.changes.iter().flatten().copied().collect(),
             right: -condition.left.re,
             tolerance: f64::INFINITY,
         };
-        let equations: Vec<Equation> = self.conditions.iter().map(equation).collect();
-        let along = Plane::of(&equations, 2 * sites).missed;
+        let equations: Vec<LinearEquation> = self.conditions.iter().map(equation).collect();
+        let along = SolutionSpace::of(&equations, 2 * sites).missed;
         along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.left.im)).collect()
     }
 
     /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so none are then
     /// optimal.
-    pub fn needs_nothing(&self, asked: &Weighing) -> bool {
+    pub fn needs_nothing(&self, asked: &CounterweightSpec) -> bool {
         let total: f64 = self.inertia.total_momentum();
         asked.rotors.is_empty()
             && asked.objective.momentum == 0.0

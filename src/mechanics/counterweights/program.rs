@@ -1,12 +1,12 @@
-//! The cone program of a [`Problem`]: its rows, and its optimum.
+//! The cone program of a [`CounterweightProblem`]: its rows, and its optimum.
 
-use super::asked::{Free, Objective, Weighing};
-use super::left::Left;
-use super::problem::Problem;
-use super::refusal::{Bound, Kind};
-use super::unknowns::{Sum, Unknowns};
-use super::way::{Balance, Way};
-use crate::convex::{Least, NoX, Program, Row, conflict};
+use super::asked::{CounterweightSpec, Objective, RotorFreedom};
+use super::left::ConditionResidual;
+use super::problem::CounterweightProblem;
+use super::refusal::{Bound, BoundKind};
+use super::unknowns::{AffineForm, UnknownIndices};
+use super::way::{BalanceGoal, SearchNode};
+use crate::convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::Machine;
 
@@ -14,40 +14,52 @@ use crate::mechanics::machine::Machine;
 /// minimised: the solver's rounding.
 pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
-impl Problem {
+impl CounterweightProblem {
     /// Solves the cone program of one subproblem.
-    pub fn least(&self, machine: &Machine, asked: &Weighing, way: &Way) -> Result<Least, NoX> {
-        let solve = |way: &Way| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
+    pub fn least(&self, machine: &Machine, asked: &CounterweightSpec, way: &SearchNode) -> Result<Optimum, NoOptimum> {
+        let solve = |way: &SearchNode| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
         let first = solve(way)?;
-        if asked.objective.momentum == 0.0 || way.balance == Balance::Nearest || way.least.is_some() {
+        if asked.objective.momentum == 0.0 || way.balance == BalanceGoal::Nearest || way.least.is_some() {
             return Ok(first);
         }
         // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is. So the
         // solution of least mass and Σ H_kk among the optima is taken: its inertias are exact where that is possible.
         let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
-        let second = solve(&Way { most: Some(most), ..way.clone() });
-        Ok(second.map_or(first.clone(), |second| Least { x: second.x, ..first }))
+        let second = solve(&SearchNode { most: Some(most), ..way.clone() });
+        Ok(second.map_or(first.clone(), |second| Optimum { x: second.x, ..first }))
     }
 
     /// Returns a minimal set of bounds that contradict each other without clearance: those in the solver's certificate
     /// of infeasibility, less all that are not necessary. Empty if there is no solution without bounds either.
-    pub fn conflict(&self, machine: &Machine, asked: &Weighing, balance: Balance, weights: &[f64]) -> Vec<Bound> {
-        let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, balance));
-        let any = Weighing { objective: Objective::mass(), ..asked.clone() };
-        let contradicts = |bounds: &[(Bound, Row)]| {
-            matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoX::Contradiction(_)))
+    pub fn conflict(
+        &self,
+        machine: &Machine,
+        asked: &CounterweightSpec,
+        balance: BalanceGoal,
+        weights: &[f64],
+    ) -> Vec<Bound> {
+        let (bounds, way) = (self.bounds(machine, asked), SearchNode::free(asked, balance));
+        let any = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
+        let contradicts = |bounds: &[(Bound, LinearRow)]| {
+            matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoOptimum::Contradiction(_)))
         };
         let of_bounds = &weights[weights.len() - bounds.len()..];
-        conflict(bounds, of_bounds, contradicts)
+        infeasible_bounds(bounds, of_bounds, contradicts)
     }
 
     /// Returns the cone program of a subproblem: its unknowns, its objective, and its rows.
-    pub fn program(&self, machine: &Machine, asked: &Weighing, bounds: &[(Bound, Row)], way: &Way) -> Program {
-        let unknowns = Unknowns::of(asked, self.drives());
+    pub fn program(
+        &self,
+        machine: &Machine,
+        asked: &CounterweightSpec,
+        bounds: &[(Bound, LinearRow)],
+        way: &SearchNode,
+    ) -> Program {
+        let unknowns = UnknownIndices::of(asked, self.drives());
         let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
         for j in 0..asked.sites.len() {
             program.linear[unknowns.w(j)] += asked.objective.mass;
-            program.at_most.push(Row::new([(unknowns.w(j), -1.0)], 0.0));
+            program.at_most.push(LinearRow::new([(unknowns.w(j), -1.0)], 0.0));
         }
         self.enter_rotors(machine, asked, &unknowns, &mut program);
         if unknowns.inertia {
@@ -63,9 +75,9 @@ impl Problem {
         }
         if let Some(most) = way.most {
             let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
-            program.at_most.push(Row::new(terms, most));
+            program.at_most.push(LinearRow::new(terms, most));
             program.linear.fill(0.0);
-            let turned = Weighing { objective: Objective::inertia(), ..asked.clone() };
+            let turned = CounterweightSpec { objective: Objective::inertia(), ..asked.clone() };
             (0..asked.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
             self.cost(machine, &turned, &unknowns, &mut program);
         }
@@ -91,56 +103,62 @@ impl Problem {
     }
 
     /// Adds the conditions (7) and (8).
-    fn enter_balance(&self, unknowns: &Unknowns, balance: Balance, program: &mut Program) {
-        let terms = |condition: &Left, sign: f64| {
+    fn enter_balance(&self, unknowns: &UnknownIndices, balance: BalanceGoal, program: &mut Program) {
+        let terms = |condition: &ConditionResidual, sign: f64| {
             let each = condition.changes.iter().enumerate();
             let both = each.flat_map(|(j, by)| [(unknowns.w(j), sign * by[0]), (unknowns.s(j), sign * by[1])]);
             both.filter(|(_, by)| *by != 0.0).collect::<Vec<_>>()
         };
-        if balance == Balance::Exact {
+        if balance == BalanceGoal::Exact {
             let touched = self.conditions.iter().filter(|condition| condition.is_touched());
-            program.equal.extend(touched.map(|condition| Row::new(terms(condition, 1.0), -condition.left.re)));
+            program.equal.extend(touched.map(|condition| LinearRow::new(terms(condition, 1.0), -condition.left.re)));
             return;
         }
         let worst = program.linear.len();
-        if balance == Balance::Nearest {
+        if balance == BalanceGoal::Nearest {
             program.linear.fill(0.0);
         }
-        program.linear.push(if balance == Balance::Nearest { 1.0 } else { 0.0 });
+        program.linear.push(if balance == BalanceGoal::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
             let per = if matches!(condition.of, Condition::Force(_)) { 1.0 } else { self.reach };
             for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
                 let mut terms = terms(condition, sign);
                 terms.push((worst, -per));
-                program.at_most.push(Row::new(terms, -sign * end));
+                program.at_most.push(LinearRow::new(terms, -sign * end));
             }
         }
-        if let Balance::Within(most) = balance {
-            program.at_most.push(Row::new([(worst, 1.0)], most));
+        if let BalanceGoal::Within(most) = balance {
+            program.at_most.push(LinearRow::new([(worst, 1.0)], most));
         }
     }
 
-    fn enter_rotors(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+    fn enter_rotors(
+        &self,
+        machine: &Machine,
+        asked: &CounterweightSpec,
+        unknowns: &UnknownIndices,
+        program: &mut Program,
+    ) {
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
             let ends = match rotor.free {
-                Free::Inertia(ends) => {
-                    program.equal.push(Row::new([(turned, 1.0)], 0.0));
+                RotorFreedom::Inertia(ends) => {
+                    program.equal.push(LinearRow::new([(turned, 1.0)], 0.0));
                     ends
                 }
-                Free::Ratio(ends) => {
+                RotorFreedom::Ratio(ends) => {
                     let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
                     program.above_square(turned, inertia, x);
                     ends
                 }
             };
-            program.at_most.push(Row::new([(x, -1.0)], -ends[0]));
-            program.at_most.push(Row::new([(x, 1.0)], ends[1]));
+            program.at_most.push(LinearRow::new([(x, -1.0)], -ends[0]));
+            program.at_most.push(LinearRow::new([(x, 1.0)], ends[1]));
         }
     }
 
     /// Adds the diagonal of H without free rotors.
-    fn enter_inertia(&self, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+    fn enter_inertia(&self, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         let parts = self.bare.resolved_links();
         for j in 0..asked.sites.len() {
             program.above_quotient(unknowns.u(j), unknowns.w(j), unknowns.s(j));
@@ -157,12 +175,12 @@ impl Problem {
                 }
             }
             terms.retain(|(_, value)| *value != 0.0);
-            program.equal.push(Row::new(terms, self.inertia.diagonal(k)));
+            program.equal.push(LinearRow::new(terms, self.inertia.diagonal(k)));
         }
     }
 
     /// Adds the weight of Σ H_kk to the objective.
-    fn cost(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+    fn cost(&self, machine: &Machine, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         for k in 0..self.drives() {
             let [_, turned] = self.of_rotors(asked, machine, k);
             for (x, by) in std::iter::once((unknowns.h(k), 1.0)).chain(turned.terms) {
@@ -172,11 +190,18 @@ impl Problem {
     }
 
     /// Adds |D_k| and the greatest torque, with their weights in the objective.
-    fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, way: &Way, program: &mut Program) {
+    fn enter_motion(
+        &self,
+        machine: &Machine,
+        asked: &CounterweightSpec,
+        unknowns: &UnknownIndices,
+        way: &SearchNode,
+        program: &mut Program,
+    ) {
         let objective = &asked.objective;
         for k in 0..self.drives() {
             let [momentum, turned] = self.of_rotors(asked, machine, k);
-            let with = |sum: &Sum, sign: f64| {
+            let with = |sum: &AffineForm, sign: f64| {
                 let mut terms = vec![(unknowns.h(k), sign)];
                 terms.extend(sum.terms.iter().map(|(x, by)| (*x, sign * by)));
                 terms
@@ -185,7 +210,7 @@ impl Problem {
                 program.linear[unknowns.momentum(k)] = objective.momentum;
                 let constant = self.constant(k) + momentum.constant;
                 for sign in [1.0, -1.0] {
-                    let mut row = Row::new(with(&momentum, sign), -sign * constant);
+                    let mut row = LinearRow::new(with(&momentum, sign), -sign * constant);
                     row.terms.push((unknowns.momentum(k), -1.0));
                     if let (true, Some(tangents)) = (sign < 0.0, &way.tangents) {
                         let linear = self.linear_diagonal(asked, unknowns, k, tangents);
@@ -200,29 +225,29 @@ impl Problem {
                 let acceleration = objective.accelerations.get(k).copied().unwrap_or_default();
                 let mut terms: Vec<_> = with(&turned, acceleration);
                 terms.push((unknowns.torque(), -1.0));
-                program.at_most.push(Row::new(terms, -acceleration * turned.constant));
+                program.at_most.push(LinearRow::new(terms, -acceleration * turned.constant));
                 program.linear[unknowns.torque()] = objective.torque;
             }
         }
     }
 
     /// Returns the bounds of the request, with their rows.
-    fn bounds(&self, machine: &Machine, asked: &Weighing) -> Vec<(Bound, Row)> {
-        let (mut all, unknowns) = (Vec::new(), Unknowns::of(asked, self.drives()));
+    fn bounds(&self, machine: &Machine, asked: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
+        let (mut all, unknowns) = (Vec::new(), UnknownIndices::of(asked, self.drives()));
         for (j, site) in asked.sites.iter().enumerate() {
             let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
-            all.push((Bound::From(link.clone()), Row::new([(w, site.from), (s, -1.0)], 0.0)));
-            all.push((Bound::To(link.clone()), Row::new([(s, 1.0), (w, -site.to)], 0.0)));
+            all.push((Bound::From(link.clone()), LinearRow::new([(w, site.from), (s, -1.0)], 0.0)));
+            all.push((Bound::To(link.clone()), LinearRow::new([(s, 1.0), (w, -site.to)], 0.0)));
             if site.most.is_finite() {
-                all.push((Bound::Most(link), Row::new([(w, 1.0)], site.most)));
+                all.push((Bound::Most(link), LinearRow::new([(w, 1.0)], site.most)));
             }
         }
         if let Some(most) = asked.most_mass {
             let sum = (0..asked.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
-            all.push((Bound::Mass, Row::new(sum, most)));
+            all.push((Bound::Mass, LinearRow::new(sum, most)));
         }
         if let Some(most) = asked.most_inertia {
-            let mut row = Row::new([], most);
+            let mut row = LinearRow::new([], most);
             for k in 0..self.drives() {
                 let [momentum, _] = self.of_rotors(asked, machine, k);
                 row.terms.push((unknowns.h(k), 1.0));
@@ -237,17 +262,17 @@ impl Problem {
 
 impl Bound {
     /// Returns its kind if it may be relaxed; bounds of positions may not.
-    fn kind(&self) -> Option<Kind> {
+    fn kind(&self) -> Option<BoundKind> {
         match self {
             Self::From(_) | Self::To(_) => None,
-            Self::Most(_) => Some(Kind::Most),
-            Self::Mass => Some(Kind::Mass),
-            Self::Inertia => Some(Kind::Inertia),
+            Self::Most(_) => Some(BoundKind::Most),
+            Self::Mass => Some(BoundKind::Mass),
+            Self::Inertia => Some(BoundKind::Inertia),
         }
     }
 }
 
-impl Weighing {
+impl CounterweightSpec {
     /// Returns the value of a bound that may be relaxed.
     fn value_of(&self, bound: &Bound, machine: &Machine) -> f64 {
         match bound {

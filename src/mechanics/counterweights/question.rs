@@ -1,44 +1,44 @@
-//! [`One`]: one request for counterweights, with the problem derived from it.
+//! [`CounterweightTask`]: one request for counterweights, with the problem derived from it.
 
-use super::asked::Weighing;
-use super::problem::Problem;
-use super::refusal::NoWeights;
+use super::asked::CounterweightSpec;
+use super::problem::CounterweightProblem;
+use super::refusal::CounterweightError;
 use super::search::search;
-use super::way::{Balance, Way};
-use crate::convex::{Least, NoX};
+use super::way::{BalanceGoal, SearchNode};
+use crate::convex::{NoOptimum, Optimum};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 
 /// One request for counterweights on a machine, with the problem derived from it.
 #[derive(Clone, Copy)]
-pub(super) struct One<'a> {
-    pub problem: &'a Problem,
+pub(super) struct CounterweightTask<'a> {
+    pub problem: &'a CounterweightProblem,
     pub machine: &'a Machine,
-    pub asked: &'a Weighing,
+    pub asked: &'a CounterweightSpec,
     pub beyond: &'a [Vector],
 }
 
-impl One<'_> {
+impl CounterweightTask<'_> {
     /// Returns whether balance is to be exact, or as near as possible over a range of payloads.
-    pub fn balance(&self) -> Balance {
+    pub fn balance(&self) -> BalanceGoal {
         match self.asked.payload {
-            Some([low, high]) if low < high => Balance::Nearest,
-            _ => Balance::Exact,
+            Some([low, high]) if low < high => BalanceGoal::Nearest,
+            _ => BalanceGoal::Exact,
         }
     }
 
     /// Returns whether there are such counterweights.
     pub fn is_possible(&self) -> bool {
-        matches!(self.on(&Way::free(self.asked, self.balance())), Ok(Ok(_)))
+        matches!(self.on(&SearchNode::free(self.asked, self.balance())), Ok(Ok(_)))
     }
 
     /// Finds the optimum with a given form of the balance conditions.
-    pub fn least(&self, balance: Balance) -> Result<Result<Least, NoX>, NoWeights> {
-        self.on(&Way::free(self.asked, balance))
+    pub fn least(&self, balance: BalanceGoal) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
+        self.on(&SearchNode::free(self.asked, balance))
     }
 
     /// Finds the optimum of one subproblem.
-    pub fn on(&self, way: &Way) -> Result<Result<Least, NoX>, NoWeights> {
+    pub fn on(&self, way: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
         let is_convex = self.asked.clearance.is_none() && self.asked.objective.momentum == 0.0;
         match is_convex {
             true => Ok(self.problem.least(self.machine, self.asked, way)),

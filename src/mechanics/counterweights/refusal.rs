@@ -1,4 +1,4 @@
-//! [`NoWeights`]: the reason why there are no counterweights, and the relaxed bounds with which there are.
+//! [`CounterweightError`]: the reason why there are no counterweights, and the relaxed bounds with which there are.
 
 use std::fmt;
 
@@ -39,7 +39,7 @@ fn listed(bounds: &[Bound]) -> String {
 
 /// A kind of bound that may be relaxed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BoundKind {
     /// The bounds of the masses of single counterweights.
     Most,
     /// The bound of their total mass.
@@ -53,7 +53,7 @@ pub enum Kind {
 /// Relaxed value of the bounds of one kind: the least feasible bound, or the greatest feasible clearance, rounded to
 /// the feasible side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Relief {
+pub enum BoundRelaxation {
     /// Bound of each mass that has a bound, kg.
     Most(f64),
     /// Bound of the total mass, kg.
@@ -64,7 +64,7 @@ pub enum Relief {
     Clearance(f64),
 }
 
-impl fmt::Display for Relief {
+impl fmt::Display for BoundRelaxation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Most(x) => write!(f, "up to {x:.6} kg on each link that is bounded"),
@@ -76,9 +76,9 @@ impl fmt::Display for Relief {
 }
 
 /// Returns the sets of relaxed bounds in words, each of which is sufficient.
-fn sufficient_relief(would: &[Vec<Relief>]) -> String {
-    let one = |together: &Vec<Relief>| {
-        let all: Vec<String> = together.iter().map(Relief::to_string).collect();
+fn sufficient_relief(would: &[Vec<BoundRelaxation>]) -> String {
+    let one = |together: &Vec<BoundRelaxation>| {
+        let all: Vec<String> = together.iter().map(BoundRelaxation::to_string).collect();
         format!("; {} would do{}", all.join(" and "), if all.len() > 1 { " together" } else { "" })
     };
     would.iter().map(one).collect()
@@ -86,7 +86,7 @@ fn sufficient_relief(would: &[Vec<Relief>]) -> String {
 
 /// Why there are no counterweights.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoWeights {
+pub enum CounterweightError {
     /// A number that is out of range.
     #[error("{what} {value}: want {want}")]
     OutOfRange {
@@ -135,7 +135,7 @@ pub enum NoWeights {
         bounds: Vec<Bound>,
         /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
         /// single one is sufficient.
-        would: Vec<Vec<Relief>>,
+        would: Vec<Vec<BoundRelaxation>>,
     },
     /// No masses and positions on these links balance the machine.
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
@@ -150,7 +150,7 @@ pub enum NoWeights {
         asked: f64,
         /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
         /// single one is sufficient.
-        would: Vec<Vec<Relief>>,
+        would: Vec<Vec<BoundRelaxation>>,
     },
     /// Too many choices between pins to search all.
     #[error(
@@ -172,13 +172,13 @@ pub enum NoWeights {
     Machine(String),
 }
 
-impl NoWeights {
+impl CounterweightError {
     pub(super) fn out(what: &str, value: f64, want: impl ToString) -> Self {
         Self::OutOfRange { what: what.into(), value, want: want.to_string() }
     }
 }
 
-impl From<MachineError> for NoWeights {
+impl From<MachineError> for CounterweightError {
     fn from(why: MachineError) -> Self {
         Self::Machine(why.to_string())
     }

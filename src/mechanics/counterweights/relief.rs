@@ -1,9 +1,9 @@
 //! [`sufficient_reliefs`]: relaxed bounds with which there would be counterweights, all others unchanged.
 
-use super::asked::Weighing;
-use super::question::One;
-use super::refusal::{Kind, Relief};
-use super::way::Way;
+use super::asked::CounterweightSpec;
+use super::question::CounterweightTask;
+use super::refusal::{BoundKind, BoundRelaxation};
+use super::way::SearchNode;
 
 /// Factor by which the first of several bounds is relaxed beyond its minimum, so that the others need less relaxation.
 const FIRST_BOUND_FACTOR: f64 = 1.1;
@@ -21,8 +21,11 @@ const STEPS_PER_UNIT: f64 = 1e6;
 
 /// Returns each kind of bound that it is enough to relax alone, with its relaxed value; if no single kind is enough,
 /// the sets of two that are, or more. `is_feasible` returns whether another request has a solution.
-pub(super) fn sufficient_reliefs(one: &One, is_feasible: &dyn Fn(&Weighing) -> bool) -> Vec<Vec<Relief>> {
-    let kinds = Kind::of(one.asked);
+pub(super) fn sufficient_reliefs(
+    one: &CounterweightTask,
+    is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
+) -> Vec<Vec<BoundRelaxation>> {
+    let kinds = BoundKind::of(one.asked);
     let some = |bits: usize| (0..kinds.len()).filter(move |i| bits >> i & 1 == 1).map(|i| kinds[i]).collect::<Vec<_>>();
     let of_size = |size: usize| {
         let sets = (1..1_usize << kinds.len()).map(some).filter(move |set| set.len() == size);
@@ -32,7 +35,11 @@ pub(super) fn sufficient_reliefs(one: &One, is_feasible: &dyn Fn(&Weighing) -> b
 }
 
 /// Returns the values to which these kinds of bounds have to be relaxed together; `None` if that is not enough.
-fn together(one: &One, kinds: &[Kind], is_feasible: &dyn Fn(&Weighing) -> bool) -> Option<Vec<Relief>> {
+fn together(
+    one: &CounterweightTask,
+    kinds: &[BoundKind],
+    is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
+) -> Option<Vec<BoundRelaxation>> {
     let (last, first) = kinds.split_last()?;
     let (mut asked, mut reliefs) = (one.asked.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
@@ -41,12 +48,12 @@ fn together(one: &One, kinds: &[Kind], is_feasible: &dyn Fn(&Weighing) -> bool) 
         reliefs.push(relief);
     }
     let least = match last {
-        Kind::Clearance => greatest_clearance(one, &asked)?,
+        BoundKind::Clearance => greatest_clearance(one, &asked)?,
         _ => least_bound(one, &asked, *last, &[])?,
     };
     let nudged = EXTRA_FRACTIONS
-        .map(|by| last.rounded(if *last == Kind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
-    let enough = |relief: &Relief| {
+        .map(|by| last.rounded(if *last == BoundKind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
+    let enough = |relief: &BoundRelaxation| {
         relief.set(&mut asked);
         is_feasible(&asked)
     };
@@ -56,19 +63,24 @@ fn together(one: &One, kinds: &[Kind], is_feasible: &dyn Fn(&Weighing) -> bool) 
 
 /// Returns the smallest feasible value of a kind of bound without the bounds of the kinds `loose`; `None` if there is
 /// none.
-fn least_bound(one: &One, asked: &Weighing, kind: Kind, loose: &[Kind]) -> Option<f64> {
-    let without_clearance = Weighing { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
-    let asked = if loose.contains(&Kind::Clearance) { &without_clearance } else { asked };
-    let one = One { asked, ..*one };
-    let way = Way { loose: loose.to_vec(), least: Some(kind), ..Way::free(asked, one.balance()) };
+fn least_bound(
+    one: &CounterweightTask,
+    asked: &CounterweightSpec,
+    kind: BoundKind,
+    loose: &[BoundKind],
+) -> Option<f64> {
+    let without_clearance = CounterweightSpec { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
+    let asked = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { asked };
+    let one = CounterweightTask { asked, ..*one };
+    let way = SearchNode { loose: loose.to_vec(), least: Some(kind), ..SearchNode::free(asked, one.balance()) };
     one.on(&way).ok()?.ok().map(|least| least.value.max(0.0))
 }
 
 /// Returns the greatest feasible clearance of discs from pins, m, by bisection; `None` if even 0 is infeasible.
-fn greatest_clearance(one: &One, asked: &Weighing) -> Option<f64> {
+fn greatest_clearance(one: &CounterweightTask, asked: &CounterweightSpec) -> Option<f64> {
     let is_clear = |clearance: f64| {
-        let asked = Weighing { clearance: Some(clearance), ..asked.clone() };
-        One { asked: &asked, ..*one }.is_possible()
+        let asked = CounterweightSpec { clearance: Some(clearance), ..asked.clone() };
+        CounterweightTask { asked: &asked, ..*one }.is_possible()
     };
     if !is_clear(0.0) {
         return None;
@@ -85,9 +97,9 @@ fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x)
 }
 
-impl Kind {
+impl BoundKind {
     /// Returns the kinds of bounds that are set.
-    fn of(asked: &Weighing) -> Vec<Self> {
+    fn of(asked: &CounterweightSpec) -> Vec<Self> {
         let set = [
             (Self::Most, asked.sites.iter().any(|site| site.most.is_finite())),
             (Self::Mass, asked.most_mass.is_some()),
@@ -98,13 +110,13 @@ impl Kind {
     }
 
     /// Rounds a relaxed bound to few digits, away from the infeasible side.
-    fn rounded(self, bound: f64) -> Relief {
+    fn rounded(self, bound: f64) -> BoundRelaxation {
         let up = rounded_as_printed((bound * STEPS_PER_UNIT).ceil().max(1.0) / STEPS_PER_UNIT, 6);
         match self {
-            Self::Most => Relief::Most(up),
-            Self::Mass => Relief::Mass(up),
-            Self::Inertia => Relief::Inertia(up),
-            Self::Clearance => Relief::Clearance(rounded_as_printed(
+            Self::Most => BoundRelaxation::Most(up),
+            Self::Mass => BoundRelaxation::Mass(up),
+            Self::Inertia => BoundRelaxation::Inertia(up),
+            Self::Clearance => BoundRelaxation::Clearance(rounded_as_printed(
                 (bound * CLEARANCE_STEPS_PER_M).floor() / CLEARANCE_STEPS_PER_M,
                 4,
             )),
@@ -112,8 +124,8 @@ impl Kind {
     }
 }
 
-impl Relief {
-    fn set(self, asked: &mut Weighing) {
+impl BoundRelaxation {
+    fn set(self, asked: &mut CounterweightSpec) {
         match self {
             Self::Most(most) => {
                 let bounded = asked.sites.iter_mut().filter(|site| site.most.is_finite());

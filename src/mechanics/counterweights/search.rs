@@ -3,14 +3,14 @@
 //! in magnitude with more inertia. The subproblem with the lowest bound is split first, so the first solution whose
 //! relaxation is exact is the optimum.
 
-use super::asked::Weighing;
-use super::cell::Cell;
-use super::problem::Problem;
-use super::refusal::NoWeights;
-use super::room::Room;
+use super::asked::CounterweightSpec;
+use super::cell::SearchCell;
+use super::problem::CounterweightProblem;
+use super::refusal::CounterweightError;
+use super::room::FreeSpan;
 use super::solution::MIN_MASS_KG;
-use super::way::Way;
-use crate::convex::{Least, NoX};
+use super::way::SearchNode;
+use crate::convex::{NoOptimum, Optimum};
 use crate::mechanics::machine::Machine;
 
 /// Maximum number of subproblems from choices between pins.
@@ -34,35 +34,35 @@ const MAX_LINEARISATIONS: usize = 25;
 /// # Errors
 /// If there are too many choices, or if the solver fails; the inner error says that there is no solution.
 pub(super) fn search(
-    problem: &Problem,
+    problem: &CounterweightProblem,
     machine: &Machine,
-    asked: &Weighing,
-    way: &Way,
-) -> Result<Result<Least, NoX>, NoWeights> {
+    asked: &CounterweightSpec,
+    way: &SearchNode,
+) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
     let search = Search { problem, machine, asked };
-    let rooms: Vec<Vec<Room>> =
-        asked.sites.iter().map(|site| Room::all(&problem.bare.resolved_links()[site.link].pins)).collect();
+    let rooms: Vec<Vec<FreeSpan>> =
+        asked.sites.iter().map(|site| FreeSpan::all(&problem.bare.resolved_links()[site.link].pins)).collect();
     // Open subproblems, each with the optimum of its relaxation.
     let mut open = match problem.least(machine, asked, way) {
         Ok(least) => vec![(least, way.clone())],
         Err(why) => return Ok(Err(why)),
     };
-    let (mut best, mut choices, mut cells): (Option<Least>, usize, usize) = (None, 1, 1);
+    let (mut best, mut choices, mut cells): (Option<Optimum>, usize, usize) = (None, 1, 1);
     while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
         let (least, way) = open.swap_remove(next);
         let bound = least.value - least.gap;
         if let Some(best) =
             best.as_ref().filter(|best| best.value <= least.value + VALUE_TOLERANCE || cells > MAX_CELLS)
         {
-            return Ok(Ok(Least { gap: best.value - bound, ..best.clone() }));
+            return Ok(Ok(Optimum { gap: best.value - bound, ..best.clone() }));
         }
         let ways = match search.worst_site(&least, &rooms, &way) {
             Some(j) => {
                 choices += rooms[j].len();
                 if choices > MAX_CHOICES {
-                    return Err(NoWeights::TooMany(MAX_CHOICES));
+                    return Err(CounterweightError::TooMany(MAX_CHOICES));
                 }
-                let enter = |room: &Room| {
+                let enter = |room: &FreeSpan| {
                     let mut next = way.clone();
                     next.rooms[j] = Some(*room);
                     next
@@ -84,7 +84,7 @@ pub(super) fn search(
                 cells += halves.len();
                 if halves.is_empty() {
                     // Too narrow to be split: its exact value counts.
-                    open.push((Least { value: found.value, ..found }, way));
+                    open.push((Optimum { value: found.value, ..found }, way));
                 }
                 halves
             }
@@ -92,26 +92,28 @@ pub(super) fn search(
         for next in ways {
             match problem.least(machine, asked, &next) {
                 Ok(least) => open.push((least, next)),
-                Err(NoX::Contradiction(_)) => {}
-                Err(NoX::Failed(why)) if asked.objective.momentum == 0.0 => return Err(NoWeights::Failed(why)),
+                Err(NoOptimum::Contradiction(_)) => {}
+                Err(NoOptimum::Failed(why)) if asked.objective.momentum == 0.0 => {
+                    return Err(CounterweightError::Failed(why));
+                }
                 // If the solver fails, the parent's bound holds.
-                Err(NoX::Failed(_)) => open.push((least.clone(), next)),
+                Err(NoOptimum::Failed(_)) => open.push((least.clone(), next)),
             }
         }
     }
-    Ok(best.ok_or(NoX::Contradiction(Vec::new())))
+    Ok(best.ok_or(NoOptimum::Contradiction(Vec::new())))
 }
 
 struct Search<'a> {
-    problem: &'a Problem,
+    problem: &'a CounterweightProblem,
     machine: &'a Machine,
-    asked: &'a Weighing,
+    asked: &'a CounterweightSpec,
 }
 
 impl Search<'_> {
     /// Returns the site whose disc violates the clearance of a pin most; `None` if all discs are clear or may cover
     /// pins. Sites whose room is chosen are clear.
-    fn worst_site(&self, least: &Least, rooms: &[Vec<Room>], way: &Way) -> Option<usize> {
+    fn worst_site(&self, least: &Optimum, rooms: &[Vec<FreeSpan>], way: &SearchNode) -> Option<usize> {
         let clearance = self.asked.clearance?;
         let missed = |j: usize| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
@@ -125,15 +127,15 @@ impl Search<'_> {
     }
 
     /// Returns a solution with every inertia at its exact value.
-    fn with_exact_inertia(&self, least: &Least) -> Least {
+    fn with_exact_inertia(&self, least: &Optimum) -> Optimum {
         let x = self.problem.settled(self.machine, self.asked, &least.x);
-        Least { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
+        Optimum { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
     }
 
     /// Descends from a solution, and also from the bounds of all cells if `from_bounds`: each iteration solves the cone
     /// program with the inertias linearised about the previous solution. Returns the results and the solution itself.
-    fn descend(&self, from: &Least, way: &Way, from_bounds: bool) -> Vec<Least> {
-        let about = |least: &Least| {
+    fn descend(&self, from: &Optimum, way: &SearchNode, from_bounds: bool) -> Vec<Optimum> {
+        let about = |least: &Optimum| {
             let one = |j: usize| {
                 let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), way.cells[j].at);
                 let far = if from.abs() > to.abs() { from } else { to };
@@ -150,9 +152,9 @@ impl Search<'_> {
             starts.extend([end(0, 0.0), end(1, 0.0), end(0, heavy), end(1, heavy)]);
         }
         let down = |mut tangents: Vec<[f64; 2]>| {
-            let mut best: Option<Least> = None;
+            let mut best: Option<Optimum> = None;
             for _ in 0..MAX_LINEARISATIONS {
-                let way = Way { tangents: Some(tangents), ..way.clone() };
+                let way = SearchNode { tangents: Some(tangents), ..way.clone() };
                 let Ok(next) = self.problem.least(self.machine, self.asked, &way) else { break };
                 let next = self.with_exact_inertia(&next);
                 tangents = about(&next);
@@ -170,7 +172,7 @@ impl Search<'_> {
     }
 
     /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
-    fn halves(&self, least: &Least, way: &Way, best: Option<&Least>) -> Vec<Way> {
+    fn halves(&self, least: &Optimum, way: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
         let excess = self.problem.excess(self.machine, self.asked, &least.x);
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
@@ -185,7 +187,7 @@ impl Search<'_> {
             Some((j, halves))
         });
         let Some((j, halves)) = halved else { return Vec::new() };
-        let with = |cell: Cell| {
+        let with = |cell: SearchCell| {
             let mut next = way.clone();
             next.cells[j] = cell;
             next

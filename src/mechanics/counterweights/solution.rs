@@ -1,12 +1,12 @@
 //! Evaluates a solution of the cone program: its objective, and the machine with counterweights and rotors.
 
-use super::asked::{Free, Sites, Weighing};
-use super::left::Left;
-use super::problem::Problem;
-use super::refusal::NoWeights;
-use super::unknowns::{Sum, Unknowns};
-use super::way::{Balance, Way};
-use crate::mechanics::balance::{Equation, Plane};
+use super::asked::{CounterweightSpec, RotorFreedom, Sites};
+use super::left::ConditionResidual;
+use super::problem::CounterweightProblem;
+use super::refusal::CounterweightError;
+use super::unknowns::{AffineForm, UnknownIndices};
+use super::way::{BalanceGoal, SearchNode};
+use crate::mechanics::balance::{LinearEquation, SolutionSpace};
 use crate::mechanics::machine::{Counterweight, Machine, Rotor};
 
 /// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
@@ -18,16 +18,16 @@ pub(super) const MIN_MASS_KG: f64 = 1e-7;
 /// Smallest |gear ratio|: a ratio of zero is not valid.
 const MIN_RATIO: f64 = 1e-9;
 
-impl Problem {
+impl CounterweightProblem {
     /// Returns a solution with every inertia, momentum and torque at its exact value instead of a bound.
-    pub fn settled(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<f64> {
-        let unknowns = Unknowns::of(asked, self.drives());
+    pub fn settled(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
+        let unknowns = UnknownIndices::of(asked, self.drives());
         let mut x = x.to_vec();
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
             x[unknowns.turned(i)] = match rotor.free {
-                Free::Inertia(_) => 0.0,
-                Free::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
+                RotorFreedom::Inertia(_) => 0.0,
+                RotorFreedom::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
             };
         }
         if !unknowns.inertia {
@@ -42,7 +42,7 @@ impl Problem {
             x[unknowns.u(j)] = w * at * at;
             x[unknowns.v(j)] = asked.disc.own() * w * w;
         }
-        let of = |sum: &Sum, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
+        let of = |sum: &AffineForm, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
         let mut torque = 0.0_f64;
         for k in 0..self.drives() {
             let h = of(&self.linear_diagonal(asked, &unknowns, k, &places), &x);
@@ -61,21 +61,21 @@ impl Problem {
     }
 
     /// Returns the value of the objective.
-    pub fn value(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> f64 {
-        let costs = self.program(machine, asked, &[], &Way::free(asked, Balance::Exact)).linear;
+    pub fn value(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> f64 {
+        let costs = self.program(machine, asked, &[], &SearchNode::free(asked, BalanceGoal::Exact)).linear;
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
     /// Returns for each site how much u and v of a solution exceed the exact inertias, kg m².
-    pub fn excess(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<[f64; 2]> {
-        let (unknowns, settled) = (Unknowns::of(asked, self.drives()), self.settled(machine, asked, x));
+    pub fn excess(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
+        let (unknowns, settled) = (UnknownIndices::of(asked, self.drives()), self.settled(machine, asked, x));
         let excess = |i: usize| x[i] - settled[i];
         (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
     /// Returns the mass w, kg, and the first moment s, kg m, at site j.
-    pub fn at(&self, asked: &Weighing, x: &[f64], j: usize) -> [f64; 2] {
-        let unknowns = Unknowns::of(asked, self.drives());
+    pub fn at(&self, asked: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 2] {
+        let unknowns = UnknownIndices::of(asked, self.drives());
         [x[unknowns.w(j)], x[unknowns.s(j)]]
     }
 
@@ -87,17 +87,17 @@ impl Problem {
     pub fn machine(
         &self,
         machine: &Machine,
-        asked: &Weighing,
+        asked: &CounterweightSpec,
         x: &[f64],
-        balance: Balance,
-    ) -> Result<(f64, Machine), NoWeights> {
-        let unknowns = Unknowns::of(asked, self.drives());
+        balance: BalanceGoal,
+    ) -> Result<(f64, Machine), CounterweightError> {
+        let unknowns = UnknownIndices::of(asked, self.drives());
         let sites = asked.sites.iter().enumerate();
         let all = sites.map(|(j, site)| (*site, self.at(asked, x, j)));
         let mut found: Found = all.filter(|(_, [w, _])| *w > MIN_MASS_KG).collect();
         // The residual from the solver's rounding and from omitted counterweights is removed by the least change of the
         // others.
-        for _ in 0..if balance == Balance::Exact { 3 } else { 0 } {
+        for _ in 0..if balance == BalanceGoal::Exact { 3 } else { 0 } {
             self.refine(asked, &mut found);
         }
         let mut spec = self.bare.spec().clone();
@@ -112,8 +112,8 @@ impl Problem {
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
             let found = match rotor.free {
-                Free::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
-                Free::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
+                RotorFreedom::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
+                RotorFreedom::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
             };
             spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
         }
@@ -121,7 +121,7 @@ impl Problem {
     }
 
     /// Removes the residual of the conditions by the least change of the counterweights.
-    fn refine(&self, asked: &Weighing, found: &mut Found) {
+    fn refine(&self, asked: &CounterweightSpec, found: &mut Found) {
         // Without counterweights the links balance each other.
         if found.is_empty() {
             return;
@@ -136,13 +136,13 @@ impl Problem {
             condition.left.re + changed.sum::<f64>()
         });
         // Changes are measured relative to each mass, so that light counterweights keep their positions.
-        let equation = |(condition, right): (&Left, f64)| Equation {
+        let equation = |(condition, right): (&ConditionResidual, f64)| LinearEquation {
             a: (0..2 * sites.len()).map(|j| condition.changes[sites[j / 2]][j % 2] * found[j / 2].1[0]).collect(),
             right,
             tolerance: f64::INFINITY,
         };
-        let equations: Vec<Equation> = self.conditions.iter().zip(residual).map(equation).collect();
-        let change = Plane::of(&equations, 2 * sites.len()).start;
+        let equations: Vec<LinearEquation> = self.conditions.iter().zip(residual).map(equation).collect();
+        let change = SolutionSpace::of(&equations, 2 * sites.len()).start;
         for (j, (_, [w, s])) in found.iter_mut().enumerate() {
             let by = *w;
             (*w, *s) = (*w - by * change[2 * j], *s - by * change[2 * j + 1]);

@@ -1,4 +1,4 @@
-//! [`off_by`]: residuals of balance from tolerances of mass and position of counterweights.
+//! [`worst_residual`]: residuals of balance from tolerances of mass and position of counterweights.
 
 use serde::Serialize;
 
@@ -7,21 +7,21 @@ use crate::mechanics::machine::Machine;
 
 /// Tolerances of a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
+pub struct PlacementTolerance {
     /// Relative tolerance of its mass: 0.01 is one per cent.
     pub mass: f64,
     /// Tolerance of its position, m.
     pub place: f64,
 }
 
-impl Tolerance {
+impl PlacementTolerance {
     /// One per cent, and half a millimetre.
     pub const USUAL: Self = Self { mass: 0.01, place: 5e-4 };
 }
 
 /// Largest residuals of (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct OffBy {
+pub struct WorstResidual {
     /// Largest |g_k|, kg m.
     pub force: f64,
     /// Largest |C_kl|, kg m².
@@ -30,8 +30,8 @@ pub struct OffBy {
 
 /// Returns the largest residuals of a balanced machine if all counterweights deviate by their tolerances with the worst
 /// signs. To first order: products of deviations are neglected.
-pub fn off_by(machine: &Machine, tolerance: &Tolerance) -> OffBy {
-    let mut worst = OffBy { force: 0.0, coupling: 0.0 };
+pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> WorstResidual {
+    let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
     for condition in Condition::all(machine.drives()) {
         let each = machine.spec().counterweights.iter().filter_map(|weight| {
             let link = machine.links().iter().position(|link| link.name == weight.link)?;

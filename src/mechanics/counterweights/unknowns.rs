@@ -1,14 +1,14 @@
-//! [`Unknowns`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
+//! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
 
-use super::asked::{Free, Weighing};
-use super::problem::Problem;
+use super::asked::{CounterweightSpec, RotorFreedom};
+use super::problem::CounterweightProblem;
 use crate::mechanics::machine::Machine;
 
 /// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
 /// free rotors, if the inertia counts; two for each free rotor; |D_k| of each drive, if it counts; and the greatest
 /// torque.
 #[derive(Clone, Copy)]
-pub(super) struct Unknowns {
+pub(super) struct UnknownIndices {
     sites: usize,
     /// Whether the inertia counts.
     pub inertia: bool,
@@ -18,8 +18,8 @@ pub(super) struct Unknowns {
     pub momentum: bool,
 }
 
-impl Unknowns {
-    pub fn of(asked: &Weighing, drives: usize) -> Self {
+impl UnknownIndices {
+    pub fn of(asked: &CounterweightSpec, drives: usize) -> Self {
         let inertia = asked.objective.turns() || asked.most_inertia.is_some();
         let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
         Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
@@ -69,12 +69,12 @@ impl Unknowns {
 }
 
 /// A linear function of the unknowns.
-pub(super) struct Sum {
+pub(super) struct AffineForm {
     pub terms: Vec<(usize, f64)>,
     pub constant: f64,
 }
 
-impl Problem {
+impl CounterweightProblem {
     /// Returns a and b of the rate ratio r_k = a + b N of a rotor on `drive` with gear ratio N.
     fn rates(&self, drive: usize, k: usize) -> [f64; 2] {
         match self.bare.motors().on(drive) {
@@ -85,20 +85,20 @@ impl Problem {
     }
 
     /// Returns the contributions of free rotors to D_k and to H_kk.
-    pub fn of_rotors(&self, asked: &Weighing, machine: &Machine, k: usize) -> [Sum; 2] {
-        let unknowns = Unknowns::of(asked, self.drives());
-        let mut sums = [(); 2].map(|()| Sum { terms: Vec::new(), constant: 0.0 });
+    pub fn of_rotors(&self, asked: &CounterweightSpec, machine: &Machine, k: usize) -> [AffineForm; 2] {
+        let unknowns = UnknownIndices::of(asked, self.drives());
+        let mut sums = [(); 2].map(|()| AffineForm { terms: Vec::new(), constant: 0.0 });
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let [plain, by_ratio] = self.rates(rotor.drive, k);
             let present = machine.spec().drives[rotor.drive].rotor.unwrap_or_default();
             let (x, turned, inertia) = (unknowns.rotor(i), unknowns.turned(i), present.inertia);
             match rotor.free {
-                Free::Inertia(_) => {
+                RotorFreedom::Inertia(_) => {
                     let rate = plain + by_ratio * present.ratio;
                     sums[0].terms.push((x, rate));
                     sums[1].terms.push((x, rate * rate));
                 }
-                Free::Ratio(_) => {
+                RotorFreedom::Ratio(_) => {
                     sums[0].terms.push((x, by_ratio * inertia));
                     sums[0].constant += plain * inertia;
                     sums[1].terms.extend([(x, 2.0 * plain * by_ratio * inertia), (turned, by_ratio * by_ratio)]);
@@ -116,9 +116,15 @@ impl Problem {
 
     /// Returns a linear lower bound of H_kk without free rotors, tangent at masses, kg, and positions, m, of
     /// `tangents`.
-    pub fn linear_diagonal(&self, asked: &Weighing, unknowns: &Unknowns, k: usize, tangents: &[[f64; 2]]) -> Sum {
+    pub fn linear_diagonal(
+        &self,
+        asked: &CounterweightSpec,
+        unknowns: &UnknownIndices,
+        k: usize,
+        tangents: &[[f64; 2]],
+    ) -> AffineForm {
         let parts = self.bare.resolved_links();
-        let mut sum = Sum { terms: Vec::new(), constant: self.inertia.diagonal(k) };
+        let mut sum = AffineForm { terms: Vec::new(), constant: self.inertia.diagonal(k) };
         for (j, (site, [mass, at])) in asked.sites.iter().zip(tangents).enumerate() {
             let (part, own) = (&parts[site.link], asked.disc.own());
             let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));

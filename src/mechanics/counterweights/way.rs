@@ -1,13 +1,13 @@
-//! [`Way`]: one subproblem of the search for counterweights.
+//! [`SearchNode`]: one subproblem of the search for counterweights.
 
-use super::asked::Weighing;
-use super::cell::Cell;
-use super::refusal::Kind;
-use super::room::Room;
+use super::asked::CounterweightSpec;
+use super::cell::SearchCell;
+use super::refusal::BoundKind;
+use super::room::FreeSpan;
 
 /// Form of the balance conditions (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Balance {
+pub(super) enum BalanceGoal {
     /// They hold exactly.
     Exact,
     /// Their largest residual over a range of payloads is the objective.
@@ -20,31 +20,31 @@ pub(super) enum Balance {
 /// chosen, and the form of the balance conditions. If `most` bounds the objective, added mass and Σ H_kk are minimised
 /// instead, to choose among its optima.
 #[derive(Clone, Debug)]
-pub(super) struct Way {
-    pub rooms: Vec<Option<Room>>,
-    pub balance: Balance,
+pub(super) struct SearchNode {
+    pub rooms: Vec<Option<FreeSpan>>,
+    pub balance: BalanceGoal,
     pub most: Option<f64>,
     /// Kinds of bounds that are dropped.
-    pub loose: Vec<Kind>,
+    pub loose: Vec<BoundKind>,
     /// A kind of bound whose value is minimised instead of the objective.
-    pub least: Option<Kind>,
+    pub least: Option<BoundKind>,
     /// Ranges of mass and position of each counterweight; they apply if |D_k| counts.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<SearchCell>,
     /// Masses, kg, and positions, m, about which inertias are linearised where they raise a negative D_k. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.
     pub tangents: Option<Vec<[f64; 2]>>,
 }
 
-impl Way {
+impl SearchNode {
     /// Returns the subproblem without choices: no clearance of pins, and cells as wide as the bounds.
-    pub fn free(asked: &Weighing, balance: Balance) -> Self {
+    pub fn free(asked: &CounterweightSpec, balance: BalanceGoal) -> Self {
         Self {
             rooms: vec![None; asked.sites.len()],
             balance,
             most: None,
             loose: Vec::new(),
             least: None,
-            cells: asked.sites.iter().map(|site| Cell::of(asked, site)).collect(),
+            cells: asked.sites.iter().map(|site| SearchCell::of(asked, site)).collect(),
             tangents: None,
         }
     }

@@ -2,21 +2,21 @@
 
 use super::block::together;
 use super::joints::Joints;
-use super::pins::{FLAT, MAX_PINS};
+use super::pins::{FLAT_SINE, MAX_PINS};
 use super::tree::{SolveStep, Stator};
 use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, cross};
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, cross};
 
 /// Forces of all pins, and torques of the motors, at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Forces {
+pub struct PinForces {
     len: usize,
     forces: [Vector; MAX_PINS],
     undefined: u32,
     torque: PerDrive,
 }
 
-impl Forces {
+impl PinForces {
     /// Returns the force of pin i, N, in base axes, which its first link exerts on its second. `None` while a
     /// parallelogram that the force depends on is flat.
     #[inline]
@@ -24,7 +24,7 @@ impl Forces {
         (i < self.len && self.undefined & 1 << i == 0).then(|| self.forces[i])
     }
 
-    /// Returns the forces of all pins, N, always finite: at a change point those at |sin(q_k − q_l)| = [`FLAT`].
+    /// Returns the forces of all pins, N, always finite: at a change point those at |sin(q_k − q_l)| = [`FLAT_SINE`].
     #[inline]
     pub fn bounded(&self) -> &[Vector] {
         &self.forces[..self.len]
@@ -59,7 +59,7 @@ impl Forces {
 impl Joints {
     /// Returns the force of every pin and the torques of the drives for a motion, with frictionless pins. On a moving
     /// base, gravity is g − p̈_B.
-    pub fn forces(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Forces {
+    pub fn forces(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PinForces {
         self.forces_with(e, qd, qdd, around, |_, _| 0.0)
     }
 
@@ -69,12 +69,12 @@ impl Joints {
     #[inline]
     pub fn forces_with(
         &self,
-        e: &Units,
+        e: &UnitVectors,
         qd: &PerDrive,
         qdd: &PerDrive,
         around: &Surroundings,
         couple: impl Fn(usize, usize) -> f64,
-    ) -> Forces {
+    ) -> PinForces {
         let zero = Vector::default();
         let mut turn = [zero; MAX_DRIVES];
         for k in 0..self.drives {
@@ -121,7 +121,7 @@ impl Joints {
             }
         };
         self.stators.iter().filter(|stator| stator.before).for_each(|stator| react(stator, &mut moment));
-        let mut out = Forces {
+        let mut out = PinForces {
             len: self.pins.len(),
             forces: [zero; MAX_PINS],
             undefined: 0,
@@ -142,9 +142,9 @@ impl Joints {
                 SolveStep::Pair { closure, rows: [(i, v), (j, w)] } => {
                     let (ek, el) = (e[links[*i].drive], e[links[*j].drive]);
                     let mut sine = cross(ek, el);
-                    if sine.abs() < FLAT {
+                    if sine.abs() < FLAT_SINE {
                         out.undefined |= self.closures[*closure].reaches;
-                        sine = FLAT.copysign(sine);
+                        sine = FLAT_SINE.copysign(sine);
                     }
                     let lambda = (el * (moment[*i] / v) - ek * (moment[*j] / w)) / sine;
                     apply(*closure, lambda, &mut force, &mut moment);
@@ -175,7 +175,7 @@ impl Joints {
     }
 
     /// Returns f_B, N, the force that the links at B exert on the base.
-    pub fn on_base(&self, forces: &Forces) -> Vector {
+    pub fn on_base(&self, forces: &PinForces) -> Vector {
         let at_base = self.pins.iter().zip(forces.bounded()).filter(|(pin, _)| pin.from.is_none());
         -at_base.map(|(_, f)| f).sum::<Vector>()
     }

@@ -1,44 +1,44 @@
 //! The pin forces that a frame keeps, and their peaks and means over a run.
 
-use super::{AxialMoments, Forces, Joints, Tilt};
+use super::{AxialMoments, Joints, PinForces, TiltMoment};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{PerDrive, Units, Vector};
+use crate::mechanics::planar::{PerDrive, UnitVectors, Vector};
 
 /// Number of pins whose forces a frame keeps. A session holds many frames, so a frame does not keep every pin; the
 /// largest force over all pins is kept in any case.
-pub const KEPT: usize = 16;
+pub const MAX_FRAME_PINS: usize = 16;
 
 /// Pin forces and tilting moment at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Inside {
-    pins: [Vector; KEPT],
+pub struct InternalLoads {
+    pins: [Vector; MAX_FRAME_PINS],
     known: u8,
     undefined: u16,
     worst_pin: u8,
     /// The largest force of a pin, N; 0 if statics does not determine the forces.
     pub worst: f64,
     /// The moment that tilts the base.
-    pub tilt: Tilt,
+    pub tilt: TiltMoment,
 }
 
-impl Inside {
-    fn of(forces: &Forces, tilt: Tilt) -> Self {
-        let known = forces.bounded().len().min(KEPT);
-        let mut pins = [Vector::default(); KEPT];
+impl InternalLoads {
+    fn of(forces: &PinForces, tilt: TiltMoment) -> Self {
+        let known = forces.bounded().len().min(MAX_FRAME_PINS);
+        let mut pins = [Vector::default(); MAX_FRAME_PINS];
         pins[..known].copy_from_slice(&forces.bounded()[..known]);
         let (worst, worst_pin) = forces.worst();
         Self { pins, known: known as u8, undefined: forces.undefined() as u16, worst_pin: worst_pin as u8, worst, tilt }
     }
 
     /// Returns the force of pin i, N, in the order of [`Joints::pins`], which its first link exerts on its second.
-    /// `None` at a change point, for pins beyond [`KEPT`], and if statics does not determine the force.
+    /// `None` at a change point, for pins beyond [`MAX_FRAME_PINS`], and if statics does not determine the force.
     pub fn pin(&self, i: usize) -> Option<Vector> {
         (i < usize::from(self.known) && self.undefined & 1 << i == 0).then(|| self.pins[i])
     }
 
     /// Returns the magnitude of the force of pin i, N, always finite: at a change point its value at
-    /// |sin(q_k − q_l)| = [`FLAT`](super::FLAT); 0 for pins that are not kept.
+    /// |sin(q_k − q_l)| = [`FLAT_SINE`](super::FLAT_SINE); 0 for pins that are not kept.
     pub fn size(&self, i: usize) -> f64 {
         self.pins.get(i).map_or(0.0, |f| f.norm())
     }
@@ -69,7 +69,7 @@ impl PinLoads {
     }
 
     /// Returns the magnitude of the tilting moment, N m.
-    pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> f64 {
+    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> f64 {
         if self.axial.is_flat() { 0.0 } else { self.axial.tilt(e, qd, qdd, around).total().norm() }
     }
 
@@ -77,16 +77,16 @@ impl PinLoads {
     /// On a moving base, gravity is g − p̈_B.
     pub fn at(
         &self,
-        e: &Units,
+        e: &UnitVectors,
         qd: &PerDrive,
         qdd: &PerDrive,
         around: &Surroundings,
         couple: impl Fn(usize, usize) -> f64,
-    ) -> Inside {
+    ) -> InternalLoads {
         let tilt = self.axial.tilt(e, qd, qdd, around);
         match &self.joints {
-            Some(joints) => Inside::of(&joints.forces_with(e, qd, qdd, around, couple), tilt),
-            None => Inside { tilt, ..Inside::default() },
+            Some(joints) => InternalLoads::of(&joints.forces_with(e, qd, qdd, around, couple), tilt),
+            None => InternalLoads { tilt, ..InternalLoads::default() },
         }
     }
 }

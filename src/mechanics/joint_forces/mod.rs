@@ -37,7 +37,7 @@
 //!
 //! # Near change points
 //! Where sin(q_k − q_l) → 0 the parallelogram is flat and its forces grow like 1/|sin|, while τ stays finite. Where
-//! |sin(q_k − q_l)| is below [`FLAT`], the forces are undefined.
+//! |sin(q_k − q_l)| is below [`FLAT_SINE`], the forces are undefined.
 
 mod block;
 mod error;
@@ -51,9 +51,11 @@ mod transmission;
 mod tree;
 
 pub use error::JointsError;
-pub use forces::Forces;
-pub use inside::{Inside, KEPT, PinLoads, PinPeak};
+pub use forces::PinForces;
+pub use inside::{InternalLoads, MAX_FRAME_PINS, PinLoads, PinPeak};
 pub use joints::Joints;
-pub use pins::{FLAT, MAX_PINS, Pin};
-pub use tilt::{AxialMoments, Tilt};
-pub use transmission::{ChangePointDistance, Parallelogram, ahead, nearest, pair_transmission};
+pub use pins::{FLAT_SINE, MAX_PINS, Pin};
+pub use tilt::{AxialMoments, TiltMoment};
+pub use transmission::{
+    ChangePointDistance, Parallelogram, nearest_change_point, next_change_point, pair_transmission,
+};

@@ -7,7 +7,7 @@ pub const MAX_PINS: usize = 32;
 
 /// Smallest |sin(q_k − q_l)| at which the forces of a parallelogram are defined. At this value rounding alone changes
 /// them by 1e-7.
-pub const FLAT: f64 = 1e-9;
+pub const FLAT_SINE: f64 = 1e-9;
 
 /// A pin or bearing.
 #[derive(Clone, Debug, PartialEq)]

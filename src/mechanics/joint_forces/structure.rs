@@ -5,7 +5,7 @@ use super::error::JointsError;
 use super::pins::pins;
 use super::tree::{CutClosure, SolveStep, Stator, TreeLink, lever};
 use crate::mechanics::machine::{CLOSURE_TOLERANCE, Inertia, Machine};
-use crate::mechanics::planar::{Units, Vector, unit};
+use crate::mechanics::planar::{UnitVectors, Vector, unit};
 
 /// Returns the machine's links as a tree, parents first; the end link includes the payload.
 pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
@@ -195,7 +195,7 @@ fn is_regular(links: &[TreeLink], closures: &[CutClosure], block: &SolveStep) ->
     let moment = vec![0.0; links.len()];
     // Three sample poses. The golden angle between successive drives keeps pairs away from change points.
     [0.7, 1.9, 4.4].into_iter().any(|start| {
-        let e: Units = std::array::from_fn(|k| unit(start * (1.0 + k as f64) + 2.399_963 * k as f64));
+        let e: UnitVectors = std::array::from_fn(|k| unit(start * (1.0 + k as f64) + 2.399_963 * k as f64));
         together(links, closures, open, rows, &e, &moment).1
     })
 }

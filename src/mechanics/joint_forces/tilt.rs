@@ -23,7 +23,7 @@
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector};
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
 /// Constants of a machine from which its tilting moment follows.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,14 +42,14 @@ pub struct AxialMoments {
 
 /// Moment about B, x + iy, N m, that the manipulator exerts on the base and that tilts it, in two parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tilt {
+pub struct TiltMoment {
     /// Part from motion.
     pub motion: Vector,
     /// Part from weight and from a force held at the end effector.
     pub weight: Vector,
 }
 
-impl Tilt {
+impl TiltMoment {
     /// Returns the sum of both parts.
     pub fn total(&self) -> Vector {
         self.motion + self.weight
@@ -95,9 +95,9 @@ impl AxialMoments {
 
     /// Returns the tilting moment about B at the plane of reference.
     #[inline]
-    pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Tilt {
+    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> TiltMoment {
         let i = Vector::new(0.0, 1.0);
-        Tilt {
+        TiltMoment {
             motion: i * self.pull(&self.s, e, qd, qdd),
             weight: i * (around.gravity * self.total + around.force * self.end),
         }
@@ -105,13 +105,13 @@ impl AxialMoments {
 
     /// Returns the couple of the motion, n_x + i n_y, N m: the tilting moment about the height of the centre of mass.
     /// In a force balanced machine it equals the part of n_t from motion.
-    pub fn couple(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+    pub fn couple(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         Vector::new(0.0, 1.0) * self.pull(&self.couple, e, qd, qdd)
     }
 
     /// Returns −Σ_k s_k ä_k.
     #[inline]
-    fn pull(&self, s: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+    fn pull(&self, s: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         let mut sum = Vector::default();
         for k in 0..self.drives {
             sum -= s[k] * (Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use super::pins::Pin;
 use super::tree::{CutClosure, TreeLink};
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{PerDrive, Units, cross};
+use crate::mechanics::planar::{PerDrive, UnitVectors, cross};
 
 /// A loop of two drives.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct ChangePointDistance {
 }
 
 /// Returns |sin(q_k − q_l)|.
-pub fn pair_transmission(e: &Units, k: usize, l: usize) -> f64 {
+pub fn pair_transmission(e: &UnitVectors, k: usize, l: usize) -> f64 {
     cross(e[k], e[l]).abs()
 }
 
@@ -52,7 +52,7 @@ fn from_multiple_of_pi(angle: f64) -> f64 {
 }
 
 /// Returns the change point with the smallest distance over all pairs; `None` for a machine with one drive.
-pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
+pub fn nearest_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).map(|(k, l)| {
         let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);
         ChangePointDistance { drives: (k, l), distance: past.abs(), time: arrival(-past, rate) }
@@ -62,7 +62,7 @@ pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
 
 /// Returns the change point that the present rates reach first, with the angle that the pair has to turn until then;
 /// `None` if all drives turn at the same rate.
-pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
+pub fn next_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
         let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);
         // Towards the nearest multiple of π, or from it to the next.

@@ -1,6 +1,6 @@
 //! The tree of links that remains when every closure is cut, and the action of closure forces on it.
 
-use crate::mechanics::machine::Turning;
+use crate::mechanics::machine::RotorCoupling;
 use crate::mechanics::planar::Vector;
 
 /// A link of the tree with the payload that it holds.
@@ -34,7 +34,7 @@ pub struct Stator {
     /// The link that carries it; `None` for the base.
     pub link: Option<usize>,
     /// Its rotor: inertia, kg m², and the ratios of its rate to those of the drives.
-    pub rotor: Turning,
+    pub rotor: RotorCoupling,
     /// Whether the moment of its drive is known before the closures are solved.
     pub before: bool,
 }

@@ -1,6 +1,6 @@
 //! Maximum numbers of a machine's parts. All work on a machine grows with the length of its lists, so each is bounded.
 
-use super::error::{MachineError, Place};
+use super::error::{KeyPath, MachineError};
 use super::spec::MachineSpec;
 use crate::mechanics::planar::MAX_DRIVES;
 
@@ -44,21 +44,21 @@ pub(super) fn check_counts(spec: &MachineSpec) -> Result<(), MachineError> {
         }
     }
     for (i, drive) in spec.drives.iter().enumerate() {
-        brief(&drive.name, MAX_NAME, || Place::new(&[&"drive", &i, &"name"]))?;
+        brief(&drive.name, MAX_NAME, || KeyPath::new(&[&"drive", &i, &"name"]))?;
     }
     for (i, link) in spec.links.iter().enumerate() {
-        brief(&link.name, MAX_NAME, || Place::new(&[&"link", &i, &"name"]))?;
+        brief(&link.name, MAX_NAME, || KeyPath::new(&[&"link", &i, &"name"]))?;
     }
     for (i, angle) in spec.angles.iter().enumerate() {
-        brief(&angle.name, MAX_NAME, || Place::new(&[&"angle", &i, &"name"]))?;
+        brief(&angle.name, MAX_NAME, || KeyPath::new(&[&"angle", &i, &"name"]))?;
     }
-    brief(&spec.name, MAX_NAME, || Place::new(&[&"name"]))?;
-    brief(&spec.summary, MAX_SUMMARY, || Place::new(&[&"summary"]))?;
-    spec.lengths.keys().try_for_each(|name| brief(name, MAX_NAME, || Place::new(&[&"lengths", name])))
+    brief(&spec.name, MAX_NAME, || KeyPath::new(&[&"name"]))?;
+    brief(&spec.summary, MAX_SUMMARY, || KeyPath::new(&[&"summary"]))?;
+    spec.lengths.keys().try_for_each(|name| brief(name, MAX_NAME, || KeyPath::new(&[&"lengths", name])))
 }
 
 /// Checks that a text has at most `most` characters.
-fn brief(text: &str, most: usize, place: impl Fn() -> Place) -> Result<(), MachineError> {
+fn brief(text: &str, most: usize, place: impl Fn() -> KeyPath) -> Result<(), MachineError> {
     let is_brief = text.chars().nth(most).is_none();
     is_brief.then_some(()).ok_or_else(|| MachineError::TooLong { place: place(), text: text.into(), most })
 }

@@ -2,17 +2,17 @@
 
 use super::Chain;
 use super::caps::{MAX_IN_A_ROW, check_counts};
-use super::error::{MachineError, Place, PlaceStep, quoted};
+use super::error::{KeyPath, KeyStep, MachineError, quoted};
 use super::inertia::Inertia;
-use super::model::{Machine, Model, RelativeAngle, ResolvedClosure, ResolvedLink};
+use super::model::{Machine, MachineData, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::motors::Motors;
 use super::numbers::check_numbers;
 use super::ranges::{LENGTH, PLACE, within};
-use super::spec::{Angle, Attach, Closure, Length, Link, MachineSpec, PlaceOnLink, Point, Rotor};
+use super::spec::{Angle, Attach, Closure, Length, Link, LinkPoint, MachineSpec, PlaceOnLink, Rotor};
 use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::Short;
-use crate::settings::range::{clipped, shortened};
-use crate::settings::text::steering;
+use crate::settings::number::ShortNumber;
+use crate::settings::range::{quote_clipped, shortened};
+use crate::settings::text::control_character;
 
 /// Tolerance of the distance between the two points of a closure, m.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
@@ -29,7 +29,8 @@ impl Machine {
         }
         let Parts { links, bodies, end_effector, end_link, angles, loops, motors } =
             Parts::of(&spec).map_err(|error| error.named(&spec))?;
-        let machine = Self::from(Model { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors });
+        let machine =
+            Self::from(MachineData { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors });
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -63,7 +64,7 @@ impl Parts {
         let closures = spec.closures.iter().enumerate();
         let loops = closures.map(|(i, c)| resolve_closure(spec, &names, &links, i, c)).collect::<Result<_, _>>()?;
         let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
-        let (end_link, s) = locate(spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
+        let (end_link, s) = locate(spec, &names, end, &|| KeyPath::new(&[&"end_effector"]))?;
         let end_effector = links[end_link].point(s);
         let angles = resolve_angles(spec, &names)?;
         let motors = resolve_motors(spec, &names)?;
@@ -80,20 +81,20 @@ struct Names<'a> {
 
 impl<'a> Names<'a> {
     fn of(spec: &'a MachineSpec) -> Result<Self, MachineError> {
-        printable(&spec.name, || Place::new(&[&"name"]))?;
-        printable(&spec.summary, || Place::new(&[&"summary"]))?;
-        spec.lengths.keys().try_for_each(|name| printable(name, || Place::new(&[&"lengths"])))?;
+        printable(&spec.name, || KeyPath::new(&[&"name"]))?;
+        printable(&spec.summary, || KeyPath::new(&[&"summary"]))?;
+        spec.lengths.keys().try_for_each(|name| printable(name, || KeyPath::new(&[&"lengths"])))?;
         let drives = unique("drive", spec.drives.iter().map(|d| d.name.as_str()))?;
         let links = unique("link", spec.links.iter().map(|l| l.name.as_str()))?;
         unique("angle", spec.angles.iter().map(|a| a.name.as_str()))?;
         Ok(Self { drives, links })
     }
 
-    fn drive(&self, name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+    fn drive(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
         look_up("drive", &self.drives, name, place)
     }
 
-    fn link(&self, name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+    fn link(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
         look_up("link", &self.links, name, place)
     }
 }
@@ -101,9 +102,9 @@ impl<'a> Names<'a> {
 fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Result<Vec<&'a str>, MachineError> {
     let mut seen: Vec<&str> = Vec::new();
     for (i, name) in names.enumerate() {
-        printable(name, || Place::new(&[&what, &i, &"name"]))?;
+        printable(name, || KeyPath::new(&[&what, &i, &"name"]))?;
         if seen.contains(&name) {
-            return Err(MachineError::Duplicate { place: Place::new(&[&what, &i, &"name"]), name: name.into() });
+            return Err(MachineError::Duplicate { place: KeyPath::new(&[&what, &i, &"name"]), name: name.into() });
         }
         seen.push(name);
     }
@@ -111,12 +112,12 @@ fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Resul
 }
 
 /// Checks that a text has no character that controls a terminal or reverses the order of letters.
-fn printable(text: &str, place: impl Fn() -> Place) -> Result<(), MachineError> {
+fn printable(text: &str, place: impl Fn() -> KeyPath) -> Result<(), MachineError> {
     let refused = |character| Err(MachineError::Unprintable { place: place(), character });
-    steering(text).map_or(Ok(()), refused)
+    control_character(text).map_or(Ok(()), refused)
 }
 
-fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
     names.iter().position(|n| *n == name).ok_or_else(|| MachineError::Unknown {
         place: place(),
         what,
@@ -127,14 +128,14 @@ fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> P
 
 /// Returns the length of link i, m.
 fn length_of(spec: &MachineSpec, i: usize) -> Result<f64, MachineError> {
-    let place = || Place::new(&[&"link", &i, &"length"]);
+    let place = || KeyPath::new(&[&"link", &i, &"length"]);
     match &spec.links[i].length {
         Length::Metres(l) => within(LENGTH, *l, place).map(|()| *l),
         Length::Named(name) => named_length(spec, name, place),
     }
 }
 
-fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> Place) -> Result<f64, MachineError> {
+fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPath) -> Result<f64, MachineError> {
     spec.lengths.get(name).copied().ok_or_else(|| MachineError::Unknown {
         place: place(),
         what: "length",
@@ -147,12 +148,12 @@ fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> Place) -> Re
 fn locate(
     spec: &MachineSpec,
     names: &Names,
-    point: &Point,
-    place: &dyn Fn() -> Place,
+    point: &LinkPoint,
+    place: &dyn Fn() -> KeyPath,
 ) -> Result<(usize, f64), MachineError> {
     let under = |key: &str| {
         let mut p = place();
-        p.0.push(PlaceStep::Key(key.into()));
+        p.0.push(KeyStep::Key(key.into()));
         p
     };
     let link = names.link(&point.link, || under("link"))?;
@@ -173,7 +174,7 @@ fn locate(
 fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, MachineError> {
     let mut parents = Vec::with_capacity(spec.links.len());
     for (i, link) in spec.links.iter().enumerate() {
-        let place = || Place::new(&[&"link", &i, &"attach"]);
+        let place = || KeyPath::new(&[&"link", &i, &"attach"]);
         parents.push(match &link.attach {
             Attach::Base(word) if word == "base" => None,
             Attach::Base(word) => {
@@ -191,13 +192,13 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             chain.push(&spec.links[parent].name);
             if chain.len() > spec.links.len() {
                 return Err(MachineError::Cycle {
-                    place: Place::new(&[&"link", &i, &"attach"]),
-                    link: clipped(&link.name),
+                    place: KeyPath::new(&[&"link", &i, &"attach"]),
+                    link: quote_clipped(&link.name),
                     chain: shortened(&chain.join(" on "), 200),
                 });
             }
             let on = &spec.links[parent];
-            let drive = names.drive(&on.drive, || Place::new(&[&"link", &parent, &"drive"]))?;
+            let drive = names.drive(&on.drive, || KeyPath::new(&[&"link", &parent, &"drive"]))?;
             root[drive] += f64::from(on.direction) * s;
             at = parent;
         }
@@ -206,7 +207,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             return Err(MachineError::Count { what, count: chain.len(), want });
         }
         parts.push(ResolvedLink {
-            drive: names.drive(&link.drive, || Place::new(&[&"link", &i, &"drive"]))?,
+            drive: names.drive(&link.drive, || KeyPath::new(&[&"link", &i, &"drive"]))?,
             sign: f64::from(link.direction),
             length: length_of(spec, i)?,
             root,
@@ -225,22 +226,22 @@ fn resolve_closure(
     i: usize,
     closure: &Closure,
 ) -> Result<ResolvedClosure, MachineError> {
-    let (a, s) = locate(spec, names, &closure.a, &|| Place::new(&[&"closure", &i, &"a"]))?;
-    let (b, t) = locate(spec, names, &closure.b, &|| Place::new(&[&"closure", &i, &"b"]))?;
+    let (a, s) = locate(spec, names, &closure.a, &|| KeyPath::new(&[&"closure", &i, &"a"]))?;
+    let (b, t) = locate(spec, names, &closure.b, &|| KeyPath::new(&[&"closure", &i, &"b"]))?;
     let (p, r) = (parts[a].point(s), parts[b].point(t));
     let gap: Vec<String> = (0..spec.drives.len())
         .filter(|&k| (p[k] - r[k]).abs() > CLOSURE_TOLERANCE)
-        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], clipped(&spec.drives[k].name)))
+        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], quote_clipped(&spec.drives[k].name)))
         .collect();
     if gap.is_empty() {
         return Ok(ResolvedClosure { a, at_a: s, b, at_b: t });
     }
-    let say = |point: &Point| match &point.at {
-        PlaceOnLink::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),
-        PlaceOnLink::Named(name) => format!("{} of link {}", clipped(name), clipped(&point.link)),
+    let say = |point: &LinkPoint| match &point.at {
+        PlaceOnLink::Metres(s) => format!("{} m of link {}", ShortNumber(*s), quote_clipped(&point.link)),
+        PlaceOnLink::Named(name) => format!("{} of link {}", quote_clipped(name), quote_clipped(&point.link)),
     };
     Err(MachineError::OpenLoop {
-        place: Place::new(&[&"closure", &i]),
+        place: KeyPath::new(&[&"closure", &i]),
         a: say(&closure.a),
         b: say(&closure.b),
         gap: gap.join(" and "),
@@ -251,8 +252,8 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
     let angle = |(i, a): (usize, &Angle)| {
         Ok(RelativeAngle {
             name: a.name.clone(),
-            to: names.drive(&a.to, || Place::new(&[&"angle", &i, &"to"]))?,
-            from: names.drive(&a.from, || Place::new(&[&"angle", &i, &"from"]))?,
+            to: names.drive(&a.to, || KeyPath::new(&[&"angle", &i, &"to"]))?,
+            from: names.drive(&a.from, || KeyPath::new(&[&"angle", &i, &"from"]))?,
             offset: a.offset,
             limits: a.min.unwrap_or(f64::NEG_INFINITY)..=a.max.unwrap_or(f64::INFINITY),
         })
@@ -264,7 +265,7 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
 fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> {
     let mut bodies = spec.links.clone();
     for (i, weight) in spec.counterweights.iter().enumerate() {
-        let j = names.link(&weight.link, || Place::new(&[&"counterweight", &i, &"link"]))?;
+        let j = names.link(&weight.link, || KeyPath::new(&[&"counterweight", &i, &"link"]))?;
         bodies[j] = bodies[j].with(weight);
     }
     Ok(bodies)
@@ -274,7 +275,7 @@ fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> 
 fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineError> {
     let mut on = Vec::with_capacity(spec.drives.len());
     for (i, drive) in spec.drives.iter().enumerate() {
-        let place = || Place::new(&[&"drive", &i, &"on"]);
+        let place = || KeyPath::new(&[&"drive", &i, &"on"]);
         on.push(drive.on.as_ref().map(|name| names.drive(name, place)).transpose()?);
     }
     for (i, drive) in spec.drives.iter().enumerate() {
@@ -284,8 +285,8 @@ fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineEr
             chain.push(&spec.drives[next].name);
             if met {
                 return Err(MachineError::StatorCycle {
-                    place: Place::new(&[&"drive", &i, &"on"]),
-                    drive: clipped(&drive.name),
+                    place: KeyPath::new(&[&"drive", &i, &"on"]),
+                    drive: quote_clipped(&drive.name),
                     chain: shortened(&chain.join(" on "), 200),
                 });
             }
@@ -297,7 +298,7 @@ fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineEr
 
 /// Collects the pins along each link, so that the link can be drawn long enough to reach all of them.
 fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [ResolvedLink]) -> Result<(), MachineError> {
-    let nowhere = || Place::default();
+    let nowhere = || KeyPath::default();
     for part in parts.iter_mut() {
         part.pins.push(0.0);
     }

@@ -5,16 +5,16 @@ use std::fmt;
 use thiserror::Error;
 
 use super::spec::MachineSpec;
-use crate::settings::number::Short;
-use crate::settings::range::{Want, clipped};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::{Requirement, quote_clipped};
 
 /// A place in a machine file: a path of keys and positions. It is shown as `--set` takes it, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place(pub Vec<PlaceStep>);
+pub struct KeyPath(pub Vec<KeyStep>);
 
-/// One step of a [`Place`].
+/// One step of a [`KeyPath`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum PlaceStep {
+pub enum KeyStep {
     /// A key of a table.
     Key(String),
     /// A position in an array, counted from 0.
@@ -23,9 +23,9 @@ pub enum PlaceStep {
     Named(usize, String),
 }
 
-impl Place {
+impl KeyPath {
     /// A place from its keys; numbers become positions.
-    pub fn new(path: &[&dyn AsStep]) -> Self {
+    pub fn new(path: &[&dyn AsKeyStep]) -> Self {
         Self(path.iter().map(|s| s.step()).collect())
     }
 
@@ -34,7 +34,7 @@ impl Place {
         let steps = key.split('.').flat_map(|part| {
             let (name, position) = part.split_once('[').unwrap_or((part, ""));
             let position = position.trim_end_matches(']').parse().ok().and_then(|i: usize| i.checked_sub(1));
-            std::iter::once(PlaceStep::Key(name.into())).chain(position.map(PlaceStep::At))
+            std::iter::once(KeyStep::Key(name.into())).chain(position.map(KeyStep::At))
         });
         Self(steps.collect())
     }
@@ -42,46 +42,46 @@ impl Place {
     /// Returns the same place seen from a table that holds this one under a key.
     #[must_use]
     pub fn under(self, key: &str) -> Self {
-        Self(std::iter::once(PlaceStep::Key(key.into())).chain(self.0).collect())
+        Self(std::iter::once(KeyStep::Key(key.into())).chain(self.0).collect())
     }
 }
 
 /// Types that can be a step of a place.
-pub trait AsStep {
+pub trait AsKeyStep {
     /// Returns the step.
-    fn step(&self) -> PlaceStep;
+    fn step(&self) -> KeyStep;
 }
-impl AsStep for &str {
-    fn step(&self) -> PlaceStep {
-        PlaceStep::Key((*self).into())
+impl AsKeyStep for &str {
+    fn step(&self) -> KeyStep {
+        KeyStep::Key((*self).into())
     }
 }
-impl AsStep for String {
-    fn step(&self) -> PlaceStep {
-        PlaceStep::Key(self.clone())
+impl AsKeyStep for String {
+    fn step(&self) -> KeyStep {
+        KeyStep::Key(self.clone())
     }
 }
-impl AsStep for usize {
-    fn step(&self) -> PlaceStep {
-        PlaceStep::At(*self)
+impl AsKeyStep for usize {
+    fn step(&self) -> KeyStep {
+        KeyStep::At(*self)
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for KeyPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let [PlaceStep::Key(angle), PlaceStep::Named(_, name), PlaceStep::Key(end)] = &self.0[..]
+        if let [KeyStep::Key(angle), KeyStep::Named(_, name), KeyStep::Key(end)] = &self.0[..]
             && angle == "angle"
             && ["min", "max"].contains(&end.as_str())
         {
-            return write!(f, "limits.{} ({end})", clipped(name));
+            return write!(f, "limits.{} ({end})", quote_clipped(name));
         }
         for (i, step) in self.0.iter().enumerate() {
             match step {
                 // The table is `lengths`, the key of one length begins with `length`.
-                PlaceStep::Key(k) if i == 0 && k == "lengths" => f.write_str("length")?,
-                PlaceStep::Key(k) if i == 0 => f.write_str(&clipped(k))?,
-                PlaceStep::Key(name) | PlaceStep::Named(_, name) => write!(f, ".{}", clipped(name))?,
-                PlaceStep::At(i) => write!(f, "[{}]", i + 1)?,
+                KeyStep::Key(k) if i == 0 && k == "lengths" => f.write_str("length")?,
+                KeyStep::Key(k) if i == 0 => f.write_str(&quote_clipped(k))?,
+                KeyStep::Key(name) | KeyStep::Named(_, name) => write!(f, ".{}", quote_clipped(name))?,
+                KeyStep::At(i) => write!(f, "[{}]", i + 1)?,
             }
         }
         Ok(())
@@ -92,30 +92,30 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MachineError {
     /// A number that is not finite.
-    #[error("{place} is {}: want a finite number, {unit}", Short(*value))]
+    #[error("{place} is {}: want a finite number, {unit}", ShortNumber(*value))]
     NotFinite {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The number.
         value: f64,
         /// Its unit.
         unit: &'static str,
     },
     /// A number that is out of its range.
-    #[error("{place} is {}: want {want}", Short(*value))]
+    #[error("{place} is {}: want {want}", ShortNumber(*value))]
     OutOfRange {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The number.
         value: f64,
         /// What would be right.
-        want: Want,
+        want: Requirement,
     },
     /// A name that does not exist.
-    #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", clipped(name))]
+    #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", quote_clipped(name))]
     Unknown {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// Kind of the part: drive, link, length …
         what: &'static str,
         /// The name.
@@ -124,10 +124,10 @@ pub enum MachineError {
         known: String,
     },
     /// Two parts have the same name.
-    #[error("{place} is {:?}, which is taken: want a name of its own", clipped(name))]
+    #[error("{place} is {:?}, which is taken: want a name of its own", quote_clipped(name))]
     Duplicate {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The name.
         name: String,
     },
@@ -135,7 +135,7 @@ pub enum MachineError {
     #[error("{place} holds the control character U+{:04X}: want a name of printable characters", u32::from(*character))]
     Unprintable {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The first such character.
         character: char,
     },
@@ -150,10 +150,10 @@ pub enum MachineError {
         want: String,
     },
     /// A text that is too long.
-    #[error("{place} is {:?}: want at most {most} characters", clipped(text))]
+    #[error("{place} is {:?}: want at most {most} characters", quote_clipped(text))]
     TooLong {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The text.
         text: String,
         /// Maximum number of characters.
@@ -163,7 +163,7 @@ pub enum MachineError {
     #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
     Cycle {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// A link of the cycle.
         link: String,
         /// The links of the cycle, in order.
@@ -175,7 +175,7 @@ pub enum MachineError {
     )]
     OpenLoop {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// The point on the first link.
         a: String,
         /// The point on the second link.
@@ -184,7 +184,10 @@ pub enum MachineError {
         gap: String,
     },
     /// A relative angle with only one limit.
-    #[error("angle {:?} has only one limit: want both min and max, or neither to let it turn freely", clipped(angle))]
+    #[error(
+        "angle {:?} has only one limit: want both min and max, or neither to let it turn freely",
+        quote_clipped(angle)
+    )]
     HalfLimited {
         /// The angle.
         angle: String,
@@ -195,7 +198,7 @@ pub enum MachineError {
     )]
     StatorCycle {
         /// Where in the machine file.
-        place: Place,
+        place: KeyPath,
         /// A drive of the cycle.
         drive: String,
         /// The drives of the cycle, in order.
@@ -211,7 +214,7 @@ pub enum MachineError {
     #[error("no end effector: want [end_effector] with link = \"…\", at = \"tip\"")]
     NoEndEffector,
     /// A drive that moves no mass.
-    #[error("drive {:?} moves no mass: want a link with inertia on it", clipped(drive))]
+    #[error("drive {:?} moves no mass: want a link with inertia on it", quote_clipped(drive))]
     Massless {
         /// The drive.
         drive: String,
@@ -229,7 +232,7 @@ pub enum MachineError {
         sharers: String,
     },
     /// A key of `--set` or of an edit that does not exist.
-    #[error("no setting {:?}: want one of {known}", clipped(key))]
+    #[error("no setting {:?}: want one of {known}", quote_clipped(key))]
     UnknownKey {
         /// The key.
         key: String,
@@ -237,7 +240,7 @@ pub enum MachineError {
         known: String,
     },
     /// A value of `--set` that cannot be read.
-    #[error("{}={:?}: want {want}", clipped(key), clipped(value))]
+    #[error("{}={:?}: want {want}", quote_clipped(key), quote_clipped(value))]
     BadValue {
         /// The key.
         key: String,
@@ -262,8 +265,8 @@ impl MachineError {
         else {
             return self;
         };
-        if let [PlaceStep::Key(list), step, ..] = &mut place.0[..]
-            && let PlaceStep::At(i) = *step
+        if let [KeyStep::Key(list), step, ..] = &mut place.0[..]
+            && let KeyStep::At(i) = *step
         {
             let names: Vec<&str> = match list.as_str() {
                 "link" => spec.links.iter().map(|link| link.name.as_str()).collect(),
@@ -273,14 +276,14 @@ impl MachineError {
             };
             let own = names.get(i).filter(|own| names.iter().filter(|name| name == own).count() == 1);
             if let Some(name) = own {
-                *step = PlaceStep::Named(i, (*name).to_owned());
+                *step = KeyStep::Named(i, (*name).to_owned());
             }
         }
         self
     }
 
     /// Returns the place in the file, if the error has one.
-    pub fn place(&self) -> Option<&Place> {
+    pub fn place(&self) -> Option<&KeyPath> {
         match self {
             Self::NotFinite { place, .. }
             | Self::OutOfRange { place, .. }
@@ -298,7 +301,7 @@ impl MachineError {
 
 /// Returns names as a message lists them: quoted, at most 20.
 pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", clipped(n))).collect();
+    let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", quote_clipped(n))).collect();
     if known.len() > 20 {
         known[20] = "…".into();
     }

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-use super::{Machine, MachineError, MachineSpec, Place, PlaceStep};
+use super::{KeyPath, KeyStep, Machine, MachineError, MachineSpec};
 use crate::settings::range::shortened;
-use crate::settings::text::MOST_BYTES;
+use crate::settings::text::MAX_TEXT_BYTES;
 
 /// Error of a machine file, with its place.
 #[derive(Debug, Error)]
 pub enum FileError {
     /// The file cannot be read.
-    #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", named(file))]
+    #[error("{}: {source}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes", named(file))]
     Unreadable {
         /// The file.
         file: PathBuf,
@@ -69,15 +69,15 @@ pub(crate) fn line_of(text: &str, byte: usize) -> usize {
 }
 
 /// Returns the line of the innermost step of a place that exists in the text.
-pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
+pub(crate) fn line_of_place(text: &str, place: &KeyPath) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut span = None;
     let mut at: Option<&DeValue> = None;
     for step in &place.0 {
         let next = match (step, at) {
-            (PlaceStep::Key(k), None) => table.get_ref().get(k.as_str()),
-            (PlaceStep::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
-            (PlaceStep::At(i) | PlaceStep::Named(i, _), Some(DeValue::Array(a))) => a.get(*i),
+            (KeyStep::Key(k), None) => table.get_ref().get(k.as_str()),
+            (KeyStep::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
+            (KeyStep::At(i) | KeyStep::Named(i, _), Some(DeValue::Array(a))) => a.get(*i),
             _ => None,
         };
         let Some(next) = next else { break };

@@ -29,13 +29,13 @@ pub struct Inertia {
     pub(crate) gears: [[f64; MAX_DRIVES]; MAX_DRIVES],
     /// D_k − Σ_l H_lk, kg m²: J r_k (1 − Σ_l r_l) of the rotors, from the reaction of gears on stators on the base.
     pub(crate) taken_up: [f64; MAX_DRIVES],
-    pub(crate) rotors: [Turning; MAX_DRIVES],
+    pub(crate) rotors: [RotorCoupling; MAX_DRIVES],
     pub(crate) end_effector: Chain,
 }
 
 /// A rotor, with the ratios of its rate to those of the drives and, after these, of a base that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Turning {
+pub(crate) struct RotorCoupling {
     /// Inertia J about its axis, kg m².
     pub inertia: f64,
     /// Ratios r: the rotor turns at r·q̇.
@@ -71,7 +71,7 @@ impl Inertia {
             spin: [0.0; MAX_DRIVES],
             gears: [[0.0; MAX_DRIVES]; MAX_DRIVES],
             taken_up: [0.0; MAX_DRIVES],
-            rotors: [Turning::default(); MAX_DRIVES],
+            rotors: [RotorCoupling::default(); MAX_DRIVES],
             motors,
             end_effector,
         }
@@ -84,7 +84,7 @@ impl Inertia {
         if let Some(on) = self.motors.on(k) {
             rates[on] += 1.0 - ratio;
         }
-        self.rotors[k] = Turning { inertia, rates };
+        self.rotors[k] = RotorCoupling { inertia, rates };
         self.add_rotor_inertia(inertia, &rates, self.drives);
     }
 
@@ -106,7 +106,7 @@ impl Inertia {
         let n = self.drives;
         self.taken_up = [0.0; MAX_DRIVES];
         for i in 0..n {
-            let Turning { inertia, mut rates } = self.rotors[i];
+            let RotorCoupling { inertia, mut rates } = self.rotors[i];
             if inertia == 0.0 || n >= MAX_DRIVES {
                 continue;
             }
@@ -174,7 +174,7 @@ impl Inertia {
         let gears: f64 = (0..self.drives).map(|l| self.gears[k][l]).sum();
         let own = self.diagonal(k) + gears + self.taken_up[k];
         // Where gears cancel, only rounding error remains.
-        if own.abs() <= BALANCED * self.diagonal(k) { 0.0 } else { own }
+        if own.abs() <= BALANCE_TOLERANCE * self.diagonal(k) { 0.0 } else { own }
     }
 
     /// Every D_k where all C_kl vanish, kg m².
@@ -203,7 +203,7 @@ impl Inertia {
     /// Returns the inertia if drives and base turn together as one body, kg m², where all C_kl vanish: gear ratios then
     /// have no effect.
     pub fn locked(&self) -> f64 {
-        let gears = |t: &Turning| {
+        let gears = |t: &RotorCoupling| {
             let turn = t.rates[..self.drives].iter().sum::<f64>();
             t.inertia * (1.0 - turn * turn)
         };
@@ -214,7 +214,7 @@ impl Inertia {
     /// Returns the angular momentum of the rotors, kg m²/s, less the part in the mass matrix of the drives alone. `qd`
     /// holds the rates of the drives and, after these, of a base that turns.
     pub(crate) fn of_base(&self, qd: &[f64]) -> f64 {
-        let of = |t: &Turning| {
+        let of = |t: &RotorCoupling| {
             let turn = |n: usize| t.rates.iter().zip(&qd[..n]).map(|(r, qd)| r * qd).sum::<f64>();
             let own: f64 = t.rates[..self.drives].iter().sum();
             t.inertia * (turn(qd.len()) - own * turn(self.drives))
@@ -280,12 +280,12 @@ impl Inertia {
 
     /// Tolerance of |g_k|, kg m: up to this it is treated as zero.
     pub(crate) fn least_first_moment(&self) -> f64 {
-        BALANCED * self.mass * self.size()
+        BALANCE_TOLERANCE * self.mass * self.size()
     }
 
     /// Tolerance of |C_kl|, kg m²: up to this it is treated as zero.
     pub(crate) fn least_coupling(&self) -> f64 {
-        BALANCED * self.mass * self.size().powi(2)
+        BALANCE_TOLERANCE * self.mass * self.size().powi(2)
     }
 
     /// Length scale √(Σ H_kk / M), m.
@@ -296,4 +296,4 @@ impl Inertia {
 }
 
 /// Relative tolerance of balance: residuals up to this fraction of the machine's own scale are treated as zero.
-pub const BALANCED: f64 = 1e-9;
+pub const BALANCE_TOLERANCE: f64 = 1e-9;

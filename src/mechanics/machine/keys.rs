@@ -1,8 +1,8 @@
-//! [`ROWS`]: every key of a machine that can be set on its own, with its description and access to its value.
+//! [`MACHINE_KEYS`]: every key of a machine that can be set on its own, with its description and access to its value.
 
 use toml::Value;
 
-use super::error::{MachineError, Place, PlaceStep};
+use super::error::{KeyPath, KeyStep, MachineError};
 use super::lengths::{length_at, link_length, set_length, set_link_length};
 use super::model::Machine;
 use super::ranges::{
@@ -10,20 +10,20 @@ use super::ranges::{
     TORQUE_LIMIT, within,
 };
 use super::spec::MachineSpec;
-use crate::settings::change::DEFAULT;
-use crate::settings::key::{Holds, Key};
+use crate::settings::change::DEFAULT_WORD;
+use crate::settings::key::{Key, KeyType};
 
 /// A key, with access to its value.
-pub(super) struct Row {
+pub(super) struct KeyRow {
     pub key: Key,
-    pub at: At,
+    pub at: FieldAccess,
     /// Returns whether the key has an effect on a machine; the flag: whether a force acts on its end effector. `None`:
     /// always.
     pub uses: Option<fn(&MachineSpec, bool) -> bool>,
 }
 
 /// Functions that read and write the value of the i-th body of its kind.
-pub(super) enum At {
+pub(super) enum FieldAccess {
     Number(fn(&MachineSpec, usize) -> f64, fn(&mut MachineSpec, usize) -> &mut f64),
     Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
     Pair(fn(&MachineSpec, usize) -> [f64; 2], fn(&mut MachineSpec, usize) -> &mut [f64; 2]),
@@ -37,19 +37,19 @@ pub(super) enum At {
 /// Makes both functions of an [`At`] from one place expression.
 macro_rules! at {
     ($kind:ident, |$spec:ident, $i:tt| $place:expr) => {
-        At::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)
+        FieldAccess::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)
     };
 }
 
-const fn row(key: Key, at: At) -> Row {
-    Row { key, at, uses: None }
+const fn row(key: Key, at: FieldAccess) -> KeyRow {
+    KeyRow { key, at, uses: None }
 }
 
 const UNLIMITED: &str = "no limit";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights by their numbers, from 1.
-pub(super) const ROWS: [Row; 23] = [
+pub(super) const MACHINE_KEYS: [KeyRow; 23] = [
     row(
         Key::number(
             "link.*.com",
@@ -75,7 +75,7 @@ pub(super) const ROWS: [Row; 23] = [
     ),
     row(
         Key::number("link.*.length", LENGTH, Key::REQUIRED, "Length of a link that shares it with no other."),
-        At::Metres(link_length, set_link_length),
+        FieldAccess::Metres(link_length, set_link_length),
     ),
     row(
         Key::number(
@@ -111,7 +111,7 @@ pub(super) const ROWS: [Row; 23] = [
     row(
         Key::new(
             "counterweight.*.fixed",
-            Holds::Switch,
+            KeyType::Switch,
             "false",
             "Whether a counterweight stays where it is, as a motor does, when others are sought or taken off.",
         ),
@@ -119,7 +119,7 @@ pub(super) const ROWS: [Row; 23] = [
     ),
     row(
         Key::number("length.*", LENGTH, Key::REQUIRED, "A named length, of all bars that share it."),
-        At::Metres(length_at, set_length),
+        FieldAccess::Metres(length_at, set_length),
     ),
     row(
         Key::number("payload.mass", LOAD, "0", "Mass held at the end effector, known to control."),
@@ -129,10 +129,10 @@ pub(super) const ROWS: [Row; 23] = [
         Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),
         at!(Number, |spec, _| spec.payload.inertia),
     ),
-    Row {
+    KeyRow {
         key: Key::new(
             "payload.offset",
-            Holds::List(2, PLACE),
+            KeyType::List(2, PLACE),
             "0,0",
             "Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.",
         )
@@ -140,7 +140,7 @@ pub(super) const ROWS: [Row; 23] = [
         at: at!(Pair, |spec, _| spec.payload.offset),
         uses: Some(|spec, _| spec.payload.mass > 0.0),
     },
-    Row {
+    KeyRow {
         key: Key::number(
             "payload.axial",
             PLACE,
@@ -152,18 +152,18 @@ pub(super) const ROWS: [Row; 23] = [
         uses: Some(|spec, pushed| spec.payload.mass > 0.0 || pushed),
     },
     row(
-        Key::new("gravity", Holds::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
+        Key::new("gravity", KeyType::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
         at!(Pair, |spec, _| spec.gravity),
     ),
     row(
         Key::new(
             "limits.*",
-            Holds::List(2, ANGLE),
+            KeyType::List(2, ANGLE),
             Key::NONE,
             "Least and greatest value of a relative joint angle; without them it turns freely.",
         )
         .instead(UNLIMITED),
-        At::Bounds(
+        FieldAccess::Bounds(
             |spec, i| [spec.angles[i].min, spec.angles[i].max],
             |spec, i| {
                 let angle = &mut spec.angles[i];
@@ -178,7 +178,7 @@ pub(super) const ROWS: [Row; 23] = [
             "0",
             "Inertia of what turns in a drive's motor, about its own axis, before the gear.",
         ),
-        At::Number(
+        FieldAccess::Number(
             |spec, i| spec.drives[i].rotor.unwrap_or_default().inertia,
             |spec, i| &mut spec.drives[i].rotor.get_or_insert_default().inertia,
         ),
@@ -190,7 +190,7 @@ pub(super) const ROWS: [Row; 23] = [
             "1",
             "Turns of the rotor for one turn of the drive, seen from the motor's stator; below 0 it turns the other way.",
         ),
-        At::Number(
+        FieldAccess::Number(
             |spec, i| spec.drives[i].rotor.unwrap_or_default().ratio,
             |spec, i| &mut spec.drives[i].rotor.get_or_insert_default().ratio,
         ),
@@ -228,36 +228,36 @@ pub(super) const ROWS: [Row; 23] = [
 ];
 
 /// The keys of all rows.
-pub const KEYS: [Key; ROWS.len()] = {
-    let mut all = [ROWS[0].key; ROWS.len()];
+pub const KEYS: [Key; MACHINE_KEYS.len()] = {
+    let mut all = [MACHINE_KEYS[0].key; MACHINE_KEYS.len()];
     let mut i = 0;
     while i < all.len() {
-        all[i] = ROWS[i].key;
+        all[i] = MACHINE_KEYS[i].key;
         i += 1;
     }
     all
 };
 
-impl Row {
+impl KeyRow {
     /// Returns the row of a key.
     pub fn of(path: &str) -> Option<&'static Self> {
-        ROWS.iter().find(|row| row.key.matches(path))
+        MACHINE_KEYS.iter().find(|row| row.key.matches(path))
     }
 
     /// Returns the value of the i-th body in a machine; the word `default` if it is not given.
     pub fn value(&self, machine: &Machine, i: usize) -> Value {
         let spec = machine.spec();
-        let or_default = |value: Option<Value>| value.unwrap_or_else(|| DEFAULT.into());
+        let or_default = |value: Option<Value>| value.unwrap_or_else(|| DEFAULT_WORD.into());
         match self.at {
-            At::Number(of, _) => of(spec, i).into(),
-            At::Limit(of, _) => or_default(of(spec, i).map(Value::from)),
-            At::Pair(of, _) => of(spec, i).to_vec().into(),
-            At::Switch(of, _) => of(spec, i).into(),
-            At::Bounds(of, _) => {
+            FieldAccess::Number(of, _) => of(spec, i).into(),
+            FieldAccess::Limit(of, _) => or_default(of(spec, i).map(Value::from)),
+            FieldAccess::Pair(of, _) => of(spec, i).to_vec().into(),
+            FieldAccess::Switch(of, _) => of(spec, i).into(),
+            FieldAccess::Bounds(of, _) => {
                 let [low, high] = of(spec, i);
                 or_default(low.zip(high).map(|(low, high)| vec![low, high].into()))
             }
-            At::Metres(of, _) => of(machine, i).into(),
+            FieldAccess::Metres(of, _) => of(machine, i).into(),
         }
     }
 
@@ -266,21 +266,21 @@ impl Row {
     pub fn check(&self, spec: &MachineSpec, i: usize) -> Result<(), MachineError> {
         let Some(range) = self.key.range() else { return Ok(()) };
         let place = |k: Option<usize>| {
-            let step = |part: &str| if part == "*" { PlaceStep::At(i) } else { PlaceStep::Key(part.into()) };
-            Place(self.key.path.split('.').map(step).chain(k.map(PlaceStep::At)).collect())
+            let step = |part: &str| if part == "*" { KeyStep::At(i) } else { KeyStep::Key(part.into()) };
+            KeyPath(self.key.path.split('.').map(step).chain(k.map(KeyStep::At)).collect())
         };
         match self.at {
-            At::Number(of, _) => within(range, of(spec, i), || place(None)),
-            At::Limit(of, _) => of(spec, i).map_or(Ok(()), |value| within(range, value, || place(None))),
-            At::Pair(of, _) => {
+            FieldAccess::Number(of, _) => within(range, of(spec, i), || place(None)),
+            FieldAccess::Limit(of, _) => of(spec, i).map_or(Ok(()), |value| within(range, value, || place(None))),
+            FieldAccess::Pair(of, _) => {
                 of(spec, i).into_iter().enumerate().try_for_each(|(k, value)| within(range, value, || place(Some(k))))
             }
-            At::Switch(..) | At::Bounds(..) | At::Metres(..) => Ok(()),
+            FieldAccess::Switch(..) | FieldAccess::Bounds(..) | FieldAccess::Metres(..) => Ok(()),
         }
     }
 }
 
 /// Returns the rows of a kind of body, which is the first word of their keys.
-pub(super) fn rows_of(part: &str) -> Vec<&'static Row> {
-    ROWS.iter().filter(|row| row.key.part() == part).collect()
+pub(super) fn rows_of(part: &str) -> Vec<&'static KeyRow> {
+    MACHINE_KEYS.iter().filter(|row| row.key.part() == part).collect()
 }

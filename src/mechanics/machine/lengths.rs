@@ -3,7 +3,7 @@
 use super::error::MachineError;
 use super::model::Machine;
 use super::spec::{Length, MachineSpec};
-use crate::settings::range::{clipped, shortened};
+use crate::settings::range::{quote_clipped, shortened};
 
 impl MachineSpec {
     /// Returns every length of a machine, m: named lengths, and under the link's name those that links do not share.
@@ -55,8 +55,8 @@ pub(super) fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> 
     if !others.is_empty() {
         let plural = if others.len() > 1 { "links" } else { "link" };
         return Err(MachineError::SharedLength {
-            link: clipped(&spec.links[j].name),
-            length: clipped(&name),
+            link: quote_clipped(&spec.links[j].name),
+            length: quote_clipped(&name),
             sharers: format!("{plural} {}", shortened(&others.join(", "), 200)),
         });
     }

@@ -32,16 +32,16 @@ pub use caps::{MAX_COUNTERWEIGHTS, MAX_IN_A_ROW, MAX_LINKS};
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
-pub use error::{MachineError, Place, PlaceStep};
+pub use error::{KeyPath, KeyStep, MachineError};
 pub use file::{FileError, parse, to_toml};
 pub(crate) use file::{line_of, line_of_place};
-pub(crate) use inertia::Turning;
-pub use inertia::{BALANCED, Inertia};
+pub(crate) use inertia::RotorCoupling;
+pub use inertia::{BALANCE_TOLERANCE, Inertia};
 pub use keys::KEYS;
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
 pub use ranges::{ANGLE, MAX_ANGLE};
-pub use set::{PARTS, is_of_machine};
+pub use set::{MACHINE_TABLES, is_of_machine};
 pub use spec::{
-    Angle, Attach, Closure, Counterweight, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point, Rotor,
+    Angle, Attach, Closure, Counterweight, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor,
 };

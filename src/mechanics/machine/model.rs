@@ -10,11 +10,11 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
 /// A valid machine. Copies share their data, so that copying is cheap, and so is comparing copies.
 #[derive(Clone, Debug)]
-pub struct Machine(Arc<Model>);
+pub struct Machine(Arc<MachineData>);
 
 /// Data of a machine.
 #[derive(Debug, PartialEq)]
-pub(super) struct Model {
+pub(super) struct MachineData {
     pub(super) spec: MachineSpec,
     pub(super) bodies: Vec<Link>,
     pub(super) parts: Vec<ResolvedLink>,
@@ -81,8 +81,8 @@ impl ResolvedLink {
     }
 }
 
-impl From<Model> for Machine {
-    fn from(model: Model) -> Self {
+impl From<MachineData> for Machine {
+    fn from(model: MachineData) -> Self {
         Self(Arc::new(model))
     }
 }

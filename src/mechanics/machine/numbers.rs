@@ -1,10 +1,10 @@
 //! [`check_numbers`] checks that every number of a specification is finite and within its range.
 
-use super::error::{MachineError, Place};
+use super::error::{KeyPath, MachineError};
 use super::keys::rows_of;
 use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
-use crate::settings::range::Want;
+use crate::settings::range::Requirement;
 
 /// Checks every number of a specification; returns an error for the first that is not finite or out of range.
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
@@ -14,15 +14,16 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     };
     check("gravity", 1)?;
     for (name, &value) in &spec.lengths {
-        within(LENGTH, value, || Place::new(&[&"lengths", name]))?;
+        within(LENGTH, value, || KeyPath::new(&[&"lengths", name]))?;
     }
     check("payload", 1)?;
     let rows = rows_of("drive");
     for (i, drive) in spec.drives.iter().enumerate() {
         rows.iter().try_for_each(|row| row.check(spec, i))?;
         if let Some(rotor) = drive.rotor.filter(|rotor| rotor.ratio.abs() < MIN_POSITIVE) {
-            let place = Place::new(&[&"drive", &i, &"rotor", &"ratio"]);
-            let want = Want::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
+            let place = KeyPath::new(&[&"drive", &i, &"rotor", &"ratio"]);
+            let want =
+                Requirement::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
             return Err(MachineError::OutOfRange { place, value: rotor.ratio, want });
         }
     }
@@ -30,19 +31,23 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     for (i, link) in spec.links.iter().enumerate() {
         rows.iter().try_for_each(|row| row.check(spec, i))?;
         if !matches!(link.direction, -1 | 1) {
-            let place = Place::new(&[&"link", &i, &"direction"]);
-            return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
+            let place = KeyPath::new(&[&"link", &i, &"direction"]);
+            return Err(MachineError::OutOfRange {
+                place,
+                value: link.direction.into(),
+                want: Requirement::Words("1 or -1"),
+            });
         }
     }
     check("counterweight", spec.counterweights.len())?;
     for (i, angle) in spec.angles.iter().enumerate() {
         for (key, value) in [("offset", Some(angle.offset)), ("min", angle.min), ("max", angle.max)] {
-            value.map_or(Ok(()), |value| within(ANGLE, value, || Place::new(&[&"angle", &i, &key])))?;
+            value.map_or(Ok(()), |value| within(ANGLE, value, || KeyPath::new(&[&"angle", &i, &key])))?;
         }
         match (angle.min, angle.max) {
             (Some(min), Some(max)) if min > max => {
-                let place = Place::new(&[&"angle", &i, &"max"]);
-                let want = Want::Words("a limit not below min");
+                let place = KeyPath::new(&[&"angle", &i, &"max"]);
+                let want = Requirement::Words("a limit not below min");
                 return Err(MachineError::OutOfRange { place, value: max, want });
             }
             (Some(_), None) | (None, Some(_)) => {

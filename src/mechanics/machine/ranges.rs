@@ -1,7 +1,7 @@
 //! Ranges of the numbers of a machine.
 
-use super::error::{MachineError, Place};
-use crate::settings::range::{Range, Want};
+use super::error::{KeyPath, MachineError};
+use crate::settings::range::{Range, Requirement};
 
 /// Largest magnitude of a number of a machine, in SI units: products of larger numbers could overflow.
 const MAX_NUMBER: f64 = 1e6;
@@ -29,10 +29,10 @@ pub const MAX_ANGLE: f64 = 25.2;
 pub const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
 /// Checks that a number is finite and within a range; returns an error with its place otherwise.
-pub(super) fn within(range: Range, value: f64, place: impl Fn() -> Place) -> Result<(), MachineError> {
+pub(super) fn within(range: Range, value: f64, place: impl Fn() -> KeyPath) -> Result<(), MachineError> {
     match value.is_finite() {
         true if range.contains(value) => Ok(()),
-        true => Err(MachineError::OutOfRange { place: place(), value, want: Want::Within(range) }),
+        true => Err(MachineError::OutOfRange { place: place(), value, want: Requirement::Within(range) }),
         false => Err(MachineError::NotFinite { place: place(), value, unit: range.unit() }),
     }
 }

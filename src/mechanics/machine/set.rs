@@ -3,17 +3,17 @@
 use toml::{Table, Value};
 
 use super::error::quoted;
-use super::keys::{At, KEYS, ROWS, Row};
-use super::{Machine, MachineError, MachineSpec, Place};
-use crate::settings::change::{self, DEFAULT};
+use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
+use super::{KeyPath, Machine, MachineError, MachineSpec};
+use crate::settings::change::{self, DEFAULT_WORD};
 use crate::settings::key::{self, Key};
 
 /// The tables and keys of a scenario that set its machine.
-pub const PARTS: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
+pub const MACHINE_TABLES: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
 
 /// Returns whether a setting, such as `link.5.com`, belongs to the machine.
 pub fn is_of_machine(path: &str) -> bool {
-    PARTS.contains(&path.split('.').next().unwrap_or_default())
+    MACHINE_TABLES.contains(&path.split('.').next().unwrap_or_default())
 }
 
 impl Machine {
@@ -62,24 +62,24 @@ impl Machine {
 
     /// Returns whether a setting has an effect on this machine; `pushed`: whether a force acts on the end effector.
     pub fn uses(&self, key: &str, pushed: bool) -> bool {
-        Row::of(key).and_then(|row| row.uses).is_none_or(|uses| uses(self.spec(), pushed))
+        KeyRow::of(key).and_then(|row| row.uses).is_none_or(|uses| uses(self.spec(), pushed))
     }
 
     /// Returns the settings that differ from their default but have no effect.
     pub fn idle_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
-        let is_given = |row: &Row| !change::same(&row.value(self, 0), &change::value(row.key.default));
-        let idle = move |row: &&Row| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
-        ROWS.iter().filter(idle).map(|row| row.key.path)
+        let is_given = |row: &KeyRow| !change::same_value(&row.value(self, 0), &change::value(row.key.default));
+        let idle = move |row: &&KeyRow| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
+        MACHINE_KEYS.iter().filter(idle).map(|row| row.key.path)
     }
 
     /// Returns the value of a setting; the word `default` if it is not given, `None` if there is no such key.
     pub fn value(&self, key: &str) -> Option<Value> {
         let weights = &self.spec().counterweights;
         match key {
-            "counterweight" if weights.is_empty() => Some(DEFAULT.into()),
+            "counterweight" if weights.is_empty() => Some(DEFAULT_WORD.into()),
             "counterweight" => Some(Value::Array(weights.iter().map(Value::try_from).collect::<Result<_, _>>().ok()?)),
             _ => {
-                let row = Row::of(key)?;
+                let row = KeyRow::of(key)?;
                 Some(row.value(self, body_of(self.spec(), key).ok()?))
             }
         }
@@ -96,26 +96,26 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     }
     let unknown =
         || MachineError::UnknownKey { key: key.into(), known: key::in_words(KEYS.map(|key| key.path)).join(", ") };
-    if !ROWS.iter().any(|row| shares_head(row.key.path, key)) {
+    if !MACHINE_KEYS.iter().any(|row| shares_head(row.key.path, key)) {
         return Err(unknown());
     }
     // Keys of a body that does not exist are errors.
     let i = body_of(spec, key)?;
-    let row = Row::of(key).ok_or_else(unknown)?;
+    let row = KeyRow::of(key).ok_or_else(unknown)?;
     // A required key has no default value.
     let default =
         Some(row.key.default).filter(|default| is_default(value) && *default != Key::REQUIRED).map(change::value);
     let value = default.as_ref().unwrap_or(value);
     match row.at {
-        At::Number(_, of) => *of(spec, i) = number(key, value)?,
-        At::Limit(_, of) => *of(spec, i) = if is_none(value) { None } else { Some(number(key, value)?) },
-        At::Pair(_, of) => *of(spec, i) = pair(key, value)?,
-        At::Switch(_, of) => *of(spec, i) = switch(key, value)?,
-        At::Bounds(_, of) => {
+        FieldAccess::Number(_, of) => *of(spec, i) = number(key, value)?,
+        FieldAccess::Limit(_, of) => *of(spec, i) = if is_none(value) { None } else { Some(number(key, value)?) },
+        FieldAccess::Pair(_, of) => *of(spec, i) = pair(key, value)?,
+        FieldAccess::Switch(_, of) => *of(spec, i) = switch(key, value)?,
+        FieldAccess::Bounds(_, of) => {
             let bounds = if is_none(value) { [None; 2] } else { pair(key, value)?.map(Some) };
             of(spec, i).into_iter().zip(bounds).for_each(|(end, to)| *end = to);
         }
-        At::Metres(_, set) => set(spec, i, number(key, value)?)?,
+        FieldAccess::Metres(_, set) => set(spec, i, number(key, value)?)?,
     }
     Ok(())
 }
@@ -143,7 +143,7 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
         _ => return Ok(0),
     };
     names.iter().position(|known| *known == name).ok_or_else(|| MachineError::Unknown {
-        place: Place::new(&[&key]),
+        place: KeyPath::new(&[&key]),
         what,
         name: name.into(),
         known: quoted(names.into_iter()),
@@ -151,7 +151,7 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
 }
 
 fn is_default(value: &Value) -> bool {
-    value.as_str() == Some(DEFAULT)
+    value.as_str() == Some(DEFAULT_WORD)
 }
 
 /// Returns whether a value removes an optional setting: the word `default`, or that for none.

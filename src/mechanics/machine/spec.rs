@@ -33,7 +33,7 @@ pub struct MachineSpec {
     #[serde(default, rename = "closure", skip_serializing_if = "Vec::is_empty")]
     pub closures: Vec<Closure>,
     /// The end effector, a point of a link.
-    pub end_effector: Option<Point>,
+    pub end_effector: Option<LinkPoint>,
     /// Relative joint angles, which carry the joint limits.
     #[serde(default, rename = "angle", skip_serializing_if = "Vec::is_empty")]
     pub angles: Vec<Angle>,
@@ -221,7 +221,7 @@ fn is_nought(x: &f64) -> bool {
 #[serde(untagged, expecting = "want \"base\", or a point of another link: { link = \"…\", at = \"tip\" }")]
 pub enum Attach {
     /// A point of another link.
-    On(Point),
+    On(LinkPoint),
     /// At B: the word `"base"`.
     Base(String),
 }
@@ -229,7 +229,7 @@ pub enum Attach {
 /// A point of a link.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Point {
+pub struct LinkPoint {
     /// The link's name.
     pub link: String,
     /// Position along the link, from its root.
@@ -268,9 +268,9 @@ pub enum Length {
 #[serde(deny_unknown_fields)]
 pub struct Closure {
     /// The point on the first link.
-    pub a: Point,
+    pub a: LinkPoint,
     /// The point on the second link.
-    pub b: Point,
+    pub b: LinkPoint,
 }
 
 /// A relative joint angle a = q_to − q_from + offset.

@@ -187,7 +187,7 @@ pub struct DriveAngles(pub PerDrive);
 impl DriveAngles {
     /// e(q_k) of every drive; zero beyond the last.
     #[inline]
-    pub fn units(&self) -> Units {
+    pub fn units(&self) -> UnitVectors {
         let mut e = [Vector::new(0.0, 0.0); MAX_DRIVES];
         for (e, &q) in e.iter_mut().zip(self.0.iter()) {
             *e = unit(q);
@@ -211,4 +211,4 @@ impl Deref for DriveAngles {
 }
 
 /// The unit vectors e(q_k): the only trigonometry the dynamics needs.
-pub type Units = [Vector; MAX_DRIVES];
+pub type UnitVectors = [Vector; MAX_DRIVES];

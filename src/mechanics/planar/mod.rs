@@ -6,6 +6,6 @@ mod drives;
 mod sincos;
 mod vector;
 
-pub use drives::{DriveAngles, MAX_DRIVES, PerDrive, Units};
+pub use drives::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors};
 pub use sincos::unit;
 pub use vector::{Pose2, Vector, Wrench, cross, dot, length};

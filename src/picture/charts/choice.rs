@@ -1,10 +1,10 @@
-//! The user's choice of plots and curves ([`Choice`], plain data), and the resulting [`Plot`]s.
+//! The user's choice of plots and curves ([`PlotChoice`], plain data), and the resulting [`Plot`]s.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Chart, PLAIN, charts};
+use super::{Chart, EMPTY_CHART, charts};
 use crate::session::scenario::Scenario;
 use crate::simulation::signals::Signal;
 
@@ -14,7 +14,7 @@ const MAX_ADDED: usize = 24;
 /// The user's choice of plots and curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Choice {
+pub struct PlotChoice {
     /// Time interval that all plots show, s; `None` follows the run.
     pub range: Option<[f64; 2]>,
     /// Whether statistics of the curves in that interval are shown below each plot.
@@ -22,13 +22,13 @@ pub struct Choice {
     /// Names of the plots that the user added.
     pub own: Vec<String>,
     /// Changes of plots, by name of the plot.
-    pub changes: BTreeMap<String, Changes>,
+    pub changes: BTreeMap<String, PlotSettings>,
 }
 
 /// The user's changes of one plot.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Changes {
+pub struct PlotSettings {
     /// Paths of signals that were added.
     pub added: Vec<String>,
     /// Paths of curves that are switched off.
@@ -43,7 +43,7 @@ pub struct Changes {
 
 /// A change of the choice.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Change {
+pub enum PlotChange {
     /// Switches a plot's curve on or off.
     Show(String, String, bool),
     /// Adds a plot for a signal.
@@ -66,11 +66,11 @@ pub enum Change {
     Statistics(bool),
 }
 
-impl Choice {
+impl PlotChoice {
     /// Applies a change.
-    pub fn change(&mut self, change: Change) {
+    pub fn change(&mut self, change: PlotChange) {
         match change {
-            Change::Show(plot, path, on) => {
+            PlotChange::Show(plot, path, on) => {
                 let off = &mut self.changes.entry(plot).or_default().off;
                 if on {
                     off.remove(&path);
@@ -78,32 +78,32 @@ impl Choice {
                     off.insert(path);
                 }
             }
-            Change::Plot(path) => {
+            PlotChange::Plot(path) => {
                 let free = |name: &String| !self.own.contains(name);
                 let name = (1..=MAX_ADDED).map(|i| format!("plot {i}")).find(free);
                 if let Some(name) = name {
-                    self.changes.insert(name.clone(), Changes { added: vec![path], ..Changes::default() });
+                    self.changes.insert(name.clone(), PlotSettings { added: vec![path], ..PlotSettings::default() });
                     self.own.push(name);
                 }
             }
-            Change::Add(plot, path) => {
+            PlotChange::Add(plot, path) => {
                 let changes = self.changes.entry(plot).or_default();
                 changes.off.remove(&path);
                 if !changes.added.contains(&path) && changes.added.len() < MAX_ADDED {
                     changes.added.push(path);
                 }
             }
-            Change::Remove(plot, path) => {
+            PlotChange::Remove(plot, path) => {
                 let changes = self.changes.entry(plot).or_default();
                 changes.added.retain(|known| *known != path);
                 changes.off.remove(&path);
             }
-            Change::Against(plot, path) => self.changes.entry(plot).or_default().against = path,
-            Change::Values(plot, values) => {
+            PlotChange::Against(plot, path) => self.changes.entry(plot).or_default().against = path,
+            PlotChange::Values(plot, values) => {
                 let sound = values.filter(|[low, high]| low.is_finite() && high.is_finite() && low < high);
                 self.changes.entry(plot).or_default().values = sound;
             }
-            Change::Close(plot) => {
+            PlotChange::Close(plot) => {
                 let own = self.own.iter().position(|name| *name == plot);
                 match own {
                     Some(i) => {
@@ -113,25 +113,25 @@ impl Choice {
                     None => self.changes.entry(plot).or_default().closed = true,
                 }
             }
-            Change::Reopen => self.changes.values_mut().for_each(|changes| changes.closed = false),
-            Change::Range(range) => {
+            PlotChange::Reopen => self.changes.values_mut().for_each(|changes| changes.closed = false),
+            PlotChange::Range(range) => {
                 self.range = range.filter(|[from, to]| from.is_finite() && to.is_finite() && from < to)
             }
-            Change::Statistics(shown) => self.statistics = shown,
+            PlotChange::Statistics(shown) => self.statistics = shown,
         }
         // Entries without any change are dropped.
-        self.changes.retain(|_, changes| *changes != Changes::default());
+        self.changes.retain(|_, changes| *changes != PlotSettings::default());
     }
 
     /// Returns the plots of a scenario in order of display; `pins`: pin forces are switched on.
     pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal], pins: bool) -> Vec<Plot<'a>> {
-        let none = Changes::default();
+        let none = PlotSettings::default();
         let of = |name: &str| self.changes.get(name).unwrap_or(&none);
         let table = charts(scenario).into_iter().filter(|chart| chart.in_window(pins));
         let open = table.filter(|chart| !of(chart.title).closed);
         let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), signals));
         let own = self.own.iter().map(|name| {
-            let chart = Chart { centred: false, least: 0.0, ..PLAIN };
+            let chart = Chart { centred: false, least: 0.0, ..EMPTY_CHART };
             Plot::of(name, chart, true, of(name), signals)
         });
         // An added plot is omitted if the machine has none of its signals.
@@ -156,7 +156,7 @@ pub struct Plot<'a> {
     /// Whether the user added the plot.
     pub own: bool,
     /// All curves, including those that are switched off.
-    pub curves: Vec<Curve<'a>>,
+    pub curves: Vec<PlotCurve<'a>>,
     /// Signal on the horizontal axis; `None` for time.
     pub against: Option<&'a Signal>,
     /// Bounds of the vertical axis; `None` shows all values.
@@ -165,7 +165,7 @@ pub struct Plot<'a> {
 
 /// A curve of a plot.
 #[derive(Clone, Copy, Debug)]
-pub struct Curve<'a> {
+pub struct PlotCurve<'a> {
     /// Signal on the vertical axis.
     pub signal: &'a Signal,
     /// Whether the curve is switched on.
@@ -176,7 +176,7 @@ pub struct Curve<'a> {
     pub times: f64,
 }
 
-impl Curve<'_> {
+impl PlotCurve<'_> {
     /// Returns the unit of the displayed values; empty if dimensionless.
     pub fn unit(&self) -> String {
         match (self.times == 1.0, self.signal.unit) {
@@ -188,13 +188,13 @@ impl Curve<'_> {
 }
 
 impl<'a> Plot<'a> {
-    fn of(name: &str, chart: Chart, own: bool, changes: &Changes, signals: &'a [Signal]) -> Self {
+    fn of(name: &str, chart: Chart, own: bool, changes: &PlotSettings, signals: &'a [Signal]) -> Self {
         let find = |path: &String| signals.iter().find(|signal| signal.path == *path);
         let held = signals.iter().filter(|signal| chart.holds(signal)).map(|signal| (signal, false));
         let added = changes.added.iter().filter_map(find).filter(|signal| !chart.holds(signal));
-        let curves: Vec<Curve<'a>> = held
+        let curves: Vec<PlotCurve<'a>> = held
             .chain(added.map(|signal| (signal, true)))
-            .map(|(signal, added)| Curve {
+            .map(|(signal, added)| PlotCurve {
                 signal,
                 on: !changes.off.contains(&signal.path),
                 added,
@@ -221,7 +221,7 @@ impl<'a> Plot<'a> {
     }
 
     /// The curves that are switched on.
-    pub fn shown(&self) -> impl Iterator<Item = &Curve<'a>> {
+    pub fn shown(&self) -> impl Iterator<Item = &PlotCurve<'a>> {
         self.curves.iter().filter(|curve| curve.on)
     }
 
@@ -231,7 +231,7 @@ impl<'a> Plot<'a> {
             return self.chart.unit.into();
         }
         let mut units: Vec<String> = Vec::new();
-        for unit in self.curves.iter().map(Curve::unit) {
+        for unit in self.curves.iter().map(PlotCurve::unit) {
             if !units.contains(&unit) && !unit.is_empty() {
                 units.push(unit);
             }

@@ -1,12 +1,12 @@
-//! The curves of a plot in a time interval ([`Drawn`]), recomputed when samples, interval or choice change.
+//! The curves of a plot in a time interval ([`PlotLines`]), recomputed when samples, interval or choice change.
 
 use super::choice::Plot;
-use crate::study::samples::Samples;
+use crate::study::samples::SignalSamples;
 use crate::study::series::Statistics;
 
 /// A curve's points, in the units of its plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct PlotLine {
     /// Index of the curve in the plot.
     pub curve: usize,
     /// Index of the overlaid run; `None` for the run of the session.
@@ -17,9 +17,9 @@ pub struct Line {
 
 /// The curves of a plot, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawn {
+pub struct PlotLines {
     /// Lines of overlaid runs first, then those of the session's run.
-    pub lines: Vec<Line>,
+    pub lines: Vec<PlotLine>,
     /// Bounds of the horizontal axis: time, s, or the values of the signal on that axis.
     pub x: [f64; 2],
     /// Bounds of the vertical axis.
@@ -30,7 +30,7 @@ pub struct Drawn {
     pub statistics: Vec<Option<Statistics>>,
 }
 
-impl Drawn {
+impl PlotLines {
     /// Computes the curves of a plot.
     ///
     /// * `samples`: the run of the session.
@@ -40,8 +40,8 @@ impl Drawn {
     /// * `statistics`: whether statistics are computed.
     pub fn of(
         plot: &Plot<'_>,
-        samples: &Samples,
-        others: &[(usize, &Samples)],
+        samples: &SignalSamples,
+        others: &[(usize, &SignalSamples)],
         shown: [f64; 2],
         columns: usize,
         statistics: bool,
@@ -65,7 +65,7 @@ impl Drawn {
                     }
                 };
                 points.iter_mut().for_each(|[_, y]| *y *= times);
-                drawn.lines.push(Line { curve: i, run, points });
+                drawn.lines.push(PlotLine { curve: i, run, points });
             }
         }
         if statistics {

@@ -3,16 +3,16 @@
 
 use super::choice::Plot;
 use super::colour;
-use super::drawn::Drawn;
-use super::thin::thinned;
-use crate::picture::numbers::{at_step, spaced, ticks};
+use super::drawn::PlotLines;
+use super::thin::simplify_line;
+use crate::picture::numbers::{at_step, round_ticks, ticks};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::simulation::frame::{Frame, Peaks};
 
 /// A graphic item; coordinates and lengths in points.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Item {
+pub enum FigureItem {
     /// A line through points.
     Line {
         /// Vertices.
@@ -33,7 +33,7 @@ pub enum Item {
         /// Position of the anchor point within the text: 0 is its left and top, 1 its right and bottom.
         anchor: [f32; 2],
         /// Pieces of text, from left to right.
-        words: Vec<Words>,
+        words: Vec<FigureText>,
     },
     /// A filled disc.
     Dot {
@@ -55,7 +55,7 @@ pub enum Item {
 
 /// A piece of text of one size, weight and colour.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Words {
+pub struct FigureText {
     /// The text.
     pub text: String,
     /// Font size.
@@ -78,14 +78,14 @@ pub struct Axes {
 }
 
 /// Width of the margin for the tick labels of the vertical axis, points.
-pub const LEFT: f32 = 42.0;
+pub const LEFT_MARGIN: f32 = 42.0;
 /// Height of the margin for the tick labels of the horizontal axis, points.
-pub const BELOW: f32 = 15.0;
+pub const BOTTOM_MARGIN: f32 = 15.0;
 
 impl Axes {
     /// Returns axes inside a rectangle (left, top, right, bottom) that also holds the tick labels.
-    pub fn within([left, top, right, bottom]: [f32; 4], drawn: &Drawn) -> Self {
-        Self { sides: [left + LEFT, top, right - 2.0, bottom - BELOW], x: drawn.x, y: drawn.y }
+    pub fn within([left, top, right, bottom]: [f32; 4], drawn: &PlotLines) -> Self {
+        Self { sides: [left + LEFT_MARGIN, top, right - 2.0, bottom - BOTTOM_MARGIN], x: drawn.x, y: drawn.y }
     }
 
     /// Maps a point (x, y) of values to the screen, points.
@@ -112,7 +112,7 @@ impl Axes {
 
 /// Colours and instants with which a plot is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct Look<'a> {
+pub struct PlotContext<'a> {
     /// Colours.
     pub palette: &'a Palette,
     /// Largest values of the run, which decide whether reactions are red or green.
@@ -126,7 +126,7 @@ pub struct Look<'a> {
 }
 
 /// Returns the colour and the dash of a curve; curves are dashed if an earlier curve of the plot has the same colour.
-pub fn pen(plot: &Plot<'_>, curve: usize, look: &Look<'_>) -> (Rgba, Option<[f32; 2]>) {
+pub fn pen(plot: &Plot<'_>, curve: usize, look: &PlotContext<'_>) -> (Rgba, Option<[f32; 2]>) {
     let tone = |i: usize| colour(plot.curves[i].signal, look.palette, look.peaks);
     let same = (0..curve).filter(|i| tone(*i) == tone(curve)).count();
     (tone(curve), [None, Some([6.0, 3.0]), Some([1.5, 2.5]), Some([10.0, 3.0])][same % 4])
@@ -145,24 +145,25 @@ const TICK_SIZE_PT: f32 = 10.0;
 const THINNING_TOLERANCE_PT: f32 = 0.1;
 
 /// Returns the items of axes, curves and cursors.
-pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
+pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureItem> {
     let p = look.palette;
     let [left, top, right, bottom] = axes.sides;
     // Text last, so that all clipped items follow each other.
     let (mut items, mut words) = (Vec::new(), Vec::new());
-    let small = |text: String| vec![Words { text, size: TICK_SIZE_PT, bold: false, colour: p.dim }];
-    let line = |points: Vec<[f32; 2]>, width, colour, dash| Item::Line { points, width, colour, dash, inside: true };
+    let small = |text: String| vec![FigureText { text, size: TICK_SIZE_PT, bold: false, colour: p.dim }];
+    let line =
+        |points: Vec<[f32; 2]>, width, colour, dash| FigureItem::Line { points, width, colour, dash, inside: true };
     // As many tick values as fit the height, and at least two.
     let room = ((bottom - top) / 24.0).clamp(2.0, 9.0).floor() as u8;
-    let round = |count: u8| spaced(axes.y[0], axes.y[1], f64::from(count));
+    let round = |count: u8| round_ticks(axes.y[0], axes.y[1], f64::from(count));
     let (values, step) =
         (room..room + 4).map(round).find(|(values, _)| values.len() >= 2).unwrap_or_else(|| round(room));
     for (value, text) in values.iter().zip(ticks(&values, step)) {
         let y = axes.place([axes.x[0], *value])[1];
         items.push(line(vec![[left, y], [right, y]], 1.0, faded(p.line, 0.9), None));
-        words.push(Item::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: small(text) });
+        words.push(FigureItem::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: small(text) });
     }
-    let (values, step) = spaced(axes.x[0], axes.x[1], f64::from(((right - left) / 52.0).clamp(2.0, 12.0)));
+    let (values, step) = round_ticks(axes.x[0], axes.x[1], f64::from(((right - left) / 52.0).clamp(2.0, 12.0)));
     let last = values.len().saturating_sub(1);
     for (i, value) in values.iter().enumerate() {
         let x = axes.place([*value, axes.y[0]])[0];
@@ -178,11 +179,11 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
         // The last label is right-aligned, to stay inside the rectangle.
         let anchor = if x > right - 14.0 { 1.0 } else { 0.5 };
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
-        words.push(Item::Text { at, anchor: [anchor, 0.0], words: small(text) });
+        words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
     for run in &drawn.lines {
         let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();
-        let points = thinned(&points, THINNING_TOLERANCE_PT);
+        let points = simplify_line(&points, THINNING_TOLERANCE_PT);
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
@@ -200,7 +201,7 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
 
 /// Returns the marks of the displayed instant, the second cursor and the pointer: vertical lines if the horizontal axis
 /// is time, otherwise dots.
-fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
+fn cursors(plot: &Plot<'_>, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureItem> {
     let p = look.palette;
     let [_, top, _, bottom] = axes.sides;
     let all = [
@@ -214,13 +215,13 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
             None => {
                 let x = axes.place([frame.time, axes.y[0]])[0];
                 let points = vec![[x, top], [x, bottom]];
-                items.push(Item::Line { points, width: 1.0, colour: tone, dash, inside: true });
+                items.push(FigureItem::Line { points, width: 1.0, colour: tone, dash, inside: true });
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
                 let at = [against.value(frame), curve.times * curve.signal.value(frame)];
                 // No dot for values outside the vertical axis.
                 let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
-                seen.then(|| Item::Dot { at: axes.place(at), radius: 3.5, colour: tone })
+                seen.then(|| FigureItem::Dot { at: axes.place(at), radius: 3.5, colour: tone })
             })),
         }
     }
@@ -237,21 +238,21 @@ pub struct Figure {
     /// Axes of the plot.
     pub axes: Axes,
     /// Items in order of painting.
-    pub items: Vec<Item>,
+    pub items: Vec<FigureItem>,
 }
 
 impl Figure {
     /// Returns the picture of a plot, with its title, its units and the symbols of its curves; `size` in points.
-    pub fn of(plot: &Plot<'_>, drawn: &Drawn, size: [f32; 2], look: &Look<'_>) -> Self {
+    pub fn of(plot: &Plot<'_>, drawn: &PlotLines, size: [f32; 2], look: &PlotContext<'_>) -> Self {
         let p = look.palette;
         let [width, height] = size;
         let axes = Axes::within([12.0, 40.0, width - 16.0, height - 12.0], drawn);
-        let words = |text: String, bold, colour| Words { text, size: 13.0, bold, colour };
+        let words = |text: String, bold, colour| FigureText { text, size: 13.0, bold, colour };
         let head = vec![words(plot.heading(), true, p.ink), words(format!("  {}", plot.unit()), false, p.dim)];
-        let mut items = vec![Item::Text { at: [16.0, 12.0], anchor: [0.0, 0.0], words: head }];
+        let mut items = vec![FigureItem::Text { at: [16.0, 12.0], anchor: [0.0, 0.0], words: head }];
         let curves = plot.curves.iter().enumerate().filter(|(_, curve)| curve.on);
         let names = curves.map(|(i, c)| words(format!("  {}", c.signal.symbol), false, pen(plot, i, look).0)).collect();
-        items.push(Item::Text { at: [width - 16.0, 12.0], anchor: [1.0, 0.0], words: names });
+        items.push(FigureItem::Text { at: [width - 16.0, 12.0], anchor: [1.0, 0.0], words: names });
         items.extend(body(plot, drawn, &axes, look));
         Self { size, background: p.panel, axes, items }
     }

@@ -1,4 +1,4 @@
-//! The time interval that plots show, with zoom and pan: [`Extent`].
+//! The time interval that plots show, with zoom and pan: [`TimeExtent`].
 
 use serde::{Deserialize, Serialize};
 
@@ -11,14 +11,14 @@ const MIN_LENGTH_S: f64 = 1e-5;
 
 /// The time intervals of a run. A choice of `None` stands for the usual interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Extent {
+pub struct TimeExtent {
     /// Interval from the start to the end of the run, s.
     pub whole: [f64; 2],
     /// Interval shown by default, s: all of a short run, or the surroundings of the displayed instant of a long run.
     pub usual: [f64; 2],
 }
 
-impl Extent {
+impl TimeExtent {
     /// Returns the intervals of a run that ends at `end`; `now` is the displayed instant, both s.
     pub fn of(end: f64, now: f64) -> Self {
         Self::within(MAX_USUAL_S, end, now)

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Figure, Item, Words};
+use super::figure::{Figure, FigureItem, FigureText};
 use crate::picture::scene::Rgba;
 
 /// Returns the text of the SVG file.
@@ -35,9 +35,9 @@ fn paint(what: &str, [r, g, b, a]: Rgba) -> String {
     format!(" {what}=\"#{r:02x}{g:02x}{b:02x}\"{opacity}")
 }
 
-fn element(item: &Item) -> String {
+fn element(item: &FigureItem) -> String {
     match item {
-        Item::Line { points, width, colour, dash, inside } => {
+        FigureItem::Line { points, width, colour, dash, inside } => {
             let mut places = String::new();
             for [x, y] in points {
                 let _ = write!(places, "{x:.2},{y:.2} ");
@@ -50,11 +50,11 @@ fn element(item: &Item) -> String {
                 paint("stroke", *colour)
             )
         }
-        Item::Dot { at: [x, y], radius, colour } => {
+        FigureItem::Dot { at: [x, y], radius, colour } => {
             format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\"{}/>", paint("fill", *colour))
         }
-        Item::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
-        Item::Text { at: [x, y], anchor: [across, down], words } => {
+        FigureItem::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
+        FigureItem::Text { at: [x, y], anchor: [across, down], words } => {
             let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));
             // The baseline, 0.93 of the font size below the top of the text; a line is 1.16 of the font size high.
             let base = y + size * (0.93 - 1.16 * down);
@@ -71,7 +71,7 @@ fn element(item: &Item) -> String {
     }
 }
 
-fn span(words: &Words) -> String {
+fn span(words: &FigureText) -> String {
     let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
     let text = words.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     format!("<tspan font-size=\"{}\"{weight}{}>{text}</tspan>", words.size, paint("fill", words.colour))

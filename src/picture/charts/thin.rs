@@ -5,7 +5,7 @@
 ///
 /// Each kept point has a wedge of directions whose rays pass all later points within the tolerance. The wedge narrows
 /// with every point. A point outside the wedge, or one that turns back, starts the next segment. Takes one pass.
-pub fn thinned(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
+pub fn simplify_line(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
     let mut kept = Vec::with_capacity(points.len().min(256));
     let Some((&first, rest)) = points.split_first() else { return kept };
     kept.push(first);

@@ -4,17 +4,17 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
 use super::{bold, colour, plain};
-use crate::picture::charts::figure::{Axes, Figure, Item};
+use crate::picture::charts::figure::{Axes, Figure, FigureItem};
 
 /// Paints items; their coordinates are relative to `origin`.
-pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[Item]) {
+pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem]) {
     let [left, top, right, bottom] = axes.sides;
     let at = |[x, y]: [f32; 2]| origin + vec2(x, y);
     let within = Rect::from_min_max(at([left, top]), at([right, bottom + 4.0]));
     let inner = painter.with_clip_rect(within.intersect(painter.clip_rect()));
     for item in items {
         match item {
-            Item::Line { points, width, colour: tone, dash, inside } => {
+            FigureItem::Line { points, width, colour: tone, dash, inside } => {
                 let points: Vec<Pos2> = points.iter().map(|p| at(*p)).collect();
                 let stroke = Stroke::new(*width, colour(*tone));
                 let painter = if *inside { &inner } else { painter };
@@ -23,13 +23,13 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[Item]) {
                     Some([on, off]) => painter.extend(Shape::dashed_line(&points, stroke, *on, *off)),
                 }
             }
-            Item::Dot { at: place, radius, colour: tone } => {
+            FigureItem::Dot { at: place, radius, colour: tone } => {
                 painter.circle_filled(at(*place), *radius, colour(*tone));
             }
-            Item::Area { sides: [left, top, right, bottom], colour: tone } => {
+            FigureItem::Area { sides: [left, top, right, bottom], colour: tone } => {
                 painter.rect_filled(Rect::from_min_max(at([*left, *top]), at([*right, *bottom])), 0.0, colour(*tone));
             }
-            Item::Text { at: place, anchor: [across, down], words } => {
+            FigureItem::Text { at: place, anchor: [across, down], words } => {
                 let mut job = LayoutJob::default();
                 for words in words {
                     let font = if words.bold { bold(words.size) } else { plain(words.size) };

@@ -8,7 +8,7 @@ use egui::{Painter, Pos2, Rect, Stroke};
 use super::colour;
 use crate::mechanics::machine::{Machine, place_of};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::picture::scene::linkage::{Flat, Linkage};
+use crate::picture::scene::linkage::{FlatLink, LinkageModel};
 use crate::picture::scene::palette::{Palette, mix};
 
 /// Position of each relative angle between its limits, from 0 to 1. At 0.5, arms with symmetric limits would be
@@ -23,7 +23,7 @@ const ASPECT_RATIO: f64 = 2.2;
 
 /// A machine to be painted; lengths in m.
 pub struct Portrait {
-    links: Vec<Flat>,
+    links: Vec<FlatLink>,
     pins: Vec<Vector>,
     tip: Vector,
     foot: f64,
@@ -34,7 +34,7 @@ pub struct Portrait {
 impl Portrait {
     /// Computes the picture of a machine.
     pub fn of(machine: &Machine) -> Self {
-        let linkage = Linkage::of(machine);
+        let linkage = LinkageModel::of(machine);
         let bent = bent(machine);
         let turned = |i: usize| {
             let turn = PI * i as f64 / ORIENTATIONS as f64;
@@ -45,7 +45,7 @@ impl Portrait {
         (1..ORIENTATIONS).map(turned).fold(first, |best, other| if other.size() < best.size() { other } else { best })
     }
 
-    fn posed(machine: &Machine, linkage: &Linkage, q: &[f64]) -> Self {
+    fn posed(machine: &Machine, linkage: &LinkageModel, q: &[f64]) -> Self {
         let e = DriveAngles(PerDrive::from_fn(q.len(), |k| q[k])).units();
         let (links, foot) = (linkage.flat(&e), linkage.foot());
         let tip = place_of(machine.end_effector(), &e);

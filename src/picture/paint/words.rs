@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
 
-use super::{Spot, colour, paint, plain};
+use super::{SceneViewport, colour, paint, plain};
 use crate::picture::scene::camera::Camera;
 use crate::picture::scene::palette::faded;
 use crate::picture::scene::{Anchor, Label, Scene};
@@ -59,12 +59,12 @@ pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
         paint(ui, 0, rect, scene, camera);
-        words(ui, &Spot { rect, camera: *camera }, scene, &[]);
+        words(ui, &SceneViewport { rect, camera: *camera }, scene, &[]);
     });
 }
 
 /// Paints the labels of the scene outside the rectangles `taken`.
-pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
+pub fn words(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
     let painter = ui.painter().with_clip_rect(spot.rect);
     for (label, galley, place) in placed(&painter, spot, scene, taken) {
         write(&painter, scene, label, galley, place);
@@ -74,7 +74,7 @@ pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
 /// Returns the rectangles of those labels of the scene that have space outside the rectangles `taken`.
 pub fn placed<'a>(
     painter: &Painter,
-    spot: &Spot,
+    spot: &SceneViewport,
     scene: &'a Scene,
     taken: &[Rect],
 ) -> Vec<(&'a Label, Arc<Galley>, Rect)> {

@@ -4,7 +4,7 @@ use super::kit::{COLOUR, DEPTH};
 use super::shader::{Shader, embedded};
 
 /// Multisampled colour and depth, the picture they resolve to, and the picture's bind group.
-pub(super) struct Target {
+pub(super) struct Framebuffer {
     pub(super) size_px: [u32; 2],
     /// Multisampled colour; `None` with one sample per pixel.
     pub(super) samples: Option<wgpu::TextureView>,
@@ -84,7 +84,7 @@ impl Blit {
         self.shader.reload(device);
     }
 
-    pub(super) fn target(&self, device: &wgpu::Device, size_px: [u32; 2], samples: u32) -> Target {
+    pub(super) fn target(&self, device: &wgpu::Device, size_px: [u32; 2], samples: u32) -> Framebuffer {
         let [width, height] = size_px;
         let texture = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -113,10 +113,10 @@ impl Blit {
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
             ],
         });
-        Target { size_px, samples, depth, picture, picture_view, group }
+        Framebuffer { size_px, samples, depth, picture, picture_view, group }
     }
 
-    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, target: &Target) {
+    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, target: &Framebuffer) {
         pass.set_pipeline(&self.shader);
         pass.set_bind_group(0, &target.group, &[]);
         pass.draw(0..3, 0..1);

@@ -42,7 +42,7 @@ impl Upload<'_> {
 }
 
 /// Bind group layouts and the frame's uniform.
-pub(super) struct Kit {
+pub(super) struct SharedBindings {
     pipeline_layout: wgpu::PipelineLayout,
     list_layout: wgpu::BindGroupLayout,
     frame: wgpu::Buffer,
@@ -93,7 +93,7 @@ impl<'a> Recipe<'a> {
     }
 }
 
-impl Kit {
+impl SharedBindings {
     pub(super) fn new(device: &wgpu::Device, quality: Quality) -> Self {
         let layout = |label, visibility, ty| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -195,12 +195,12 @@ pub(super) struct List<T> {
 }
 
 impl<T: Pod> List<T> {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit, label: &'static str) -> Self {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings, label: &'static str) -> Self {
         let (buffer, group) = Self::room(device, kit, label, 16);
         Self { items: Vec::new(), label, buffer, group }
     }
 
-    fn room(device: &wgpu::Device, kit: &Kit, label: &str, count: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
+    fn room(device: &wgpu::Device, kit: &SharedBindings, label: &str, count: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: (count * size_of::<T>()) as u64,
@@ -216,7 +216,7 @@ impl<T: Pod> List<T> {
     }
 
     /// Copies the items to the GPU; items beyond the largest binding of the device are dropped.
-    pub(super) fn upload(&mut self, kit: &Kit, upload: &mut Upload) {
+    pub(super) fn upload(&mut self, kit: &SharedBindings, upload: &mut Upload) {
         let most = upload.device.limits().max_storage_buffer_binding_size as usize / size_of::<T>();
         self.items.truncate(most);
         if (self.buffer.size() as usize) < size_of_val(self.items.as_slice()) {

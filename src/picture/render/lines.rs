@@ -1,9 +1,9 @@
 //! Polylines as antialiased ribbons of constant width on the screen.
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
-use crate::picture::scene::{IN_PLACE, Line, Scene, place};
+use crate::picture::scene::{IN_PLACE, Polyline, Scene, place};
 
 twin! {
     /// One segment from `a` to `b`, with the vertices before and after it.
@@ -25,7 +25,7 @@ struct Pipelines {
     on_top: wgpu::RenderPipeline,
 }
 
-pub(super) struct Lines {
+pub(super) struct LineRenderer {
     shader: Shader<Pipelines>,
     /// Segments; the depth-tested ones come first.
     list: List<Segment>,
@@ -34,8 +34,8 @@ pub(super) struct Lines {
     path: Vec<[f32; 3]>,
 }
 
-impl Lines {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+impl LineRenderer {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             let recipe = |label, compare| {
@@ -54,7 +54,7 @@ impl Lines {
         }
     }
 
-    pub(super) fn prepare(&mut self, kit: &Kit, upload: &mut Upload, scene: &Scene, view: &View) {
+    pub(super) fn prepare(&mut self, kit: &SharedBindings, upload: &mut Upload, scene: &Scene, view: &View) {
         self.shader.reload(upload.device);
         self.list.items.clear();
         scene.lines.iter().filter(|line| !line.on_top).for_each(|line| self.add(line, view));
@@ -64,15 +64,15 @@ impl Lines {
         self.tested = self.tested.min(self.list.items.len() as u32);
     }
 
-    fn add(&mut self, line: &Line, view: &View) {
+    fn add(&mut self, line: &Polyline, view: &View) {
         if line.width.is_nan() || line.width <= 0.0 || line.colour[3] <= 0.0 {
             return;
         }
         line.strips.iter().for_each(|strip| self.add_strip(strip, line, view));
     }
 
-    fn add_strip(&mut self, strip: &[[f32; 3]], line: &Line, view: &View) {
-        let Line { name: _, strips: _, world_from_item, width, colour, dash, on_top: _, changes: _ } = line;
+    fn add_strip(&mut self, strip: &[[f32; 3]], line: &Polyline, view: &View) {
+        let Polyline { name: _, strips: _, world_from_item, width, colour, dash, on_top: _, changes: _ } = line;
         self.path.clear();
         self.path.extend(strip.iter().filter(|p| p.iter().all(|x| x.is_finite())));
         if *world_from_item != IN_PLACE {

@@ -1,6 +1,6 @@
 //! Discs and rings of constant size on the screen, over everything.
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 use bytemuck::Zeroable as _;
@@ -17,13 +17,13 @@ twin! {
     }
 }
 
-pub(super) struct Markers {
+pub(super) struct MarkerRenderer {
     shader: Shader<wgpu::RenderPipeline>,
     list: List<Marker>,
 }
 
-impl Markers {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+impl MarkerRenderer {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             use wgpu::{BlendState, CompareFunction};
@@ -36,7 +36,7 @@ impl Markers {
         }
     }
 
-    pub(super) fn prepare(&mut self, kit: &Kit, upload: &mut Upload, scene: &Scene) {
+    pub(super) fn prepare(&mut self, kit: &SharedBindings, upload: &mut Upload, scene: &Scene) {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.markers.iter().map(|marker| {

@@ -20,7 +20,7 @@ mod view;
 mod workspace;
 
 pub use quality::Quality;
-pub use shader::Twin;
+pub use shader::SharedLayout;
 pub use view::View;
 
 use crate::picture::scene::Scene;
@@ -29,15 +29,15 @@ use wgpu::util::StagingBelt;
 
 /// Pipelines and buffers that draw one scene at a time.
 pub struct Renderer {
-    kit: kit::Kit,
+    kit: kit::SharedBindings,
     belt: StagingBelt,
-    solids: solids::Solids,
-    workspace: workspace::Workspace,
-    shadows: shadows::Shadows,
-    lines: lines::Lines,
-    markers: markers::Markers,
+    solids: solids::SolidRenderer,
+    workspace: workspace::WorkspaceRenderer,
+    shadows: shadows::ShadowRenderer,
+    lines: lines::LineRenderer,
+    markers: markers::MarkerRenderer,
     blit: blit::Blit,
-    target: Option<blit::Target>,
+    target: Option<blit::Framebuffer>,
 }
 
 impl Renderer {
@@ -49,14 +49,14 @@ impl Renderer {
 
     /// Creates a renderer of the given quality; see [`new`](Self::new).
     pub fn drawing(device: &wgpu::Device, target_format: wgpu::TextureFormat, quality: Quality) -> Self {
-        let kit = kit::Kit::new(device, quality);
+        let kit = kit::SharedBindings::new(device, quality);
         Self {
             belt: StagingBelt::new(device.clone(), 1 << 18),
-            solids: solids::Solids::new(device, &kit),
-            workspace: workspace::Workspace::new(device, &kit),
-            shadows: shadows::Shadows::new(device, &kit),
-            lines: lines::Lines::new(device, &kit),
-            markers: markers::Markers::new(device, &kit),
+            solids: solids::SolidRenderer::new(device, &kit),
+            workspace: workspace::WorkspaceRenderer::new(device, &kit),
+            shadows: shadows::ShadowRenderer::new(device, &kit),
+            lines: lines::LineRenderer::new(device, &kit),
+            markers: markers::MarkerRenderer::new(device, &kit),
             blit: blit::Blit::new(device, target_format),
             target: None,
             kit,
@@ -136,7 +136,7 @@ impl Renderer {
 }
 
 /// Memory layouts of all structs that Rust and WGSL share.
-pub const TWINS: [Twin; 7] = [
+pub const TWINS: [SharedLayout; 7] = [
     kit::Frame::TWIN,
     solids::Vertex::TWIN,
     solids::Instance::TWIN,

@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 /// Memory layout of a struct that Rust and WGSL share; a test compares it with the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Twin {
+pub struct SharedLayout {
     /// Name in Rust and in WGSL.
     pub name: &'static str,
     /// Size with padding, bytes.
@@ -21,7 +21,7 @@ macro_rules! twin {
         #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
         pub(super) struct $name { $(pub(super) $field: $type,)* }
         impl $name {
-            pub(super) const TWIN: $crate::picture::render::shader::Twin = $crate::picture::render::shader::Twin {
+            pub(super) const TWIN: $crate::picture::render::shader::SharedLayout = $crate::picture::render::shader::SharedLayout {
                 name: stringify!($name),
                 size: size_of::<Self>(),
                 fields: &[$((stringify!($field), std::mem::offset_of!(Self, $field))),*],
@@ -47,14 +47,14 @@ pub(crate) struct Shader<P> {
     #[cfg(debug_assertions)]
     build: Build<P>,
     #[cfg(debug_assertions)]
-    watch: watch::Watch,
+    watch: watch::ShaderWatch,
 }
 
 impl<P> Shader<P> {
     pub(crate) fn new(device: &wgpu::Device, (name, text): (&'static str, &'static str), build: Build<P>) -> Self {
         let pipelines = build(device, &module(device, name, text));
         #[cfg(debug_assertions)]
-        return Self { pipelines, build, watch: watch::Watch::new(name, text) };
+        return Self { pipelines, build, watch: watch::ShaderWatch::new(name, text) };
         #[cfg(not(debug_assertions))]
         Self { pipelines }
     }
@@ -96,7 +96,7 @@ mod watch {
     use std::time::{Duration, Instant, SystemTime};
 
     /// Polls the file of a shader, at most twice a second.
-    pub(super) struct Watch {
+    pub(super) struct ShaderWatch {
         pub(super) name: &'static str,
         path: PathBuf,
         text: String,
@@ -104,7 +104,7 @@ mod watch {
         looked: Option<Instant>,
     }
 
-    impl Watch {
+    impl ShaderWatch {
         pub(super) fn new(name: &'static str, text: &str) -> Self {
             let path = [env!("CARGO_MANIFEST_DIR"), "shaders", &format!("{name}.wgsl")].iter().collect();
             Self { name, path, text: text.to_owned(), modified: None, looked: None }

@@ -1,6 +1,6 @@
 //! Soft shadows of bars on the plane below them.
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 
@@ -16,13 +16,13 @@ twin! {
     }
 }
 
-pub(super) struct Shadows {
+pub(super) struct ShadowRenderer {
     shader: Shader<wgpu::RenderPipeline>,
     list: List<Shadow>,
 }
 
-impl Shadows {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+impl ShadowRenderer {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             use wgpu::{BlendState, CompareFunction};
@@ -35,7 +35,7 @@ impl Shadows {
         }
     }
 
-    pub(super) fn prepare(&mut self, kit: &Kit, upload: &mut Upload, scene: &Scene) {
+    pub(super) fn prepare(&mut self, kit: &SharedBindings, upload: &mut Upload, scene: &Scene) {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.shadows.iter().map(|shadow| {

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use bytemuck::Zeroable as _;
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
-use crate::picture::scene::{Model, Scene};
+use crate::picture::scene::{MeshSet, Scene};
 
 twin! {
     /// A vertex of a mesh, padded as WGSL lays it out.
@@ -55,7 +55,7 @@ struct Pipelines {
 /// The meshes of a model in one pair of buffers.
 struct Meshes {
     /// Kept alive, so that no other model can have the same address.
-    model: Arc<Model>,
+    model: Arc<MeshSet>,
     vertices: wgpu::Buffer,
     triangles: wgpu::Buffer,
     /// Index range and first vertex of each mesh.
@@ -68,7 +68,7 @@ struct Run {
     instances: Range<u32>,
 }
 
-pub(super) struct Solids {
+pub(super) struct SolidRenderer {
     shader: Shader<Pipelines>,
     meshes: Option<Meshes>,
     list: List<Instance>,
@@ -87,8 +87,8 @@ enum Layer {
     Translucent,
 }
 
-impl Solids {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+impl SolidRenderer {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             let recipe = |label, entries, cull, depth_write, depth_compare, blend| {
@@ -135,7 +135,7 @@ impl Solids {
         }
     }
 
-    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, kit: &Kit, upload: &mut Upload, scene: &Scene) {
+    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, kit: &SharedBindings, upload: &mut Upload, scene: &Scene) {
         self.shader.reload(upload.device);
         if !self.meshes.as_ref().is_some_and(|meshes| Arc::ptr_eq(&meshes.model, &scene.model)) {
             self.meshes = Some(Meshes::new(upload.device, queue, &scene.model, self.meshes.take()));
@@ -204,7 +204,7 @@ impl Solids {
 
 impl Meshes {
     /// Copies the meshes of a model to the GPU; reuses the buffers of `old` if they are large enough.
-    fn new(device: &wgpu::Device, queue: &wgpu::Queue, model: &Arc<Model>, old: Option<Self>) -> Self {
+    fn new(device: &wgpu::Device, queue: &wgpu::Queue, model: &Arc<MeshSet>, old: Option<Self>) -> Self {
         let (mut vertices, mut triangles, mut parts) = (Vec::new(), Vec::<[u32; 3]>::new(), Vec::new());
         for mesh in &model.meshes {
             let (first_vertex, first_index) = (vertices.len(), 3 * triangles.len() as u32);

@@ -1,6 +1,6 @@
 //! Reactionless workspaces, evaluated on the GPU over a grid of (a_1, a_2).
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 use bytemuck::Zeroable as _;
@@ -28,7 +28,7 @@ twin! {
     }
 }
 
-pub(super) struct Workspace {
+pub(super) struct WorkspaceRenderer {
     shader: Shader<wgpu::RenderPipeline>,
     list: List<Area>,
     /// Vertex indices, two triangles per cell; each vertex of the grid is evaluated once.
@@ -36,8 +36,8 @@ pub(super) struct Workspace {
     corners: u32,
 }
 
-impl Workspace {
-    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+impl WorkspaceRenderer {
+    pub(super) fn new(device: &wgpu::Device, kit: &SharedBindings) -> Self {
         let (pipeline, cells) = (kit.pipelines(), kit.quality.cells());
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             let recipe = Recipe {
@@ -74,7 +74,7 @@ impl Workspace {
         }
     }
 
-    pub(super) fn prepare(&mut self, kit: &Kit, upload: &mut Upload, scene: &Scene) {
+    pub(super) fn prepare(&mut self, kit: &SharedBindings, upload: &mut Upload, scene: &Scene) {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.areas.iter().map(|area| {

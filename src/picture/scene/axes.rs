@@ -1,7 +1,7 @@
 //! A box with three labelled axes: a grid on the rear walls, and ticks on the front edges.
 
 use super::palette::{Palette, faded};
-use super::{Anchor, Changes, Label, Line, Rgba, Scene};
+use super::{Anchor, ItemChanges, Label, Polyline, Rgba, Scene};
 use crate::picture::numbers::signed;
 
 /// One axis of the box: its quantity and interval.
@@ -104,7 +104,7 @@ impl<'a> Sight<'a> {
 }
 
 /// Draws a box seen from `eye`, a unit vector from the scene towards the eye; `stands` says whether the box may change.
-pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: Changes) {
+pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: ItemChanges) {
     let sight = Sight::new(axes, eye);
     let (mut grid, mut edges, mut ticks) = (Vec::new(), Vec::new(), Vec::new());
     // Each wall is numbered by its normal axis; grid lines run along one of its axes at the ticks of the other.
@@ -126,11 +126,11 @@ pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3
         mark(scene, &mut ticks, palette, &sight, k, axis);
     }
     let box_lines = [
-        Line::new("axes/grid", grid, 1.0, faded(palette.line, 0.7)),
-        Line::new("axes/edges", edges, 1.0, palette.line),
-        Line::new("axes/ticks", ticks, 1.0, palette.dim),
+        Polyline::new("axes/grid", grid, 1.0, faded(palette.line, 0.7)),
+        Polyline::new("axes/edges", edges, 1.0, palette.line),
+        Polyline::new("axes/ticks", ticks, 1.0, palette.dim),
     ];
-    let box_lines = box_lines.map(|line| Line { changes: stands, ..line });
+    let box_lines = box_lines.map(|line| Polyline { changes: stands, ..line });
     scene.lines.splice(first..first, box_lines);
 }
 
@@ -164,7 +164,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
         scene.labels.push(label("axes/words", place(value, 0.012), offset, text, palette.dim, 11.5));
     }
     if let Some((now, colour)) = axis.now {
-        scene.lines.push(Line::new(NOW[k], [tick(now, 0.022)], 2.0, colour));
+        scene.lines.push(Polyline::new(NOW[k], [tick(now, 0.022)], 2.0, colour));
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
         scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, 3), colour, 12.5));
     }
@@ -184,14 +184,14 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
 
 /// Returns an interval of length `width` that contains the given interval with a `margin` on both sides, as near to
 /// centred on `home` as possible. If the given interval is too long, the result contains its lower part.
-pub fn covering([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
+pub fn covering_range([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
     let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);
     [middle - 0.5 * width, middle + 0.5 * width]
 }
 
 /// Returns an interval of length `width` that contains a value. It is centred on `home` while the value is at least
 /// `margin` inside, otherwise it is shifted with the value; so it moves continuously.
-pub fn sliding(value: f64, home: f64, width: f64, margin: f64) -> [f64; 2] {
+pub fn sliding_range(value: f64, home: f64, width: f64, margin: f64) -> [f64; 2] {
     let free = (0.5 * width - margin).max(0.0);
     let off = value - home;
     let middle = home + (off - off.clamp(-free, free));

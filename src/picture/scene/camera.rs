@@ -7,14 +7,14 @@ use nalgebra::{Matrix4, Point3, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Camera {
     /// Orthographic, straight down on the plane of motion.
-    Flat(Flat),
+    Flat(FlatCamera),
     /// In perspective, orbiting a point.
     Orbit(Orbit),
 }
 
 /// Orthographic camera that looks straight down on the plane of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flat {
+pub struct FlatCamera {
     /// Point at the centre of the picture, m.
     pub centre: [f64; 2],
     /// Half the height of the picture, m.
@@ -57,7 +57,7 @@ impl Ray {
 impl Camera {
     /// Returns a flat view of an arm with the given reach, m; the centre is shifted from B towards the usual work area.
     pub fn flat(reach: f64) -> Self {
-        Self::Flat(Flat { centre: [0.12 * reach, 0.28 * reach], half_height: 0.82 * reach })
+        Self::Flat(FlatCamera { centre: [0.12 * reach, 0.28 * reach], half_height: 0.82 * reach })
     }
 
     /// Returns a view of an arm with the given reach, m, from the front and above.

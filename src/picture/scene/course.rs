@@ -3,7 +3,7 @@
 use crate::mechanics::planar::Vector;
 use crate::planning::Motion;
 use crate::session::Run;
-use crate::session::scenario::Shape;
+use crate::session::scenario::PathShape;
 use crate::simulation::frame::{Frame, Reach};
 
 /// Minimum number of intervals in which a path is drawn.
@@ -24,7 +24,7 @@ pub fn waypoints(run: &Run) -> Vec<(usize, String, Vector)> {
     }
     let named = |(i, p)| (i, task.name_of(i), p);
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
-    if all.len() <= MAX_NAMED && task.shape() != Shape::Freehand {
+    if all.len() <= MAX_NAMED && task.shape() != PathShape::Freehand {
         all
     } else {
         [&all[..1], &all[all.len() - 1..]].concat()

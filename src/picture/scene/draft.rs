@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use super::grid::Grid;
-use super::linkage::Linkage;
-use super::options::{Handle, Offered, ViewOptions};
+use super::linkage::LinkageModel;
+use super::options::{Handle, ViewOptions, WeightOption};
 use super::palette::{Palette, faded, mix, palette};
-use super::pick::{Aim, NEAR, Pick};
+use super::pick::{DragAction, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
-use super::{Anchor, Label, Line, Marker, Scene, point};
+use super::{Anchor, Label, Marker, Polyline, Scene, point};
 use crate::mechanics::machine::{Length, Machine};
-use crate::mechanics::planar::{Units, Vector, unit};
+use crate::mechanics::planar::{UnitVectors, Vector, unit};
 use crate::simulation::frame::Frame;
 
 /// Half the size of the cross at a centre of mass, as a fraction of the reach.
@@ -26,7 +26,7 @@ const LENGTH_LABEL_PX: f32 = 14.0;
 
 /// The parts of the design view that do not change from frame to frame.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct DesignDrawing {
     /// All links, in the order of the machine.
     links: Vec<Link>,
     weights: Vec<Weight>,
@@ -52,7 +52,7 @@ struct Weight {
     mass: f64,
 }
 
-impl Draft {
+impl DesignDrawing {
     /// Prepares a machine for drawing.
     pub fn of(machine: &Machine) -> Self {
         let spec = machine.spec();
@@ -72,7 +72,7 @@ impl Draft {
     }
 
     /// Returns the scene of the design view.
-    pub fn scene(&self, (linkage, grid): (&Linkage, &Grid), frame: &Frame, options: &ViewOptions) -> Scene {
+    pub fn scene(&self, (linkage, grid): (&LinkageModel, &Grid), frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         grid.draw(&mut scene, &palette);
@@ -81,7 +81,7 @@ impl Draft {
     }
 
     /// Draws everything except the grid.
-    fn draw(&self, scene: &mut Scene, linkage: &Linkage, frame: &Frame, options: &ViewOptions) {
+    fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, frame: &Frame, options: &ViewOptions) {
         let palette = palette(options.theme);
         let e = frame.q.units();
         let hot = options.hot.and_then(|handle| self.link_of(handle));
@@ -113,9 +113,16 @@ impl Draft {
     }
 
     /// Draws the counterweights to choose from, as circles.
-    fn draw_choice(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, weights: &[Offered]) {
+    fn draw_choice(
+        &self,
+        scene: &mut Scene,
+        linkage: &LinkageModel,
+        palette: &Palette,
+        frame: &Frame,
+        weights: &[WeightOption],
+    ) {
         let e = frame.q.units();
-        let circle = |Offered { link, at, radius }: &Offered| {
+        let circle = |WeightOption { link, at, radius }: &WeightOption| {
             let (root, along, _) = linkage.bars().get(*link)?.pose(&e);
             let middle = frame.base.at + root + along * *at;
             let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * *radius;
@@ -123,7 +130,7 @@ impl Draft {
         };
         let circles: Vec<_> = weights.iter().filter_map(circle).collect();
         if !circles.is_empty() {
-            scene.lines.push(Line::new("design/choice", circles, 2.2, palette.amber).on_top());
+            scene.lines.push(Polyline::new("design/choice", circles, 2.2, palette.amber).on_top());
         }
     }
 
@@ -131,16 +138,16 @@ impl Draft {
     fn draw_length(
         &self,
         scene: &mut Scene,
-        linkage: &Linkage,
+        linkage: &LinkageModel,
         palette: &Palette,
-        (i, e): (usize, &Units),
+        (i, e): (usize, &UnitVectors),
         frame: &Frame,
     ) {
         let link = &self.links[i];
         let (root, along, _) = linkage.bars()[i].pose(e);
         let z = linkage.top();
         let [from, to] = [root, root + along * link.length].map(|p| point(frame.base.at + p, z));
-        scene.lines.push(Line::new("design/length", [vec![from, to]], 1.2, palette.ink).dashed(2.0, 3.0).on_top());
+        scene.lines.push(Polyline::new("design/length", [vec![from, to]], 1.2, palette.ink).dashed(2.0, 3.0).on_top());
         let name = link.shared.as_deref().map_or(String::new(), |name| format!("{name} "));
         let text = format!("{name}{:.3} m", link.length);
         let way = [along.re as f32, -along.im as f32].map(|x| x * LENGTH_LABEL_PX);
@@ -164,7 +171,7 @@ impl Draft {
     }
 
     /// Returns the position of a handle in the scene, m.
-    fn place(&self, handle: Handle, linkage: &Linkage, frame: &Frame) -> Option<[f64; 3]> {
+    fn place(&self, handle: Handle, linkage: &LinkageModel, frame: &Frame) -> Option<[f64; 3]> {
         let on = match handle {
             Handle::Mass(i) => self.links.get(i)?.com,
             Handle::End(i) => Vector::new(self.links.get(i)?.length, 0.0),
@@ -178,27 +185,27 @@ impl Draft {
 
     /// Returns the handle under the pointer: the nearest centre of mass or counterweight, otherwise the nearest end of
     /// a link.
-    pub fn pick(&self, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+    pub fn pick(&self, linkage: &LinkageModel, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let near = |handle: Handle| {
             let at = self.place(handle, linkage, frame)?;
-            let most = if matches!(handle, Handle::End(_)) { END_PICK_PX } else { 0.6 * NEAR };
+            let most = if matches!(handle, Handle::End(_)) { END_PICK_PX } else { 0.6 * PICK_RADIUS };
             // Handles that coincide with an end take precedence over it.
-            let behind = if matches!(handle, Handle::End(_)) { NEAR } else { 0.0 };
+            let behind = if matches!(handle, Handle::End(_)) { PICK_RADIUS } else { 0.0 };
             pointer.distance(at).filter(|d| *d < most).map(|d| (Pick::of(handle, at), d + behind))
         };
         self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
     }
 
     /// Returns the change that dragging a handle to the pointer requests; the handle stays on the axis of its link.
-    pub fn aim(&self, pick: &Pick, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    pub fn aim(&self, pick: &Pick, linkage: &LinkageModel, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let link = self.link_of(pick.handle)?;
         let [x, y] = pointer.ray()?.at_height(linkage.top())?;
         let (root, along, _) = linkage.bars().get(link)?.pose(&frame.q.units());
         let to = ((Vector::new(x, y) - frame.base.at - root) * along.conj()).re;
         match pick.handle {
-            Handle::Mass(_) => Some(Aim::Mass { link, to }),
-            Handle::Weight(weight) => Some(Aim::Weight { weight, to }),
-            Handle::End(_) => Some(Aim::Length { link, to: to.max(MIN_LENGTH_M) }),
+            Handle::Mass(_) => Some(DragAction::Mass { link, to }),
+            Handle::Weight(weight) => Some(DragAction::Weight { weight, to }),
+            Handle::End(_) => Some(DragAction::Length { link, to: to.max(MIN_LENGTH_M) }),
             _ => None,
         }
     }
@@ -224,7 +231,7 @@ fn draw_handle(
             scene.markers.push(ring);
             let [x, y, z] = at;
             let cross = [[[x - arm, y, z], [x + arm, y, z]], [[x, y - arm, z], [x, y + arm, z]]];
-            scene.lines.push(Line::new("design/masses/crosses", cross.map(Vec::from), 1.4, edge).on_top());
+            scene.lines.push(Polyline::new("design/masses/crosses", cross.map(Vec::from), 1.4, edge).on_top());
         }
         Handle::Weight(_) => {
             let text = format!("{:.2}", kilograms);

@@ -64,7 +64,7 @@ impl Exaggeration {
 /// An instant with exaggeration: drawn positions, and the frame with the true values. Texts use only the frame, never
 /// the drawn positions.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown<'a> {
+pub struct DrawnFrame<'a> {
     /// True values.
     pub frame: &'a Frame,
     /// Drawn pose of the base.
@@ -79,7 +79,7 @@ pub struct Shown<'a> {
     pub target: Vector,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> DrawnFrame<'a> {
     /// Applies an exaggeration to a frame; drives, end effector and centre of mass move with the base.
     pub fn of(frame: &'a Frame, exaggeration: Exaggeration) -> Self {
         let base = exaggeration.base(frame);
@@ -106,7 +106,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-impl<'a> From<&'a Frame> for Shown<'a> {
+impl<'a> From<&'a Frame> for DrawnFrame<'a> {
     /// Returns the frame without exaggeration.
     fn from(frame: &'a Frame) -> Self {
         Self::of(frame, Exaggeration::default())

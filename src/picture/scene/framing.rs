@@ -4,7 +4,7 @@ use super::camera::Camera;
 
 /// Size of the picture and the rectangles that cover parts of it, px.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Room {
+pub struct PictureArea {
     /// Width and height.
     pub size: [f64; 2],
     /// Left, top, right and bottom of each covering rectangle.
@@ -13,7 +13,7 @@ pub struct Room {
 
 /// Points to be shown, m.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Content {
+pub struct ViewContent {
     /// Points that are always shown.
     pub first: Vec<[f64; 3]>,
     /// Points that are shown if they make the picture only slightly smaller.
@@ -27,9 +27,9 @@ const MAX_LOSS: f64 = 0.15;
 /// Number of iterations in perspective, where the scale depends on the distance.
 const ITERATIONS: usize = 12;
 
-impl Content {
+impl ViewContent {
     /// Returns the camera of the same direction that shows the content.
-    pub fn framed(&self, camera: Camera, room: &Room) -> Camera {
+    pub fn framed(&self, camera: Camera, room: &PictureArea) -> Camera {
         let (alone, scale) = framed(camera, &self.first, room);
         if self.then.is_empty() {
             return alone;
@@ -40,7 +40,7 @@ impl Content {
 }
 
 /// Returns the camera of the same direction that shows the points, and its scale.
-fn framed(mut camera: Camera, points: &[[f64; 3]], room: &Room) -> (Camera, f64) {
+fn framed(mut camera: Camera, points: &[[f64; 3]], room: &PictureArea) -> (Camera, f64) {
     let [width, height] = room.size.map(|x| x.max(1.0));
     let aspect = width / height;
     for round in 0..ITERATIONS {
@@ -74,7 +74,7 @@ fn bounds(camera: &Camera, points: &[[f64; 3]], aspect: f64) -> Option<[f64; 4]>
 }
 
 /// Returns the uncovered rectangle of the picture, px, in which content of the given width and height is largest.
-fn free(seen: [f64; 2], room: &Room) -> [f64; 4] {
+fn free(seen: [f64; 2], room: &PictureArea) -> [f64; 4] {
     let [width, height] = room.size;
     // Small pictures have narrower margins.
     let margin = MARGIN_PX.min(0.06 * width.min(height));

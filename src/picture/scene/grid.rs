@@ -1,8 +1,8 @@
 //! [`Grid`]: a square grid under a machine, as a scale.
 
-use super::linkage::Linkage;
+use super::linkage::LinkageModel;
 use super::palette::{Palette, faded};
-use super::{Line, Scene, Strips, point};
+use super::{Polyline, Scene, Strips, point};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::round_up;
 
@@ -20,7 +20,7 @@ pub struct Grid {
 
 impl Grid {
     /// Returns the grid under a machine.
-    pub fn of(linkage: &Linkage) -> Self {
+    pub fn of(linkage: &LinkageModel) -> Self {
         let z = linkage.floor() - 0.004 * linkage.reach();
         let width = round_up(linkage.reach() / MAX_SQUARES);
         let n = (1.7 * linkage.reach() / width).ceil() as i32;
@@ -41,8 +41,8 @@ impl Grid {
 
     /// Draws the grid.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette) {
-        let lines = Line::new("grid", self.lines.clone(), 1.0, faded(palette.line, 0.55));
-        let axes = Line::new("grid/axes", self.axes.clone(), 1.0, palette.line);
+        let lines = Polyline::new("grid", self.lines.clone(), 1.0, faded(palette.line, 0.55));
+        let axes = Polyline::new("grid/axes", self.axes.clone(), 1.0, palette.line);
         scene.lines.extend([lines.still(), axes.still()]);
     }
 }

@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
-use super::{Changes, Mesh, Model, Name, Rgba, Shadow, Solid, posed};
+use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
 use crate::mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
-use crate::mechanics::planar::{Pose2, Units, Vector, unit};
+use crate::mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 /// The meshes of a machine, and their placement in a pose.
 #[derive(Clone, Debug)]
-pub struct Linkage {
+pub struct LinkageModel {
     /// Meshes that the solids refer to.
-    pub model: Arc<Model>,
+    pub model: Arc<MeshSet>,
     bars: Vec<Bar>,
     pins: Vec<Pin>,
     /// Mesh of all pins; each is stretched to the length between its layers.
@@ -54,7 +54,7 @@ pub struct Bar {
 }
 
 /// A link seen from straight above.
-pub struct Flat {
+pub struct FlatLink {
     /// Its drawn ends, m.
     pub ends: [Vector; 2],
     /// Half its width, m.
@@ -87,7 +87,7 @@ struct Motor {
 }
 
 /// Half length and half width of the plate of a moving base, as fractions of the reach.
-pub const PLATE: [f64; 2] = [0.2, 0.105];
+pub const PLATE_HALF_SIZE: [f64; 2] = [0.2, 0.105];
 
 /// Dimensions as fractions of the reach of the machine.
 const BAR_RADIUS: f64 = 0.0135;
@@ -101,7 +101,7 @@ const DRIVE_RADIUS: f64 = 0.042;
 const SHADOW_SHIFT: Vector = Vector::new(0.45, -0.6);
 const SHADOW_OPACITY: f64 = 0.5;
 
-impl Linkage {
+impl LinkageModel {
     /// Builds the body of a machine.
     pub fn of(machine: &Machine) -> Self {
         let reach = reach_of(machine);
@@ -181,12 +181,12 @@ impl Linkage {
         let motors: Vec<Motor> = (0..n).map(motor).collect();
         let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
         // Plate of a moving base.
-        let [length, width] = PLATE.map(|part| part * reach);
+        let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
         let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
         let top = layer(n - 1) + height;
         let cap = add(cylinder(0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap));
         Self {
-            model: Arc::new(Model { meshes }),
+            model: Arc::new(MeshSet { meshes }),
             bars,
             pins,
             pin,
@@ -239,7 +239,7 @@ impl Linkage {
     }
 
     /// Returns the position of each pin for a fixed base, m, and the links that it connects.
-    pub fn joints(&self, e: &Units) -> impl Iterator<Item = ([f64; 3], &[usize])> {
+    pub fn joints(&self, e: &UnitVectors) -> impl Iterator<Item = ([f64; 3], &[usize])> {
         let e = *e;
         self.pins.iter().map(move |pin| {
             let at = place_of(&pin.at, &e);
@@ -248,12 +248,12 @@ impl Linkage {
     }
 
     /// Returns the links seen from above for a fixed base, the lowest first.
-    pub fn flat(&self, e: &Units) -> Vec<Flat> {
+    pub fn flat(&self, e: &UnitVectors) -> Vec<FlatLink> {
         let mut bars: Vec<&Bar> = self.bars.iter().collect();
         bars.sort_by(|a, b| a.z.total_cmp(&b.z));
         let flat = |bar: &Bar| {
             let (root, along, _) = bar.pose(e);
-            Flat {
+            FlatLink {
                 ends: bar.span.map(|s| root + along * s),
                 radius: bar.radius,
                 weights: bar.weights.iter().map(|[s, radius]| (root + along * *s, *radius)).collect(),
@@ -264,7 +264,7 @@ impl Linkage {
     }
 
     /// Returns all solids of the machine on a base in the given pose; `moves` says whether the base can move.
-    pub fn solids(&self, e: &Units, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
+    pub fn solids(&self, e: &UnitVectors, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
         let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
         let upright = |name: Name, mesh, at: Vector, z, colour, changes| {
             let world_from_item = posed(base.at + at, Vector::new(1.0, 0.0), z);
@@ -272,7 +272,7 @@ impl Linkage {
         };
         let grey = mix(palette.dim, palette.line, 0.65);
         let under = self.bottom();
-        let with_base = if moves { Changes::Pose } else { Changes::Nothing };
+        let with_base = if moves { ItemChanges::Pose } else { ItemChanges::Nothing };
         let turned = |name: Name, mesh, z, colour| Solid {
             name,
             mesh,
@@ -289,18 +289,18 @@ impl Linkage {
             let colour = mix(palette.drive(motor.drive), grey, 0.45);
             let name = motor.name.clone();
             solids.push(match &motor.at {
-                Some(at) => upright(name, motor.mesh, place_of(at, e), motor.z, colour, Changes::Pose),
+                Some(at) => upright(name, motor.mesh, place_of(at, e), motor.z, colour, ItemChanges::Pose),
                 None => turned(name, motor.mesh, motor.z, colour),
             });
         }
         solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
         for pin in &self.pins {
             let at = place_of(&pin.at, e);
-            let mut solid = upright("machine/joints".into(), self.pin, at, pin.z[0], palette.ink, Changes::Pose);
+            let mut solid = upright("machine/joints".into(), self.pin, at, pin.z[0], palette.ink, ItemChanges::Pose);
             solid.world_from_item[2][2] = pin.stretch as f32;
             solids.push(solid);
             let colour = palette.background;
-            solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, Changes::Pose));
+            solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, ItemChanges::Pose));
         }
         solids.push(turned("machine/base/cap".into(), self.cap, 0.0, grey));
         solids
@@ -308,7 +308,7 @@ impl Linkage {
 
     /// Returns the shadows of the links on the floor, in light from the upper left; `base` is the position of the base,
     /// m.
-    pub fn shadows(&self, e: &Units, base: Vector) -> impl Iterator<Item = Shadow> {
+    pub fn shadows(&self, e: &UnitVectors, base: Vector) -> impl Iterator<Item = Shadow> {
         let (e, floor) = (*e, self.floor());
         self.bars.iter().map(move |bar| {
             let [width, height] =
@@ -331,7 +331,7 @@ impl Linkage {
     }
 
     /// Returns drive and end points, m, of the links between base and end effector, from B outwards.
-    pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
+    pub fn skeleton(&self, e: &UnitVectors) -> Vec<(usize, [Vector; 2])> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
             .map(|bar| {
@@ -342,21 +342,21 @@ impl Linkage {
     }
 
     /// Returns the links between base and end effector in another pose, as translucent solids named `name/…`.
-    pub fn ghost(&self, name: &str, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
+    pub fn ghost(&self, name: &str, e: &UnitVectors, palette: &Palette, alpha: f32) -> Vec<Solid> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
             .map(|bar| Solid {
                 name: format!("{name}/{}", bar.name).into(),
-                changes: Changes::Nothing,
+                changes: ItemChanges::Nothing,
                 ..bar.solid(e, Vector::default(), faded(palette.drive(bar.drive), alpha))
             })
             .collect()
     }
 }
 
-impl Linkage {
+impl LinkageModel {
     /// Returns the end points, m, of the links between base and end effector.
-    pub fn outlines(&self, e: &Units) -> impl Iterator<Item = [Vector; 2]> {
+    pub fn outlines(&self, e: &UnitVectors) -> impl Iterator<Item = [Vector; 2]> {
         let e = *e;
         self.bars.iter().filter(|b| b.carries_tip).map(move |bar| {
             let (at, along, _) = bar.pose(&e);
@@ -377,7 +377,7 @@ impl Bar {
     }
 
     /// Returns its drawn end points for a fixed base, m.
-    pub fn ends(&self, e: &Units) -> [[f64; 3]; 2] {
+    pub fn ends(&self, e: &UnitVectors) -> [[f64; 3]; 2] {
         let (root, along, z) = self.pose(e);
         self.span.map(|s| {
             let p = root + along * s;
@@ -391,18 +391,18 @@ impl Bar {
     }
 
     /// Returns the position of its root, m, its direction, a unit vector, and its height, m.
-    pub fn pose(&self, e: &Units) -> (Vector, Vector, f64) {
+    pub fn pose(&self, e: &UnitVectors) -> (Vector, Vector, f64) {
         (place_of(&self.root, e), e[self.drive] * self.sign, self.z)
     }
 
-    fn solid(&self, e: &Units, base: Vector, colour: Rgba) -> Solid {
+    fn solid(&self, e: &UnitVectors, base: Vector, colour: Rgba) -> Solid {
         let (at, along, z) = self.pose(e);
         Solid {
             name: self.item.clone(),
             mesh: self.mesh,
             world_from_item: posed(base + at, along, z),
             colour,
-            changes: Changes::Pose,
+            changes: ItemChanges::Pose,
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates (metres; x and y in the plane of
 //! motion, z along the drive axis, towards the viewer of the flat view). Numbers are converted from `f64` to `f32` here
 //! and nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and a
-//! statement of which parts [may change](Changes). Most geometry is built once; afterwards only poses change. Colours
+//! statement of which parts [may change](ItemChanges). Most geometry is built once; afterwards only poses change. Colours
 //! are sRGB with straight alpha, as in the palette. Sizes in `px` are logical pixels.
 
 pub mod arrow;
@@ -53,7 +53,7 @@ pub struct Mesh {
 
 /// The meshes of one machine. They do not change while it moves, so they are uploaded once.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Model {
+pub struct MeshSet {
     /// Meshes in their own frames; [`Solid::mesh`] is an index into this list.
     pub meshes: Vec<Mesh>,
 }
@@ -62,22 +62,22 @@ pub struct Model {
 pub type Name = Cow<'static, str>;
 
 /// Homogeneous transformation world_from_item, column-major.
-pub type Pose = [[f32; 4]; 4];
+pub type Transform = [[f32; 4]; 4];
 
 /// The identity: coordinates of the item are world coordinates.
-pub const IN_PLACE: Pose = posed_at([1.0, 0.0], [0.0; 3]);
+pub const IN_PLACE: Transform = posed_at([1.0, 0.0], [0.0; 3]);
 
-const fn posed_at([c, s]: [f32; 2], [x, y, z]: [f32; 3]) -> Pose {
+const fn posed_at([c, s]: [f32; 2], [x, y, z]: [f32; 3]) -> Transform {
     [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]]
 }
 
 /// Returns the pose of an item with its origin at the point `at` and height `z`, m, and its x axis along a unit vector.
-pub fn posed(at: Vector, along: Vector, z: f64) -> Pose {
+pub fn posed(at: Vector, along: Vector, z: f64) -> Transform {
     posed_at([along.re as f32, along.im as f32], point(at, z))
 }
 
 /// Transforms a point of an item to world coordinates.
-pub fn place(pose: &Pose, p: [f32; 3]) -> [f32; 3] {
+pub fn place(pose: &Transform, p: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|r| pose[0][r] * p[0] + pose[1][r] * p[1] + pose[2][r] * p[2] + pose[3][r])
 }
 
@@ -88,7 +88,7 @@ pub fn point(p: Vector, z: f64) -> [f32; 3] {
 
 /// The parts of an item that may change until the scene is prepared again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Changes {
+pub enum ItemChanges {
     /// Nothing changes.
     Nothing,
     /// Only the pose changes; geometry, colour and size are constant.
@@ -103,14 +103,14 @@ pub enum Changes {
 pub struct Solid {
     /// Name, like `machine/link/5`.
     pub name: Name,
-    /// Index of the mesh in the [`Model`].
+    /// Index of the mesh in the [`MeshSet`].
     pub mesh: usize,
     /// world_from_item, column-major.
-    pub world_from_item: Pose,
+    pub world_from_item: Transform,
     /// Colour under full light; translucent if alpha is below 1.
     pub colour: Rgba,
     /// Parts that may change.
-    pub changes: Changes,
+    pub changes: ItemChanges,
 }
 
 /// Immutable polylines.
@@ -118,14 +118,14 @@ pub type Strips = Arc<[Vec<[f32; 3]>]>;
 
 /// Polylines of constant width on the screen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct Polyline {
     /// Name.
     pub name: Name,
     /// Vertices of each polyline, m. A closed one repeats its first point; an empty list is a line that is currently
     /// hidden.
     pub strips: Strips,
     /// world_from_item, column-major.
-    pub world_from_item: Pose,
+    pub world_from_item: Transform,
     /// Width, px.
     pub width: f32,
     /// Colour.
@@ -135,10 +135,10 @@ pub struct Line {
     /// Whether it is drawn over everything; otherwise solids in front of it hide it.
     pub on_top: bool,
     /// Parts that may change.
-    pub changes: Changes,
+    pub changes: ItemChanges,
 }
 
-impl Line {
+impl Polyline {
     /// Returns a solid line in world coordinates that may change and that solids in front of it hide.
     pub fn new(name: impl Into<Name>, strips: impl Into<Strips>, width: f32, colour: Rgba) -> Self {
         Self {
@@ -149,7 +149,7 @@ impl Line {
             colour,
             dash: None,
             on_top: false,
-            changes: Changes::Shape,
+            changes: ItemChanges::Shape,
         }
     }
 
@@ -168,13 +168,13 @@ impl Line {
     /// Returns the line marked as constant.
     #[must_use]
     pub fn still(self) -> Self {
-        Self { changes: Changes::Nothing, ..self }
+        Self { changes: ItemChanges::Nothing, ..self }
     }
 
     /// Returns the line in a pose, marked as constant except for its pose.
     #[must_use]
-    pub fn moving(self, world_from_item: Pose) -> Self {
-        Self { changes: Changes::Pose, world_from_item, ..self }
+    pub fn moving(self, world_from_item: Transform) -> Self {
+        Self { changes: ItemChanges::Pose, world_from_item, ..self }
     }
 
     /// Returns all vertices in world coordinates, strip by strip.
@@ -213,7 +213,7 @@ pub struct Area {
 
 impl Area {
     /// Returns the pose in which Eq. (16) with `turn` = 0 and B = 0 gives the area.
-    pub fn world_from_item(&self) -> Pose {
+    pub fn world_from_item(&self) -> Transform {
         let [x, y] = self.at;
         posed_at([self.turn.cos(), self.turn.sin()], [x, y, self.z])
     }
@@ -340,7 +340,7 @@ pub struct Scene {
     /// Background colour.
     pub background: Rgba,
     /// Meshes that the solids refer to.
-    pub model: Arc<Model>,
+    pub model: Arc<MeshSet>,
     /// Filled areas, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
     /// Shadows of bars, over the areas.
@@ -348,7 +348,7 @@ pub struct Scene {
     /// Bars, joints, base.
     pub solids: Vec<Solid>,
     /// Grid, boundaries, paths, arrows.
-    pub lines: Vec<Line>,
+    pub lines: Vec<Polyline>,
     /// Handles and dots, over everything.
     pub markers: Vec<Marker>,
     /// Labels, over everything; drawn by egui, which has the fonts.
@@ -359,7 +359,7 @@ pub struct Scene {
 
 impl Scene {
     /// Returns an empty scene with a background colour.
-    pub fn new(background: Rgba, model: Arc<Model>) -> Self {
+    pub fn new(background: Rgba, model: Arc<MeshSet>) -> Self {
         Self {
             background,
             model,

@@ -30,11 +30,11 @@ pub struct ViewOptions {
     /// Curve that the pointer has drawn so far, m.
     pub stroke: Vec<[f64; 2]>,
     /// Curve that was requested last and refused.
-    pub refused: Option<Arc<Refused>>,
+    pub refused: Option<Arc<RefusedCurve>>,
     /// Poses along the motion, in order of time, as in Fig. 5.
     pub snapshots: Vec<DriveAngles>,
     /// Other runs at the same instant.
-    pub others: Vec<Other>,
+    pub others: Vec<OtherRun>,
     /// Whether arrows show the pin forces.
     pub pin_forces: bool,
     /// Whether arcs show the joint limits.
@@ -46,7 +46,7 @@ pub struct ViewOptions {
     /// External force at the end effector, N.
     pub push: Option<[f64; 2]>,
     /// Counterweights to choose from, in the design view.
-    pub weights: Vec<Offered>,
+    pub weights: Vec<WeightOption>,
     /// Indices of highlighted links, in the design view.
     pub links: Vec<usize>,
     /// Scale of the arrow and arc of the reaction; `None` uses the largest values so far.
@@ -102,7 +102,7 @@ pub enum Handle {
     Weight(usize),
     /// The end of a link in the design view; index of the link.
     End(usize),
-    /// A pin between links; its index in the [`Linkage`](super::linkage::Linkage).
+    /// A pin between links; its index in the [`LinkageModel`](super::linkage::LinkageModel).
     Joint(usize),
     /// A joint limit: index of the relative angle, and 0 for its lower or 1 for its upper limit.
     Limit(usize, usize),
@@ -141,7 +141,7 @@ impl Handle {
 
 /// A counterweight to choose from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offered {
+pub struct WeightOption {
     /// Index of its link, from 0.
     pub link: usize,
     /// Position along the link, m.
@@ -152,7 +152,7 @@ pub struct Offered {
 
 /// Another run at the displayed instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Other {
+pub struct OtherRun {
     /// Its number in the table of runs.
     pub name: String,
     /// Its frame.
@@ -161,7 +161,7 @@ pub struct Other {
 
 /// A requested curve that was refused, and the point from which it cannot be followed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refused {
+pub struct RefusedCurve {
     /// Points of the curve, m.
     pub curve: Vec<Vector>,
     /// Point where following stops, m.
@@ -170,7 +170,7 @@ pub struct Refused {
     pub why: String,
 }
 
-impl Refused {
+impl RefusedCurve {
     /// Returns the refused curve, if the refusal is about a curve.
     pub fn of(refusal: &Refusal) -> Option<Self> {
         let Refusal::Blocked(blocked) = refusal else { return None };

@@ -3,7 +3,7 @@
 use super::options::Handle;
 
 /// Distance within which the pointer picks a handle, px.
-pub const NEAR: f64 = 20.0;
+pub const PICK_RADIUS: f64 = 20.0;
 
 /// A picked item, and the point at which it was picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +20,9 @@ pub struct Pick {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
     /// A link that is rotated.
-    Link(Hold),
+    Link(LinkHold),
     /// A link that is dragged while the end effector stays.
-    Pull(Hook),
+    Pull(GrabPoint),
     /// A joint limit.
     Limit(Pivot),
 }
@@ -32,7 +32,7 @@ impl Grip {
     #[must_use]
     pub fn snapping(self, snaps: bool) -> Self {
         match self {
-            Self::Link(hold) => Self::Link(Hold { snaps, ..hold }),
+            Self::Link(hold) => Self::Link(LinkHold { snaps, ..hold }),
             other => other,
         }
     }
@@ -49,7 +49,7 @@ pub struct Pivot {
 
 /// Point at which a link is dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hook {
+pub struct GrabPoint {
     /// Distance from the root of the link, m.
     pub along: f64,
     /// Vector from the pointer to this point, m.
@@ -58,7 +58,7 @@ pub struct Hook {
 
 /// State of a link at the start of its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct LinkHold {
     /// Angle from the direction of the link to the pointer, about the root of the link, rad.
     pub angle: f64,
     /// (a_1, a_2) at the start of the drag, rad.
@@ -74,9 +74,9 @@ const B_GRID_RAD: f64 = 0.05;
 /// Grid of force components for snapping, N.
 const FORCE_GRID_N: f64 = 0.5;
 /// Grid of angles for snapping, rad.
-pub const ROUND_ANGLE: f64 = 5.0 * std::f64::consts::PI / 180.0;
+pub const ANGLE_SNAP: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-impl Aim {
+impl DragAction {
     /// Returns the change rounded to the grids for snapping.
     #[must_use]
     pub fn snapped(self) -> Self {
@@ -88,7 +88,7 @@ impl Aim {
             Self::Payload(offset) => Self::Payload(both(offset, POSITION_GRID_M)),
             Self::Limit { angle, end, mut ends } => {
                 // Rounded, unless that is beyond the other limit.
-                let rounded = round(ends[end], ROUND_ANGLE);
+                let rounded = round(ends[end], ANGLE_SNAP);
                 let fits = if end == 0 { rounded < ends[1] } else { rounded > ends[0] };
                 ends[end] = if fits { rounded } else { ends[end] };
                 Self::Limit { angle, end, ends }
@@ -114,7 +114,7 @@ impl Pick {
 
 /// A change that a drag requests from the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Aim {
+pub enum DragAction {
     /// Target position of the end effector, m.
     Target([f64; 2]),
     /// Pose constant, rad.

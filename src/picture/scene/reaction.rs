@@ -9,14 +9,14 @@ use super::Rgba;
 use super::palette::Palette;
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_up, signed};
-use crate::simulation::frame::{Frame, REACTIONLESS};
+use crate::simulation::frame::{Frame, REACTIONLESS_SHARE};
 
 /// Length of a full arrow, as a fraction of the reach of the machine.
-pub const ARROW: f64 = 0.25;
+pub const FULL_ARROW: f64 = 0.25;
 /// Radius of the arc of a moment, as a fraction of the reach of the machine.
-pub const RADIUS: f64 = 0.17;
+pub const ARC_RADIUS: f64 = 0.17;
 /// Angle of a full arc, rad.
-pub const FULL: f64 = 1.5 * FRAC_PI_2;
+pub const FULL_ARC: f64 = 1.5 * FRAC_PI_2;
 /// Minimum length of a visible arrow, as a fraction of the reach.
 const MIN_ARROW: f64 = 0.004;
 /// Minimum angle of a visible arc, rad.
@@ -40,7 +40,7 @@ impl Scale {
 
 /// Reaction on the base at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reaction {
+pub struct ReactionGlyph {
     /// Force f_B due to the motion, N.
     pub force: Vector,
     /// Part of the moment n_B that reaches the base, N m.
@@ -53,7 +53,7 @@ pub struct Reaction {
     pub turns: bool,
 }
 
-impl Reaction {
+impl ReactionGlyph {
     /// Returns the reaction of a frame.
     pub fn of(frame: &Frame) -> Self {
         let (force, moment) = (frame.wrench.dynamic.force, frame.felt_moment());
@@ -61,20 +61,20 @@ impl Reaction {
             force,
             moment,
             rest: frame.wrench.statical.force.norm(),
-            pulls: force.norm() > REACTIONLESS * frame.peaks.inertial_pull.max(1e-9),
-            turns: moment.abs() > REACTIONLESS * frame.peaks.torque_sum.max(1e-9),
+            pulls: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
+            turns: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
         }
     }
 
     /// Returns the arrow as a fraction of the reach; `newtons` is the force of a full arrow. `None` if it is too small.
     pub fn arrow(&self, newtons: f64) -> Option<Vector> {
-        let arrow = self.force * (ARROW / newtons);
+        let arrow = self.force * (FULL_ARROW / newtons);
         (self.pulls && arrow.norm() > MIN_ARROW).then_some(arrow)
     }
 
     /// Returns the angle of the arc, rad; `newton_metres` is the moment of a full arc. `None` if it is too small.
     pub fn sweep(&self, newton_metres: f64) -> Option<f64> {
-        let sweep = self.moment / newton_metres * FULL;
+        let sweep = self.moment / newton_metres * FULL_ARC;
         (self.turns && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
     }
 

@@ -12,19 +12,19 @@ mod turning;
 mod under;
 mod workspace;
 
-pub use base::PULL;
-pub use workspace::{Outlining, Workspace};
+pub use base::PULL_STIFFNESS;
+pub use workspace::{OutlineQuery, Workspace};
 
 use std::sync::Arc;
 
-use super::draft::Draft;
-use super::exaggeration::Shown;
-use super::framing::Content;
+use super::draft::DesignDrawing;
+use super::exaggeration::DrawnFrame;
+use super::framing::ViewContent;
 use super::grid::Grid;
-use super::linkage::Linkage;
+use super::linkage::LinkageModel;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, palette};
-use super::pick::{Aim, Hold, Hook, Pick, Pivot};
+use super::pick::{DragAction, GrabPoint, LinkHold, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
@@ -33,15 +33,15 @@ use crate::query::{Queries, Shared};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
-use limits::Limits;
-use path::Plan;
+use limits::LimitArcs;
+use path::PlannedPath;
 use pins::Pins;
-use ring::Ring;
+use ring::BaseRing;
 
 /// The parts of the machine's view that do not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Stage {
-    linkage: Linkage,
+    linkage: LinkageModel,
     base: BaseStage,
     reached: Reached,
     /// Index of the mesh that fills the workspace.
@@ -49,8 +49,8 @@ pub struct Stage {
     /// Pose constant b of the workspace for comparison, rad.
     compared: Option<f64>,
     /// The ring that sets b, if the machine has a b and more than one drive.
-    ring: Option<Ring>,
-    plan: Option<Plan>,
+    ring: Option<BaseRing>,
+    plan: Option<PlannedPath>,
     /// Whether the run waits because its task is infeasible.
     waits: bool,
     /// Whether the target can be dragged.
@@ -58,7 +58,7 @@ pub struct Stage {
     /// Whether links can be dragged while the end effector stays.
     links_draggable: bool,
     pins: Pins,
-    limits: Limits,
+    limits: LimitArcs,
     grid: Grid,
 }
 
@@ -91,7 +91,7 @@ impl Stage {
     /// Computes the outline of the workspace, if it is not yet known.
     pub fn finish(&mut self, queries: &Queries) {
         if let Some(space) = self.unoutlined() {
-            self.set_outline(Option::clone(&queries.ask::<Outlining>(&Shared(space))));
+            self.set_outline(Option::clone(&queries.ask::<OutlineQuery>(&Shared(space))));
         }
     }
 
@@ -100,20 +100,22 @@ impl Stage {
         let model = &run.scenario().machine;
         // If the plant has other lengths than the model, the plant is drawn.
         let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
-        let linkage = Linkage::of(&plant);
+        let linkage = LinkageModel::of(&plant);
         let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
         Self {
             base: BaseStage::of(run, &plant, &linkage),
             reached: space.map_or(Reached::None, Reached::of),
             fill: None,
             compared,
-            ring: space.filter(|space| !space.joints().is_empty()).map(|space| Ring::of(space, ring_radius(&linkage))),
-            plan: Plan::of(run, linkage.top()),
+            ring: space
+                .filter(|space| !space.joints().is_empty())
+                .map(|space| BaseRing::of(space, ring_radius(&linkage))),
+            plan: PlannedPath::of(run, linkage.top()),
             waits: run.waiting().is_some(),
             target_draggable: run.waiting().is_none() && space.is_some(),
             links_draggable: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
             pins: Pins::of(&plant),
-            limits: Limits::of(model, &linkage),
+            limits: LimitArcs::of(model, &linkage),
             grid: Grid::of(&linkage),
             linkage,
         }
@@ -163,7 +165,7 @@ impl Stage {
     }
 
     /// Body of the machine.
-    pub fn linkage(&self) -> &Linkage {
+    pub fn linkage(&self) -> &LinkageModel {
         &self.linkage
     }
 
@@ -183,7 +185,7 @@ impl Stage {
     }
 
     /// Returns the drawn position of a handle, m; `None` if it is not shown.
-    pub fn handle(&self, handle: Handle, shown: &Shown<'_>) -> Option<[f64; 3]> {
+    pub fn handle(&self, handle: Handle, shown: &DrawnFrame<'_>) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
             Handle::EndEffector if self.waits => None,
@@ -205,7 +207,7 @@ impl Stage {
     }
 
     /// Returns the picks of all joint limits at their drawn positions.
-    pub fn limits<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
+    pub fn limits<'a>(&'a self, shown: &'a DrawnFrame<'a>) -> impl Iterator<Item = Pick> + 'a {
         self.limits.ends(&self.linkage, shown)
     }
 
@@ -216,23 +218,23 @@ impl Stage {
 
     /// Converts a drawn position of the centre of mass of the payload, m, to offsets along and across the link that
     /// holds it, m.
-    pub fn load_offset(&self, shown: &Shown<'_>, at: [f64; 2]) -> [f64; 2] {
+    pub fn load_offset(&self, shown: &DrawnFrame<'_>, at: [f64; 2]) -> [f64; 2] {
         self.base.offset_at(shown, Vector::new(at[0], at[1]))
     }
 
     /// Returns the drawn position of the payload, m, while the machine holds it.
-    pub fn payload(&self, shown: &Shown<'_>) -> Option<Vector> {
+    pub fn payload(&self, shown: &DrawnFrame<'_>) -> Option<Vector> {
         self.base.load_at(shown)
     }
 
     /// Returns the index of the link under the pointer; the uppermost of several.
-    pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+    pub fn link_at(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<usize> {
         under::link(&self.linkage, shown, pointer)
     }
 
     /// Picks the link under the pointer, if the machine has planes on which the link can be rotated, or freedoms left
     /// with fixed end effector.
-    pub fn grip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+    pub fn grip(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         if self.links_draggable {
             let i = self.link_at(shown, pointer)?;
             return turning::hook(i, self.linkage.bars().get(i)?, shown, pointer);
@@ -244,18 +246,31 @@ impl Stage {
 
     /// Returns the angles (a_1, a_2), rad, on the plane b for which the link follows the pointer, as far as the joint
     /// limits allow.
-    pub fn turned(&self, link: usize, grip: &Hold, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
+    pub fn turned(
+        &self,
+        link: usize,
+        grip: &LinkHold,
+        shown: &DrawnFrame<'_>,
+        pointer: &Pointer,
+        b: f64,
+    ) -> Option<[f64; 2]> {
         let map = self.planes()?.map();
         turning::turned(self.linkage.bars().get(link)?, grip, map, shown, pointer, b)
     }
 
     /// Returns the change requested by dragging a link while the end effector stays.
-    pub fn pulled(&self, link: usize, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
+    pub fn pulled(
+        &self,
+        link: usize,
+        hook: &GrabPoint,
+        shown: &DrawnFrame<'_>,
+        pointer: &Pointer,
+    ) -> Option<DragAction> {
         turning::pulled(link, self.linkage.bars().get(link)?, hook, shown, pointer)
     }
 
     /// Returns the item under the pointer that gives information; the uppermost of several.
-    pub fn under(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
+    pub fn under(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Handle> {
         let load = || self.base.load_at(shown).filter(|at| under::payload(*at, &self.linkage, pointer));
         let known = || self.outlined().filter(|workspace| workspace.planes().is_some());
         let edge = || known().filter(|w| under::line(&w.edge(shown, self.linkage.floor()), pointer));
@@ -269,12 +284,12 @@ impl Stage {
     }
 
     /// Returns the b, rad, of a drawn position of the knob, m; of all full turns, the b nearest to `near`.
-    pub fn ring_b(&self, at: [f64; 2], near: f64, shown: &Shown<'_>) -> Option<f64> {
+    pub fn ring_b(&self, at: [f64; 2], near: f64, shown: &DrawnFrame<'_>) -> Option<f64> {
         Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, shown))
     }
 
     /// Returns the drawn ends of all links, and the target, m.
-    pub fn outline<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = [f64; 3]> + 'a {
+    pub fn outline<'a>(&'a self, shown: &'a DrawnFrame<'a>) -> impl Iterator<Item = [f64; 3]> + 'a {
         let (units, at, target) = (shown.q.units(), shown.base.at, shown.target);
         let ends = self.linkage.bars().iter().flat_map(move |bar| bar.ends(&units));
         let target = [target.re, target.im, self.handle_height()];
@@ -288,7 +303,7 @@ impl Stage {
 
     /// Returns the points that the camera has to show: the machine in its present and in other poses, its workspace and
     /// its task; secondly the workspace for comparison.
-    pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> Content {
+    pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> ViewContent {
         let (base, z) = (frame.base, self.handle_height());
         let on_base = |p: Vector| base.at + unit(base.angle) * p;
         let links = poses.iter().chain([&frame.q]).flat_map(|q| {
@@ -301,29 +316,29 @@ impl Stage {
             points.into_iter().map(|p| (p, self.linkage.floor()))
         };
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
-        let target = [(Shown::from(frame).target, z), (base.at, 0.0)];
+        let target = [(DrawnFrame::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
-        Content {
+        ViewContent {
             first: links.chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
             then: self.compared.into_iter().flat_map(workspace).map(points).collect(),
         }
     }
 
     /// Returns the points that the camera has to show for the machine alone.
-    pub fn body(&self, frame: &Frame) -> Content {
+    pub fn body(&self, frame: &Frame) -> ViewContent {
         let (e, at) = (frame.q.units(), frame.base.at);
         let ends = self.linkage.bars().iter().flat_map(|bar| bar.ends(&e));
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
         let discs = self.linkage.flat(&e).into_iter().flat_map(|flat| flat.weights);
         let discs = discs.flat_map(|(p, radius)| [1.0, -1.0].map(|s| (p + at, s * radius)));
         let discs = discs.flat_map(|(p, r)| [[p.re + r, p.im, 0.0], [p.re, p.im + r, 0.0]]);
-        Content { first: ends.chain(discs).collect(), then: Vec::new() }
+        ViewContent { first: ends.chain(discs).collect(), then: Vec::new() }
     }
 
     /// Returns the scene of a frame.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
-        let shown = &Shown::of(frame, options.exaggeration);
+        let shown = &DrawnFrame::of(frame, options.exaggeration);
         let (linkage, z) = (&self.linkage, self.handle_height());
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         self.bodies(&mut scene, &palette, shown, options);
@@ -341,7 +356,7 @@ impl Stage {
         }
         snapshots::snapshots(&mut scene, linkage, &palette, options);
         snapshots::others(&mut scene, linkage, &palette, options);
-        let blocked = self.plan.as_ref().and_then(Plan::blocked);
+        let blocked = self.plan.as_ref().and_then(PlannedPath::blocked);
         path::by_hand(&mut scene, &palette, options, blocked, z);
         reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.rest(options));
         if options.pin_forces {
@@ -356,7 +371,7 @@ impl Stage {
     }
 
     /// Draws the machine, and translucently its pose at the start and its poses on another plane.
-    fn bodies(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions) {
+    fn bodies(&self, scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions) {
         if let Some(plan) = self.plan.as_ref().filter(|plan| !plan.waits()) {
             scene.solids.extend(self.linkage.ghost("plan/start", &plan.start, palette, 0.16));
         }
@@ -380,12 +395,12 @@ impl Stage {
     }
 
     /// Returns the scene of the design view.
-    pub fn drafted(&self, draft: &Draft, frame: &Frame, options: &ViewOptions) -> Scene {
+    pub fn drafted(&self, draft: &DesignDrawing, frame: &Frame, options: &ViewOptions) -> Scene {
         draft.scene((&self.linkage, &self.grid), frame, options)
     }
 }
 
 /// Radius of the b ring, m.
-fn ring_radius(linkage: &Linkage) -> f64 {
+fn ring_radius(linkage: &LinkageModel) -> f64 {
     0.118 * linkage.reach()
 }

@@ -13,11 +13,11 @@ use super::camera::{Camera, Orbit};
 use super::course::{stations, target_handle, waypoints};
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
-use super::pick::{Aim, NEAR, Pick};
+use super::pick::{DragAction, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
 use super::stage::Workspace;
 use super::wall::Wall;
-use super::{Anchor, Changes, Label, Line, Marker, Mesh, Model, Scene, Solid, Strips, point, posed};
+use super::{Anchor, ItemChanges, Label, Marker, Mesh, MeshSet, Polyline, Scene, Solid, Strips, point, posed};
 use crate::mechanics::machine::place_of;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_up;
@@ -27,9 +27,9 @@ use crate::session::Run;
 use crate::simulation::frame::{Frame, Reach};
 
 /// Length of the interval of b that is shown, rad.
-pub const SPAN: f64 = 5.0;
+pub const TOWER_SPAN: f64 = 5.0;
 /// Maximum length of the interval of b, for runs over many b, rad.
-pub const MOST: f64 = 4.0 * SPAN;
+pub const MAX_TOWER_SPAN: f64 = 4.0 * TOWER_SPAN;
 /// Factor of the mesh size of the wall in a recording.
 const RECORDED_GRAIN: f64 = 2.6;
 /// Spacing of contours, rad; contours are at multiples of this.
@@ -54,9 +54,9 @@ pub struct Tower {
     /// Boundary of the workspace at b = 0.
     outline: Strips,
     wall: Wall,
-    model: Arc<Model>,
+    model: Arc<MeshSet>,
     /// The points of a planned motion, from A to B.
-    ends: Option<Vec<Post>>,
+    ends: Option<Vec<TowerPost>>,
     /// The planned motion: position, m, and b, rad.
     course: Vec<(Vector, f64)>,
     /// Maximum distance of the workspace from B, m.
@@ -71,7 +71,7 @@ pub struct Tower {
 
 /// A point of the plane and the set of b for which it is reachable.
 #[derive(Clone, Debug)]
-pub struct Post {
+pub struct TowerPost {
     /// Name: `A`, `1`, `B`, `target`.
     pub name: String,
     /// Position, m.
@@ -81,17 +81,17 @@ pub struct Post {
 }
 
 impl Tower {
-    /// Prepares a run for drawing, over an interval of b of length [`SPAN`]; to be repeated when its machine or plan
+    /// Prepares a run for drawing, over an interval of b of length [`TOWER_SPAN`]; to be repeated when its machine or plan
     /// changes.
     pub fn of(run: &Run, reached: &Workspace) -> Option<Self> {
-        Self::rising(run, reached.shape(), SPAN, None)
+        Self::rising(run, reached.shape(), TOWER_SPAN, None)
     }
 
     /// Prepares a whole run whose b lie in the given interval, rad. The tower shows a constant interval of length
-    /// [`SPAN`] to [`MOST`]. Its wall has a few thousand triangles.
+    /// [`TOWER_SPAN`] to [`MAX_TOWER_SPAN`]. Its wall has a few thousand triangles.
     pub fn over(run: &Run, reached: &Workspace, b: [f64; 2]) -> Option<Self> {
-        let span = (b[1] - b[0] + 2.0 * MARGIN_FRACTION * SPAN).clamp(SPAN, MOST);
-        let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN_FRACTION * SPAN));
+        let span = (b[1] - b[0] + 2.0 * MARGIN_FRACTION * TOWER_SPAN).clamp(TOWER_SPAN, MAX_TOWER_SPAN);
+        let fixed = Some(axes::covering_range(b, 0.5 * span, span, MARGIN_FRACTION * TOWER_SPAN));
         Self::rising(run, reached.shape(), span, fixed)
     }
 
@@ -110,7 +110,7 @@ impl Tower {
             Ok(planes) => sheet(planes.map(), if fixed.is_some() { RECORDED_CELLS } else { CELLS }),
             Err(_) => Mesh { shell: true, ..Mesh::default() },
         };
-        let model = Arc::new(Model { meshes: vec![slice, wall.mesh(HEIGHT_PER_RADIUS * radius)] });
+        let model = Arc::new(MeshSet { meshes: vec![slice, wall.mesh(HEIGHT_PER_RADIUS * radius)] });
         let tip = *run.scenario().machine.end_effector();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |s: f64| motion.path.at(s).q;
@@ -121,7 +121,7 @@ impl Tower {
             if points.len() > MAX_POSTS {
                 points.drain(1..points.len() - 1);
             }
-            points.into_iter().map(|(_, name, at)| Post { name, at, reach: space.reach(at).ok() }).collect()
+            points.into_iter().map(|(_, name, at)| TowerPost { name, at, reach: space.reach(at).ok() }).collect()
         });
         let closed = |outline: &Vec<Vector>| {
             let mut points: Vec<_> = outline.iter().map(|p| point(*p, 0.0)).collect();
@@ -148,7 +148,7 @@ impl Tower {
 
     /// Returns the interval of b that is shown, rad: from 0 while the present `b` is well inside, otherwise shifted.
     pub fn window(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, 0.5 * self.span, self.span, MARGIN_FRACTION * self.span))
+        self.fixed.unwrap_or_else(|| axes::sliding_range(b, 0.5 * self.span, self.span, MARGIN_FRACTION * self.span))
     }
 
     /// Returns a camera that shows the whole tower.
@@ -168,13 +168,13 @@ impl Tower {
     }
 
     /// Returns the points whose b are shown, and for each the intervals of b within the shown interval.
-    pub fn posts(&self, frame: &Frame) -> Vec<(Post, Vec<[f64; 2]>)> {
+    pub fn posts(&self, frame: &Frame) -> Vec<(TowerPost, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);
         if let Some(ends) = &self.ends {
             return ends.iter().map(|post| barred(post, window)).collect();
         }
         let at = frame.target.at;
-        vec![barred(&Post { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
+        vec![barred(&TowerPost { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
     }
 
     /// Returns the item under the pointer that can be dragged: the dot of the end effector, a bar, or the section.
@@ -183,7 +183,7 @@ impl Tower {
         let height = |b: f64| (b - low) * self.rise();
         let tip = target_handle(frame);
         let dot = [tip.re, tip.im, height(frame.b_reference)];
-        if pointer.distance(dot).is_some_and(|d| d < NEAR) {
+        if pointer.distance(dot).is_some_and(|d| d < PICK_RADIUS) {
             return Some(Pick::of(Handle::Target, dot));
         }
         let ray = pointer.ray()?;
@@ -214,7 +214,7 @@ impl Tower {
     }
 
     /// Returns the change that dragging an item to the pointer requests.
-    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let [low, high] = self.window(frame.b_reference);
         let ray = pointer.ray()?;
         let [x, y, _] = pick.at;
@@ -222,16 +222,16 @@ impl Tower {
         let slack = 0.05 * self.span;
         let b = || Some(low + ray.along_line([x, y, 0.0], [0.0, 0.0, 1.0])? / self.rise());
         match pick.handle {
-            Handle::Target => ray.at_height((frame.b_reference - low) * self.rise()).map(Aim::Target),
-            Handle::Plane => Some(Aim::B(b()?.clamp(low - slack, high + slack))),
+            Handle::Target => ray.at_height((frame.b_reference - low) * self.rise()).map(DragAction::Target),
+            Handle::Plane => Some(DragAction::B(b()?.clamp(low - slack, high + slack))),
             Handle::Bar => {
                 let b = b()?;
                 // The nearest b for which the point of the picked bar is reachable.
-                let away = |post: &Post| (post.at - Vector::new(x, y)).norm();
+                let away = |post: &TowerPost| (post.at - Vector::new(x, y)).norm();
                 let posts = self.posts(frame).into_iter();
                 let (_, bars) = posts.min_by(|s, t| away(&s.0).total_cmp(&away(&t.0)))?;
                 let near = bars.iter().map(|[from, to]| b.clamp(*from, *to));
-                near.min_by(|s, t| (s - b).abs().total_cmp(&(t - b).abs())).map(Aim::B)
+                near.min_by(|s, t| (s - b).abs().total_cmp(&(t - b).abs())).map(DragAction::B)
             }
             _ => None,
         }
@@ -245,7 +245,7 @@ impl Tower {
         let z = |b: f64| (b - low) * self.rise();
         let hot = options.hot == Some(Handle::Plane);
         let turned = |b: f64| posed(Vector::default(), unit(self.space.turn(b)), z(b));
-        let stands = if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape };
+        let stands = if self.fixed.is_some() { ItemChanges::Nothing } else { ItemChanges::Shape };
         let solid = |name: &'static str, mesh, b, colour, changes| Solid {
             name: name.into(),
             mesh,
@@ -255,13 +255,13 @@ impl Tower {
         };
         let mut scene = Scene::new(palette.background, self.model.clone());
         scene.solids = vec![
-            solid("slice", 0, b, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
+            solid("slice", 0, b, faded(palette.amber, if hot { 0.42 } else { 0.34 }), ItemChanges::Pose),
             solid("wall", 1, low, faded(palette.amber, 0.1), stands),
         ];
         let eye = camera.eye_direction().map(f64::from);
         axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, stands);
         self.contours(&mut scene, &palette, [low, high], eye);
-        let outline = Line::new("slice/boundary", self.outline.clone(), if hot { 3.4 } else { 2.2 }, palette.amber);
+        let outline = Polyline::new("slice/boundary", self.outline.clone(), if hot { 3.4 } else { 2.2 }, palette.amber);
         scene.lines.push(outline.on_top().moving(turned(b)));
         let first = scene.lines.len();
         self.bars(&mut scene, &palette, frame, [z(low), z(high)], z);
@@ -299,7 +299,7 @@ impl Tower {
     /// of view, so all its contours are alike.
     fn contours(&self, scene: &mut Scene, palette: &Palette, [low, high]: [f64; 2], eye: [f64; 3]) {
         let line = |name: &'static str, strips: Strips, strength| {
-            Line::new(name, strips, 1.0, faded(palette.amber, strength)).on_top()
+            Polyline::new(name, strips, 1.0, faded(palette.amber, strength)).on_top()
         };
         if self.fixed.is_some() {
             scene.lines.push(line("contours", self.contours.clone(), 0.55).still());
@@ -330,7 +330,7 @@ impl Tower {
         let posts = self.posts(frame);
         let uprights: Vec<_> =
             posts.iter().map(|(post, _)| vec![point(post.at, floor), point(post.at, head)]).collect();
-        scene.lines.push(Line::new("points", uprights, 1.3, faded(palette.ink, 0.6)).dashed(1.5, 3.5).on_top());
+        scene.lines.push(Polyline::new("points", uprights, 1.3, faded(palette.ink, 0.6)).dashed(1.5, 3.5).on_top());
         for (post, bars) in posts {
             // An interval of nearly zero length is drawn as a dot.
             for [from, to] in bars.iter().filter(|[from, to]| (to - from) * self.rise() < 1e-3 * self.radius) {
@@ -339,7 +339,7 @@ impl Tower {
             }
             let bars: Vec<_> = bars.iter().map(|ends| ends.map(|b| point(post.at, z(b))).to_vec()).collect();
             let name = format!("reach/{}", post.name);
-            scene.lines.push(Line::new(name, bars, 6.0, faded(palette.zero, 0.85)).on_top());
+            scene.lines.push(Polyline::new(name, bars, 6.0, faded(palette.zero, 0.85)).on_top());
             let (at, offset) = (point(post.at, head), [0.0, -11.0]);
             let label = Label::new("points/names", at, offset, post.name, palette.ink, 13.0, Anchor::Centre);
             scene.labels.push(label);
@@ -351,7 +351,7 @@ impl Tower {
             return;
         }
         let points = self.course.iter().map(|(p, b)| point(*p, z(*b))).collect();
-        scene.lines.push(Line::new("path", [points], 2.0, palette.ink).dashed(2.0, 3.5).on_top());
+        scene.lines.push(Polyline::new("path", [points], 2.0, palette.ink).dashed(2.0, 3.5).on_top());
     }
 
     fn target(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
@@ -360,7 +360,7 @@ impl Tower {
         let at = held.unwrap_or_else(|| target_handle(frame));
         let tip = point(frame.in_base(frame.end_effector), z);
         if outside {
-            let gap = Line::new("target/gap", [vec![tip, point(at, z)]], 1.4, palette.dim);
+            let gap = Polyline::new("target/gap", [vec![tip, point(at, z)]], 1.4, palette.dim);
             scene.lines.push(gap.dashed(4.0, 4.0).on_top());
         }
         let hot = options.hot == Some(Handle::Target);
@@ -389,7 +389,7 @@ fn sheet(map: &PlaneMap, cells: u32) -> Mesh {
 }
 
 /// Returns a post with its intervals of b within a window, rad.
-fn barred(post: &Post, window: [f64; 2]) -> (Post, Vec<[f64; 2]>) {
+fn barred(post: &TowerPost, window: [f64; 2]) -> (TowerPost, Vec<[f64; 2]>) {
     let bars = post.reach.as_ref().map_or_else(Vec::new, |set| within(set, window));
     (post.clone(), bars)
 }

@@ -5,21 +5,21 @@ use std::sync::Arc;
 
 use super::Scene;
 use super::camera::Camera;
-use super::draft::Draft;
-use super::exaggeration::Shown;
-use super::framing::Content;
-use super::joints::Joints;
+use super::draft::DesignDrawing;
+use super::exaggeration::DrawnFrame;
+use super::framing::ViewContent;
+use super::joints::JointSpace;
 use super::options::{Handle, ViewOptions};
-use super::pick::{Aim, Grip, NEAR, Pick};
+use super::pick::{DragAction, Grip, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
-use super::stage::{Outlining, PULL, Stage, Workspace};
+use super::stage::{OutlineQuery, PULL_STIFFNESS, Stage, Workspace};
 use super::tower::Tower;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::DriveAngles;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Asking, Queries, Quick, Same, Shared, Whole};
+use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
 use crate::session::Run;
-use crate::settings::number::Short;
+use crate::settings::number::ShortNumber;
 use crate::simulation::frame::Frame;
 
 /// Distance within which the pointer picks a point of the path, a label or a joint limit, px.
@@ -110,22 +110,22 @@ impl ViewKind {
 #[derive(Clone, Debug)]
 pub struct Views {
     stage: Stage,
-    joints: Option<Joints>,
+    joints: Option<JointSpace>,
     tower: Option<Tower>,
-    draft: Draft,
+    draft: DesignDrawing,
     machine: Machine,
 }
 
 /// Input of [`Views`]: a run, compared only by its constant parts; for a whole run, also the interval of its b, rad.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct ViewSubject {
     run: Run,
     over: Option<[f64; 2]>,
     /// Cache of the outlines.
-    queries: Asking,
+    queries: WeakQueries,
 }
 
-impl Seen {
+impl ViewSubject {
     /// Returns the input for a run in the window, or with `over` for a whole run in a recording.
     pub fn of(run: &Run, over: Option<[f64; 2]>, queries: &Queries) -> Self {
         Self { run: run.clone(), over, queries: queries.asking() }
@@ -145,18 +145,18 @@ impl Seen {
     }
 }
 
-impl PartialEq for Seen {
+impl PartialEq for ViewSubject {
     fn eq(&self, other: &Self) -> bool {
         self.over == other.over && self.is_of(&other.run)
     }
 }
 
-impl Quick for Views {
-    type Input = Seen;
+impl QuickQuery for Views {
+    type Input = ViewSubject;
     /// Views; in the window without outline and tower if the outline takes longer to compute.
     type Answer = Self;
 
-    fn answer(seen: &Seen) -> Self {
+    fn answer(seen: &ViewSubject) -> Self {
         match seen.over {
             None => Self::begun(&seen.run),
             Some(b) => Self::over(&seen.run, b, &seen.queries.queries()),
@@ -172,9 +172,9 @@ struct Completed;
 /// Input of [`Completed`].
 #[derive(Clone)]
 struct CompletedInput {
-    made: Same<Views>,
+    made: ByIdentity<Views>,
     run: Run,
-    outline: Option<Same<Option<Arc<Workspace>>>>,
+    outline: Option<ByIdentity<Option<Arc<Workspace>>>>,
     /// Indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     drives: Option<[usize; 3]>,
 }
@@ -195,13 +195,13 @@ impl PartialEq for CompletedInput {
     }
 }
 
-impl Quick for Completed {
+impl QuickQuery for Completed {
     type Input = CompletedInput;
     type Answer = Views;
 
     fn answer(CompletedInput { made, run, outline, drives }: &CompletedInput) -> Views {
         let mut views = Views::clone(&made.0);
-        if let Some(Same(outline)) = outline {
+        if let Some(ByIdentity(outline)) = outline {
             views.stage.set_outline(Option::clone(outline));
         }
         views.complete(run);
@@ -223,22 +223,25 @@ impl Views {
     /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
     /// adds; for a whole run, `over` is the interval of its b, rad.
     pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
-        queries.ask_if::<Whole<Self>>(|seen| seen.over == over && seen.is_of(run), || Seen::of(run, over, queries))
+        queries.ask_if::<QuickWork<Self>>(
+            |seen| seen.over == over && seen.is_of(run),
+            || ViewSubject::of(run, over, queries),
+        )
     }
 
     /// Returns the views completed by base, payload and, once it is computed, the outline with its tower. `drives` are
     /// the indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
         let wanted = made.unoutlined();
-        let outline = wanted.and_then(|space| queries.known::<Outlining>(&Shared(space))).map(Same);
-        queries.ask_if::<Whole<Completed>>(
+        let outline = wanted.and_then(|space| queries.known::<OutlineQuery>(&Shared(space))).map(ByIdentity);
+        queries.ask_if::<QuickWork<Completed>>(
             |known| {
                 Arc::ptr_eq(&known.made.0, made)
                     && known.is_of(run)
                     && known.outline == outline
                     && known.drives == drives
             },
-            || CompletedInput { made: Same(made.clone()), run: run.clone(), outline: outline.clone(), drives },
+            || CompletedInput { made: ByIdentity(made.clone()), run: run.clone(), outline: outline.clone(), drives },
         )
     }
 
@@ -256,9 +259,9 @@ impl Views {
         let mut stage = Stage::begun(run);
         stage.finish(queries);
         let tower = stage.outlined().and_then(|reached| Tower::over(run, reached, b));
-        let joints = Joints::over(run, b);
+        let joints = JointSpace::over(run, b);
         let machine = run.scenario().machine.clone();
-        Self { joints, tower, draft: Draft::of(&machine), stage, machine }
+        Self { joints, tower, draft: DesignDrawing::of(&machine), stage, machine }
     }
 
     /// Prepares a run for drawing, without outline and tower if the outline takes longer to compute.
@@ -269,7 +272,7 @@ impl Views {
     fn with(stage: Stage, run: &Run) -> Self {
         let machine = run.scenario().machine.clone();
         let tower = stage.outlined().and_then(|reached| Tower::of(run, reached));
-        Self { stage, joints: Joints::of(run), tower, draft: Draft::of(&machine), machine }
+        Self { stage, joints: JointSpace::of(run), tower, draft: DesignDrawing::of(&machine), machine }
     }
 
     /// Whether the machine looks like that of other views: equal links, whatever its limits.
@@ -301,7 +304,9 @@ impl Views {
     /// Returns the text of the width of the grid under the machine.
     pub fn grid(&self, kind: ViewKind) -> String {
         match kind {
-            ViewKind::Flat | ViewKind::Space | ViewKind::Design => format!("{} m grid", Short(self.stage.grid_width())),
+            ViewKind::Flat | ViewKind::Space | ViewKind::Design => {
+                format!("{} m grid", ShortNumber(self.stage.grid_width()))
+            }
             ViewKind::Joints | ViewKind::Tower => String::new(),
         }
     }
@@ -312,7 +317,7 @@ impl Views {
     }
 
     /// Joint space, if the machine has a b and more than one drive.
-    pub fn joints(&self) -> Option<&Joints> {
+    pub fn joints(&self) -> Option<&JointSpace> {
         self.joints.as_ref()
     }
 
@@ -327,7 +332,7 @@ impl Views {
 
     /// Returns the index of the drive along each axis of joint space, if the order is fixed by the machine.
     pub fn joint_axes(&self) -> [usize; 3] {
-        self.joints.as_ref().map_or([0, 1, 2], Joints::axes)
+        self.joints.as_ref().map_or([0, 1, 2], JointSpace::axes)
     }
 
     /// The tower, if the machine has a b and its workspace is known.
@@ -347,10 +352,10 @@ impl Views {
     }
 
     /// Returns the points that the camera has to show for a frame and other poses of the machine.
-    pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> Content {
+    pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> ViewContent {
         match (kind, &self.joints, &self.tower) {
-            (ViewKind::Joints, Some(joints), _) => Content { first: joints.corners(), then: Vec::new() },
-            (ViewKind::Tower, _, Some(tower)) => Content { first: tower.hull(), then: Vec::new() },
+            (ViewKind::Joints, Some(joints), _) => ViewContent { first: joints.corners(), then: Vec::new() },
+            (ViewKind::Tower, _, Some(tower)) => ViewContent { first: tower.hull(), then: Vec::new() },
             (ViewKind::Design, ..) => self.stage.body(frame),
             _ => self.stage.content(frame, poses),
         }
@@ -367,25 +372,25 @@ impl Views {
     }
 
     /// Picks the end effector, if it is under the pointer.
-    pub fn pick_tip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+    pub fn pick_tip(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         let at = self.stage.handle(Handle::EndEffector, shown)?;
-        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick::of(Handle::EndEffector, at))
+        (pointer.distance(at)? < 1.5 * PICK_RADIUS).then_some(Pick::of(Handle::EndEffector, at))
     }
 
     /// Picks the target, if the pointer is on a link or within `near` px of the target.
-    pub fn pick_arm(&self, shown: &Shown<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {
+    pub fn pick_arm(&self, shown: &DrawnFrame<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {
         let at = self.stage.handle(Handle::Target, shown)?;
         let on = pointer.distance(at)? < near || self.link_at(shown, pointer).is_some();
         on.then(|| Pick::of(Handle::Target, at))
     }
 
     /// Returns the index of the drawn link under the pointer; the uppermost of several.
-    pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+    pub fn link_at(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<usize> {
         self.stage.link_at(shown, pointer)
     }
 
     /// Returns the drawn item under the pointer, whether it can be dragged or not.
-    pub fn under(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
+    pub fn under(&self, kind: ViewKind, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Handle> {
         // Items on a link take precedence over the link.
         let pulled = self
             .pick(kind, shown, pointer)
@@ -398,7 +403,7 @@ impl Views {
     }
 
     /// Returns the drawn item under the pointer that can be dragged.
-    pub fn pick(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+    pub fn pick(&self, kind: ViewKind, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         // Only the machine's own views exaggerate.
         let frame = shown.frame;
         match (kind, &self.joints, &self.tower) {
@@ -410,7 +415,7 @@ impl Views {
                     let at = self.stage.handle(handle, shown)?;
                     Some((Pick::of(handle, at), pointer.distance(at)?))
                 });
-                let near = picks.filter(|(_, d)| *d < NEAR);
+                let near = picks.filter(|(_, d)| *d < PICK_RADIUS);
                 let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // If the target covers a point of the path, the point is picked by its label, to the left of it.
                 let points = self.stage.waypoints().filter_map(|i| {
@@ -444,10 +449,17 @@ impl Views {
     }
 
     /// Returns the change that dragging an item to the pointer requests; `b` is the commanded pose constant, rad.
-    pub fn aim(&self, kind: ViewKind, pick: &Pick, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<Aim> {
+    pub fn aim(
+        &self,
+        kind: ViewKind,
+        pick: &Pick,
+        shown: &DrawnFrame<'_>,
+        pointer: &Pointer,
+        b: f64,
+    ) -> Option<DragAction> {
         let frame = shown.frame;
         if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
-            return self.stage.turned(i, grip, shown, pointer, b).map(Aim::Angles);
+            return self.stage.turned(i, grip, shown, pointer, b).map(DragAction::Angles);
         }
         let in_joints = kind == ViewKind::Joints && self.joints.is_some();
         if let (false, Handle::Link(i), Some(Grip::Pull(hook))) = (in_joints, pick.handle, &pick.grip) {
@@ -460,22 +472,22 @@ impl Views {
             _ => {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
                 match pick.handle {
-                    Handle::Target => Some(Aim::Target(at)),
-                    Handle::Ring => self.stage.ring_b(at, b, shown).map(Aim::B),
-                    Handle::EndEffector => Some(Aim::Push([
-                        PULL * (at[0] - shown.end_effector.re),
-                        PULL * (at[1] - shown.end_effector.im),
+                    Handle::Target => Some(DragAction::Target(at)),
+                    Handle::Ring => self.stage.ring_b(at, b, shown).map(DragAction::B),
+                    Handle::EndEffector => Some(DragAction::Push([
+                        PULL_STIFFNESS * (at[0] - shown.end_effector.re),
+                        PULL_STIFFNESS * (at[1] - shown.end_effector.im),
                     ])),
-                    Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
+                    Handle::Waypoint(i) => Some(DragAction::Waypoint(i, at)),
                     Handle::Limit(angle, end) => {
                         let Some(Grip::Limit(pivot)) = &pick.grip else { return None };
                         let ends = self.stage.limit_pulled((angle, end), pivot, pointer)?;
-                        Some(Aim::Limit { angle, end, ends })
+                        Some(DragAction::Limit { angle, end, ends })
                     }
                     Handle::Payload => {
                         let offset = self.stage.load_offset(shown, at);
                         let far = offset[0].hypot(offset[1]) > TIP_SNAP * self.stage.linkage().reach();
-                        Some(Aim::Payload(if far { offset } else { [0.0; 2] }))
+                        Some(DragAction::Payload(if far { offset } else { [0.0; 2] }))
                     }
                     _ => None,
                 }

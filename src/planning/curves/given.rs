@@ -14,11 +14,11 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
-use crate::planning::curves::spline::{FEWEST, Knots};
+use crate::planning::curves::spline::{Knots, MIN_SPLINE_SAMPLES};
 use crate::planning::curves::table::PathTable;
-use crate::settings::key::Holds;
-use crate::settings::keyed::Holding;
-use crate::settings::number::{Short, counted};
+use crate::settings::key::KeyType;
+use crate::settings::keyed::HasKeyType;
+use crate::settings::number::{ShortNumber, counted};
 use crate::settings::range::Range;
 
 /// Maximum number of samples.
@@ -64,7 +64,7 @@ pub struct Samples {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SamplesError {
     /// Fewer samples than the spline needs.
-    #[error("{}: want at least {FEWEST}, because the spline's ends take six", counted(got, "sample"))]
+    #[error("{}: want at least {MIN_SPLINE_SAMPLES}, because the spline's ends take six", counted(got, "sample"))]
     TooFew {
         /// Number of samples.
         got: usize,
@@ -94,7 +94,7 @@ pub enum SamplesError {
         column: usize,
     },
     /// A number outside its permitted range.
-    #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, Short(*value))]
+    #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, ShortNumber(*value))]
     OutOfRange {
         /// Row, counted from 0.
         row: usize,
@@ -107,7 +107,7 @@ pub enum SamplesError {
     },
     /// Times that do not rise.
     #[error(
-        "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, Short(*time), Short(*before)
+        "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, ShortNumber(*time), ShortNumber(*before)
     )]
     NotRising {
         /// Row, counted from 0.
@@ -118,7 +118,7 @@ pub enum SamplesError {
         before: f64,
     },
     /// A cut-off frequency that is not between 0 and the Nyquist frequency.
-    #[error("a cut-off of {} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate", Short(*cut_off))]
+    #[error("a cut-off of {} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate", ShortNumber(*cut_off))]
     CutOff {
         /// Cut-off frequency, Hz.
         cut_off: f64,
@@ -140,8 +140,8 @@ impl From<Samples> for Vec<Vec<f64>> {
     }
 }
 
-impl Holding for Samples {
-    const HOLDS: Holds = Holds::Rows;
+impl HasKeyType for Samples {
+    const HOLDS: KeyType = KeyType::Rows;
 }
 
 impl Samples {
@@ -152,7 +152,7 @@ impl Samples {
     /// rise.
     pub fn new(rows: &[Vec<f64>]) -> Result<Self, SamplesError> {
         let got = rows.len();
-        if got < FEWEST {
+        if got < MIN_SPLINE_SAMPLES {
             return Err(SamplesError::TooFew { got });
         }
         if got > MAX_SAMPLES {
@@ -239,7 +239,7 @@ impl Samples {
     #[must_use]
     pub fn thinned(&self, count: usize) -> Self {
         let last = self.count() - 1;
-        let spaces = last.min(count.max(FEWEST) - 1);
+        let spaces = last.min(count.max(MIN_SPLINE_SAMPLES) - 1);
         let rows: Vec<Vec<f64>> = (0..=spaces)
             .map(|i| {
                 let i = i * last / spaces;

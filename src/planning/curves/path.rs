@@ -36,7 +36,7 @@ pub enum Path {
         curve: Curve,
     },
     /// Paths end to end; where two meet the motion must rest.
-    Chain(Chained),
+    Chain(PathChain),
     /// The end effector follows that of a joint line while drive 1 goes straight to an angle of its own (case 2).
     SameTip(SameTip),
 }
@@ -164,13 +164,13 @@ fn on_plane(map: &PlaneMap, b: f64, curve: &Curve, s: f64) -> PathPoint {
 
 /// Paths end to end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chained {
+pub struct PathChain {
     paths: Vec<Path>,
     /// s at which each path ends; the last is 1.
     ends: Vec<f64>,
 }
 
-impl Chained {
+impl PathChain {
     /// Chains paths, each with its share of s. Returns `None` if there are none, or a share is not above 0.
     pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
         let total: f64 = parts.iter().map(|(_, share)| share).sum();

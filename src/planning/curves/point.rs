@@ -2,7 +2,7 @@
 
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::reference::Reference;
-use crate::planning::timing::law::Progress;
+use crate::planning::timing::law::PathProgress;
 
 /// A pose on a path with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct PathPoint {
 impl PathPoint {
     /// Returns the reference at this point for given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
     #[inline]
-    pub fn timed(&self, p: &Progress) -> Reference {
+    pub fn timed(&self, p: &PathProgress) -> Reference {
         Reference {
             q: self.q,
             qd: self.first.scaled(p.rate),

@@ -20,7 +20,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 /// Minimum number of samples.
-pub const FEWEST: usize = 6;
+pub const MIN_SPLINE_SAMPLES: usize = 6;
 
 /// Root mean square error of ÿ inside, times h²/σ, for evenly spaced samples with independent errors of standard
 /// deviation σ.
@@ -40,9 +40,9 @@ pub struct Knots {
 
 impl Knots {
     /// Factorises the equations for given times, s. Returns `None` if the times do not rise or are fewer than
-    /// [`FEWEST`].
+    /// [`MIN_SPLINE_SAMPLES`].
     pub fn new(t: &[f64]) -> Option<Self> {
-        let spaces = t.len().checked_sub(1).filter(|_| t.len() >= FEWEST)?;
+        let spaces = t.len().checked_sub(1).filter(|_| t.len() >= MIN_SPLINE_SAMPLES)?;
         let unit = (t[spaces] - t[0]) / spaces as f64;
         if !(unit.is_finite() && t.windows(2).all(|w| w[1] - w[0] > 0.0)) {
             return None;
@@ -91,16 +91,16 @@ impl Knots {
 }
 
 /// Returns the first and second derivatives, at the first of six points (t, y), of the polynomial through them.
-fn at_end(points: [(f64, f64); FEWEST]) -> [f64; 2] {
+fn at_end(points: [(f64, f64); MIN_SPLINE_SAMPLES]) -> [f64; 2] {
     let (t, mut c) = (points.map(|p| p.0), points.map(|p| p.1));
     // Newton's divided differences, in place.
-    for k in 1..FEWEST {
-        for i in (k..FEWEST).rev() {
+    for k in 1..MIN_SPLINE_SAMPLES {
+        for i in (k..MIN_SPLINE_SAMPLES).rev() {
             c[i] = (c[i] - c[i - 1]) / (t[i] - t[i - k]);
         }
     }
     let (mut value, mut first, mut half) = (0.0, 0.0, 0.0);
-    for i in (0..FEWEST).rev() {
+    for i in (0..MIN_SPLINE_SAMPLES).rev() {
         let d = t[0] - t[i];
         (half, first, value) = (half * d + first, first * d + value, value * d + c[i]);
     }

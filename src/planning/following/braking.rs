@@ -1,7 +1,7 @@
 //! Approach speeds from which a reference can still stop.
 
 /// Time constant with which the speed of the reference follows the wanted speed, s.
-pub(super) const LAG: f64 = 0.02;
+pub(super) const LAG_TIME: f64 = 0.02;
 
 /// Returns the Euclidean norm, √Σ x².
 pub(super) fn norm(values: &[f64]) -> f64 {
@@ -20,5 +20,5 @@ pub(super) fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
 
 /// Returns the speed at which to close a distance, so that braking at 0.8 of `bound` still stops in time.
 pub(super) fn approach(distance: f64, bound: f64) -> f64 {
-    (distance / (4.0 * LAG)).min((1.6 * bound * distance).sqrt())
+    (distance / (4.0 * LAG_TIME)).min((1.6 * bound * distance).sqrt())
 }

@@ -8,13 +8,13 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::deviation::{apart, least};
+use super::deviation::{angle_distance, least};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::given::Samples;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::BSet;
-use crate::query::Watch;
+use crate::query::ProgressCallback;
 
 /// Number of samples on which the deviation at a b is computed.
 const DEVIATION_SAMPLES: usize = 61;
@@ -35,7 +35,7 @@ const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
 /// Why samples cannot be moved to another b.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoneClose {
+pub enum NoClosestMotion {
     /// Newton's method found no pose.
     #[error("at {time:.3} s no pose at b = {b:.4} rad beside the given one has the end effector at ({:.3}, {:.3}) m", at.re, at.im)]
     Pose {
@@ -64,7 +64,12 @@ pub enum NoneClose {
 ///
 /// # Errors
 /// At the first sample for which no pose is found, or the pose is beyond a limit.
-pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b: f64) -> Result<Samples, NoneClose> {
+pub(super) fn same_tip(
+    space: &PoseSpace,
+    model: &Inertia,
+    samples: &Samples,
+    b: f64,
+) -> Result<Samples, NoClosestMotion> {
     let mut rows = Vec::with_capacity(samples.count());
     // First guess: the given pose plus the offset of the sample before.
     let mut off = PerDrive::zeros(space.drives());
@@ -73,19 +78,19 @@ pub(super) fn same_tip(space: &PoseSpace, model: &Inertia, samples: &Samples, b:
         let given = PerDrive::from_fn(space.drives(), |k| samples.values(i)[k]);
         let (time, at) = (samples.time(i), space.place(&given));
         let q = closest(space, model, &given, b, given.plus(1.0, &off), &mut pull);
-        let q = q.ok_or(NoneClose::Pose { time, b, at })?;
+        let q = q.ok_or(NoClosestMotion::Pose { time, b, at })?;
         for (joint, a) in space.joints().iter().zip(space.angles(&q).iter()) {
             let [low, high] = joint.bounds();
             if let (Some(angle), true) =
                 (joint.angle(), *a < low - LIMIT_TOLERANCE_RAD || *a > high + LIMIT_TOLERANCE_RAD)
             {
-                return Err(NoneClose::Limit { time, b, angle, upper: *a > high });
+                return Err(NoClosestMotion::Limit { time, b, angle, upper: *a > high });
             }
         }
         off = q.0.minus(&given);
         rows.push(q.to_vec());
     }
-    samples.with_values(rows).ok_or(NoneClose::Pose { time: samples.time(0), b, at: Vector::default() })
+    samples.with_values(rows).ok_or(NoClosestMotion::Pose { time: samples.time(0), b, at: Vector::default() })
 }
 
 /// Finds the constant b whose motion with the same end effector path is closest to the given one, rad, and its ‖Δq‖,
@@ -94,10 +99,11 @@ pub(super) fn nearest_b(
     space: &PoseSpace,
     model: &Inertia,
     samples: &Samples,
-    goes_on: Watch<'_>,
+    goes_on: ProgressCallback<'_>,
 ) -> Option<(f64, f64)> {
     let thin = samples.thinned(DEVIATION_SAMPLES);
-    let far = |b: f64| same_tip(space, model, &thin, b).map_or(f64::INFINITY, |moved| apart(model, &thin, &moved));
+    let far =
+        |b: f64| same_tip(space, model, &thin, b).map_or(f64::INFINITY, |moved| angle_distance(model, &thin, &moved));
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;
     let reached = samples.thinned(REACH_SAMPLES);
     let sets: Option<Vec<BSet>> =

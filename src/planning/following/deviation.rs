@@ -7,7 +7,7 @@ use crate::planning::Motion;
 use crate::planning::curves::given::Samples;
 use crate::planning::golden::golden;
 use crate::planning::reactionless::BSet;
-use crate::query::Watch;
+use crate::query::ProgressCallback;
 
 /// Distance between two motions of equal timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ impl Deviation {
 }
 
 /// Returns ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
-pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
+pub(super) fn angle_distance(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
     let square = |i: usize| -> f64 {
@@ -63,7 +63,7 @@ pub(super) fn least(
     mean: f64,
     [tries, sections]: [usize; 2],
     far: impl Fn(f64) -> f64,
-    goes_on: Watch<'_>,
+    goes_on: ProgressCallback<'_>,
 ) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64, [f64; 2])> = None;
     let intervals = set.near(mean).intervals;

@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use super::braking::{LAG, approach, last_open, norm};
-use super::held::{Held, Pull};
+use super::braking::{LAG_TIME, approach, last_open, norm};
+use super::held::{HeldReference, Pull};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Reference;
 use crate::planning::pose_space::{PoseSpace, Reach};
@@ -48,7 +48,7 @@ pub struct Follower {
     /// A drag of a link that begins once the reference is at rest; the end effector then stays.
     pull: Option<Pull>,
     /// The reference during a drag of a link.
-    held: Option<Held>,
+    held: Option<HeldReference>,
 }
 
 /// A coordinate with its derivatives; the second is constant over the present step.
@@ -140,7 +140,7 @@ impl Follower {
     fn hold(&mut self) {
         if let Some(pull) = self.pull.filter(|_| self.map.leaves_freedoms() && self.is_at_rest()) {
             let bounds = (self.bounds.joint, self.step);
-            self.held = Some(Held::new(self.map.clone(), self.a.x, self.b.x, bounds, pull));
+            self.held = Some(HeldReference::new(self.map.clone(), self.a.x, self.b.x, bounds, pull));
             self.pull = None;
             self.b_aim = self.b.x;
             self.target = Target { at: self.map.forward(&self.a.x, self.b.x), reach: Reach::Inside };
@@ -389,7 +389,7 @@ impl Follower {
         } else {
             let speed = approach(distance, self.bounds.joint);
             let gain = if distance > 0.0 { speed / distance } else { 0.0 };
-            let want = PerDrive::from_fn(n, |i| (gain * way[i] - v[i]) / LAG);
+            let want = PerDrive::from_fn(n, |i| (gain * way[i] - v[i]) / LAG_TIME);
             let scale = (self.bounds.joint / norm(&want)).min(1.0);
             self.a.acc = self.before_folds(&want.scaled(scale));
         }
@@ -397,7 +397,7 @@ impl Follower {
         if b_error.abs() < ARRIVAL_TOLERANCE && self.b.v.abs() < ARRIVAL_TOLERANCE {
             self.b = Course { x: if self.b.v == 0.0 { self.b.x } else { self.b_aim }, v: 0.0, acc: 0.0 };
         } else {
-            let want = (approach(b_error.abs(), self.bounds.pose).copysign(b_error) - self.b.v) / LAG;
+            let want = (approach(b_error.abs(), self.bounds.pose).copysign(b_error) - self.b.v) / LAG_TIME;
             self.b.acc = want.clamp(-self.bounds.pose, self.bounds.pose);
         }
     }

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::braking::{LAG, approach, last_open, norm};
+use super::braking::{LAG_TIME, approach, last_open, norm};
 use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 use crate::planning::Reference;
@@ -41,7 +41,7 @@ const POSITION_TOLERANCE: f64 = 1e-15;
 
 /// A reference that keeps the end effector while a link is dragged.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct HeldReference {
     space: Arc<PoseSpace>,
     pull: Pull,
     point: Vector,
@@ -83,7 +83,7 @@ fn solved(j: &Columns, j0: &Columns, n: usize, r: Vector) -> Option<Vector> {
     (det.abs() > 1e-12 * size).then(|| Vector::new(r.re * y.im - r.im * y.re, x.re * r.im - x.im * r.re) / det)
 }
 
-impl Held {
+impl HeldReference {
     /// Holds the end effector at its position in a pose at rest, and starts the drag. `bound` is that of |ä|, rad/s²;
     /// `step` is the time between calls of [`advance`](Self::advance), s.
     pub fn new(space: Arc<PoseSpace>, a: PerDrive, b: f64, (bound, step): (f64, f64), pull: Pull) -> Self {
@@ -282,7 +282,7 @@ impl Held {
             if norm(&wanted) < STILL_BELOW_RAD_S && speed < STILL_BELOW_RAD_S {
                 return None;
             }
-            let want = self.tangent(&j, &wanted.minus(&self.v).scaled(1.0 / LAG))?;
+            let want = self.tangent(&j, &wanted.minus(&self.v).scaled(1.0 / LAG_TIME))?;
             Some(want.scaled((brake / norm(&want)).min(1.0)))
         };
         let Some(want) = wish() else {

@@ -12,4 +12,4 @@ pub mod trace;
 
 pub use follow::Follower;
 pub use held::Pull;
-pub use trace::{Blocked, Rule, Stop};
+pub use trace::{Blocked, Rule, SheetEnd};

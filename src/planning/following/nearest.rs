@@ -17,7 +17,7 @@
 
 use thiserror::Error;
 
-pub use super::closest::NoneClose;
+pub use super::closest::NoClosestMotion;
 pub use super::deviation::Deviation;
 use super::trace::{Blocked, Rule};
 use super::{closest, on_plane};
@@ -25,7 +25,7 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::given::Samples;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::Watch;
+use crate::query::ProgressCallback;
 
 /// Why a motion cannot be moved to a b with the same end effector path.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,7 +35,7 @@ pub enum NotMoved {
     Blocked(#[from] Box<Blocked>),
     /// With more than three drives, no feasible pose was found near a given one.
     #[error(transparent)]
-    NoneClose(#[from] NoneClose),
+    NoneClose(#[from] NoClosestMotion),
 }
 
 impl NotMoved {
@@ -49,7 +49,7 @@ impl NotMoved {
 }
 
 /// Rotates every sample as a whole onto the plane b, rad: relative angles stay, the end effector rotates with the arm.
-pub fn turned(lambda: &PerDrive, samples: &Samples, b: f64) -> Option<Samples> {
+pub fn turned_to_plane(lambda: &PerDrive, samples: &Samples, b: f64) -> Option<Samples> {
     let sum: f64 = lambda.iter().sum();
     let row = |i: usize| {
         let q = samples.values(i);
@@ -85,7 +85,7 @@ pub fn nearest_b(
     model: &Inertia,
     samples: &Samples,
     rule: Rule,
-    goes_on: Watch<'_>,
+    goes_on: ProgressCallback<'_>,
 ) -> Option<(f64, f64)> {
     match space.planes() {
         Ok(planes) => on_plane::nearest_b(planes.map(), model, samples, rule, goes_on),

@@ -1,6 +1,6 @@
 //! The motion on a plane that is nearest to a given one and has the same end effector path, followed on one sheet.
 
-use super::deviation::{apart, least};
+use super::deviation::{angle_distance, least};
 use super::trace::{self, Blocked, Rule};
 use crate::mechanics::kinematics::{acceleration, end_effector, velocity};
 use crate::mechanics::machine::{Chain, Inertia};
@@ -9,7 +9,7 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::given::Samples;
 use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::PlaneMap;
-use crate::query::Watch;
+use crate::query::ProgressCallback;
 
 /// Number of b tried in each interval.
 const TRIES: usize = 32;
@@ -41,13 +41,13 @@ pub(super) fn nearest_b(
     model: &Inertia,
     samples: &Samples,
     rule: Rule,
-    goes_on: Watch<'_>,
+    goes_on: ProgressCallback<'_>,
 ) -> Option<(f64, f64)> {
     let (thin, tip) = (samples.thinned(DEVIATION_SAMPLES), &model.end_effector);
     let curve = tip_curve(tip, &thin.path(0.0)?)?;
     let far = |b: f64| {
         let moved = same_tip(map, tip, &thin, b, rule).ok().flatten();
-        moved.map_or(f64::INFINITY, |moved| apart(model, &thin, &moved))
+        moved.map_or(f64::INFINITY, |moved| angle_distance(model, &thin, &moved))
     };
     let mean = (0..thin.count()).map(|i| map.project(thin.values(i)).b).sum::<f64>() / thin.count() as f64;
     // `least` tries inside the intervals: at their bounds a relative angle touches its limit, or two poses meet.

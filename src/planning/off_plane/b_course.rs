@@ -16,7 +16,7 @@ pub struct BCourse {
 
 /// Base moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reaction {
+pub struct BaseReaction {
     /// Maximum |n_B|, N m.
     pub peak: f64,
     /// Root mean square of n_B over the motion, N m.
@@ -79,12 +79,12 @@ impl BCourse {
 
     /// Returns the base moment for D_1 = `inertia`, kg m², and a motion of `duration`, s. It is exact, because b″ is
     /// linear between nodes.
-    pub fn reaction(&self, inertia: f64, duration: f64) -> Reaction {
+    pub fn reaction(&self, inertia: f64, duration: f64) -> BaseReaction {
         let spaces = (self.nodes.len() - 1) as f64;
         let peak = self.nodes.iter().fold(0.0_f64, |m, node| m.max(node[2].abs()));
         let squares: f64 =
             self.nodes.windows(2).map(|w| (w[0][2] * w[0][2] + w[0][2] * w[1][2] + w[1][2] * w[1][2]) / 3.0).sum();
         let scale = inertia / (duration * duration);
-        Reaction { peak: scale * peak, rms: scale * (squares / spaces).sqrt() }
+        BaseReaction { peak: scale * peak, rms: scale * (squares / spaces).sqrt() }
     }
 }

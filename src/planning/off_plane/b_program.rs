@@ -5,13 +5,13 @@
 //! b″ is linear between even nodes. b and b′ of the nodes are unknowns too, with exact integration as equality
 //! constraints.
 
-use crate::convex::{Program, Row};
+use crate::convex::{LinearRow, Program};
 use crate::planning::off_plane::b_course::BCourse;
 use crate::planning::off_plane::corridor::{Corridor, Station};
-use crate::planning::reactionless::SLACK;
+use crate::planning::reactionless::LIMIT_SLACK;
 
 /// Number of stations of the corridor in each piece.
-pub(super) const STATIONS: usize = 8;
+pub(super) const PIECE_STATIONS: usize = 8;
 /// Stride of the stations where only the value of a program is wanted.
 const STRIDE_FOR_VALUE: usize = 2;
 /// Margin of b to the corridor's bounds, rad, at most a tenth of its width. At a fold the joint rates would be
@@ -32,7 +32,7 @@ const SMOOTHING_COST: f64 = 1e-7;
 type Walls = Vec<[f64; 2]>;
 
 /// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
-/// second order, between them. Each of the `spaces` pieces has [`STATIONS`] stations. The margin may cost `ease` times
+/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease` times
 /// [`MARGIN_COST`]. Fails with the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
@@ -72,7 +72,7 @@ fn kept_within(
     loop {
         let course = solved(corridor, &walls(corridor, end, share, extra), end, peak, spaces)?;
         let past = past(corridor, &course);
-        if past <= SLACK {
+        if past <= LIMIT_SLACK {
             return Ok(course);
         }
         rounds += 1;
@@ -127,8 +127,8 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
         // First minimise the peak alone, then ∫ b″² at that peak.
         let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SMOOTHING_COST);
         for i in 0..=spaces {
-            least.at_most.push(Row::new([(3 * i + 2, 1.0)], bound));
-            least.at_most.push(Row::new([(3 * i + 2, -1.0)], bound));
+            least.at_most.push(LinearRow::new([(3 * i + 2, 1.0)], bound));
+            least.at_most.push(LinearRow::new([(3 * i + 2, -1.0)], bound));
         }
     }
     let x = solution(&squared(least, spaces))?;
@@ -161,8 +161,8 @@ fn least_peak(
     let mut linear = program(corridor, walls, end, spaces, every, 1);
     linear.linear[top] = 1.0;
     for i in 0..=spaces {
-        linear.at_most.push(Row::new([(3 * i + 2, 1.0), (top, -1.0)], 0.0));
-        linear.at_most.push(Row::new([(3 * i + 2, -1.0), (top, -1.0)], 0.0));
+        linear.at_most.push(LinearRow::new([(3 * i + 2, 1.0), (top, -1.0)], 0.0));
+        linear.at_most.push(LinearRow::new([(3 * i + 2, -1.0), (top, -1.0)], 0.0));
     }
     Ok(solution(&linear)?[top].max(0.0))
 }
@@ -189,22 +189,24 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
     let mut program = Program::over(3 * (spaces + 1) + more);
-    program.equal.push(Row::new([(0, 1.0)], 0.0));
-    program.equal.push(Row::new([(1, 1.0)], 0.0));
-    program.equal.push(Row::new([(3 * spaces + 1, 1.0)], 0.0));
+    program.equal.push(LinearRow::new([(0, 1.0)], 0.0));
+    program.equal.push(LinearRow::new([(1, 1.0)], 0.0));
+    program.equal.push(LinearRow::new([(3 * spaces + 1, 1.0)], 0.0));
     if let Some(end) = end {
-        program.equal.push(Row::new([(3 * spaces, 1.0)], end - start));
+        program.equal.push(LinearRow::new([(3 * spaces, 1.0)], end - start));
     }
     for i in 0..spaces {
         let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
-        program.equal.push(Row::new([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0));
-        program.equal.push(Row::new([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0));
+        program.equal.push(LinearRow::new([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0));
+        program
+            .equal
+            .push(LinearRow::new([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0));
     }
     let even = corridor.stations().len();
     let besides = corridor.between().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
     let stations = walls[..even].iter().enumerate().skip(every).step_by(every).map(|(k, wall)| (k as f64, wall));
     for (k, [low, high]) in stations.chain(besides) {
-        let place = k / STATIONS as f64;
+        let place = k / PIECE_STATIONS as f64;
         let i = (place as usize).min(spaces - 1);
         let d = (place - i as f64) * h;
         let cubic = d * d * d / (6.0 * h);
@@ -212,7 +214,7 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
         let row = |s: f64| [(b, s), (v, s * d), (w, s * (d * d / 2.0 - cubic)), (w + 3, s * cubic)];
         if k + 1.0 < even as f64 || end.is_none() {
             let walls = [(1.0, *high), (-1.0, -low)].into_iter().filter(|(_, right)| right.is_finite());
-            program.at_most.extend(walls.map(|(s, right)| Row::new(row(s), right)));
+            program.at_most.extend(walls.map(|(s, right)| LinearRow::new(row(s), right)));
         }
     }
     program

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::mechanics::planar::Vector;
 use crate::planning::curves::curve::CurvePoint;
-use crate::planning::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, between, metres};
+use crate::planning::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, between, metres};
 
 /// Number of samples of a self-motion with which its parts are told apart.
 const SAMPLES: usize = 25;
@@ -184,7 +184,7 @@ impl Corridor {
             return Err(CorridorError::Start { miss });
         }
         for (i, limit) in map.limits().iter().enumerate() {
-            if !limit.contains(start.a[i], SLACK) {
+            if !limit.contains(start.a[i], LIMIT_SLACK) {
                 let (min, max) = (limit.min, limit.max);
                 return Err(CorridorError::Limit { number: i + 1, angle: start.a[i], min, max });
             }
@@ -286,7 +286,7 @@ impl Corridor {
 
     /// Returns the first station at which a b, rad, is outside the corridor; `None` if b can stay constant throughout.
     pub fn leaves(&self, b: f64) -> Option<&Station> {
-        let outside = |s: &&Station| !(s.low - SLACK <= b && b <= s.high + SLACK);
+        let outside = |s: &&Station| !(s.low - LIMIT_SLACK <= b && b <= s.high + LIMIT_SLACK);
         let all = self.stations.iter().chain(&self.between);
         all.filter(outside).min_by(|x, y| x.u.total_cmp(&y.u))
     }

@@ -21,17 +21,17 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::curve::CurvePoint;
 use crate::planning::curves::path::{PathError, minimum_norm_path};
 use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::b_course::{BCourse, Reaction};
-use crate::planning::off_plane::b_program::{STATIONS, least_course};
+use crate::planning::off_plane::b_course::{BCourse, BaseReaction};
+use crate::planning::off_plane::b_program::{PIECE_STATIONS, least_course};
 use crate::planning::off_plane::corridor::{Corridor, CorridorError};
 use crate::planning::off_plane::inverse::pose_along;
 use crate::planning::off_plane::price::{Price, PriceError};
-use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK, between};
+use crate::planning::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint, between};
 
 /// Default number of pieces of b″.
-pub const SPACES: usize = 96;
+pub const DEFAULT_PIECES: usize = 96;
 /// Maximum number of pieces.
-pub const MAX_SPACES: usize = 512;
+pub const MAX_PIECES: usize = 512;
 /// Tolerance of the end effector on its curve between nodes, as a fraction of the arm length.
 const CURVE_TOLERANCE: f64 = 1e-10;
 /// The same tolerance near a fold, where intervals between nodes are halved to meet it.
@@ -48,7 +48,7 @@ const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Goal {
+pub enum ReactionNorm {
     /// ∫ n_B² dt.
     Rms,
     /// The peak of |n_B|; among all motions with that peak, ∫ n_B² dt.
@@ -115,12 +115,12 @@ impl LeastReaction {
         curve: impl Fn(f64) -> CurvePoint,
         start: PlanePoint,
         end: Option<f64>,
-        goal: Goal,
+        goal: ReactionNorm,
     ) -> Result<Self, LeastReactionError> {
-        Self::plan_in(map, model, curve, start, end, goal, SPACES)
+        Self::plan_in(map, model, curve, start, end, goal, DEFAULT_PIECES)
     }
 
-    /// Plans as [`plan`](Self::plan), with a given number of pieces of b″, 2 to [`MAX_SPACES`]. The error falls with
+    /// Plans as [`plan`](Self::plan), with a given number of pieces of b″, 2 to [`MAX_PIECES`]. The error falls with
     /// the square of this number.
     ///
     /// # Errors
@@ -131,12 +131,12 @@ impl LeastReaction {
         curve: impl Fn(f64) -> CurvePoint,
         start: PlanePoint,
         end: Option<f64>,
-        goal: Goal,
+        goal: ReactionNorm,
         spaces: usize,
     ) -> Result<Self, LeastReactionError> {
         let inertia = Price::of(model, 0.0)?.inertia();
-        let spaces = spaces.clamp(2, MAX_SPACES);
-        let mut corridor = Corridor::along(map, &curve, start, spaces * STATIONS)?;
+        let spaces = spaces.clamp(2, MAX_PIECES);
+        let mut corridor = Corridor::along(map, &curve, start, spaces * PIECE_STATIONS)?;
         let stations = corridor.stations();
         let size: f64 = map.c().iter().map(|c| c.abs()).sum();
         for station in [&stations[0], &stations[stations.len() - 1]] {
@@ -144,7 +144,7 @@ impl LeastReaction {
                 return Err(LeastReactionError::NotAtRest { u: station.u });
             }
             let given = end.filter(|_| station.u == 1.0);
-            if let Some(b) = given.filter(|b| !(station.low - SLACK <= *b && *b <= station.high + SLACK)) {
+            if let Some(b) = given.filter(|b| !(station.low - LIMIT_SLACK <= *b && *b <= station.high + LIMIT_SLACK)) {
                 return Err(LeastReactionError::EndOutside { b, low: station.low, high: station.high });
             }
         }
@@ -159,7 +159,7 @@ impl LeastReaction {
         // If the drives cannot follow close to a fold, increase the margin at a higher cost.
         for ease in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, f64::INFINITY] {
             for _ in 0..MAX_CORRIDOR_REFINEMENTS {
-                let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
+                let course = least_course(&corridor, end, goal == ReactionNorm::Peak, spaces, ease)
                     .map_err(|solver| LeastReactionError::NoCourse { solver })?;
                 let why = match followed(&corridor, &curve, &course) {
                     Ok(path) => return Ok(Self { corridor, course, path, inertia }),
@@ -196,7 +196,7 @@ impl LeastReaction {
     }
 
     /// Returns the base moment for a motion of `duration`, s.
-    pub fn reaction(&self, duration: f64) -> Reaction {
+    pub fn reaction(&self, duration: f64) -> BaseReaction {
         self.course.reaction(self.inertia, duration)
     }
 
@@ -229,10 +229,10 @@ impl LeastReaction {
         }
         let kept = path.nodes().iter().all(|node| {
             let a = map.project(&node.q).a;
-            map.limits().iter().zip(a).all(|(limit, a)| limit.contains(a, SLACK))
+            map.limits().iter().zip(a).all(|(limit, a)| limit.contains(a, LIMIT_SLACK))
         });
         let end_b = path.nodes().last().map_or(f64::NAN, |node| map.project(&node.q).b);
-        MinimumNorm { reaction: Reaction { peak, rms: squares.sqrt() }, end_b, keeps_limits: kept }
+        MinimumNorm { reaction: BaseReaction { peak, rms: squares.sqrt() }, end_b, keeps_limits: kept }
     }
 }
 
@@ -244,7 +244,7 @@ pub struct Verdicts {
     /// Minimum-norm rates, q′ = J⁺ p′, as in case 1.
     pub minimum_norm: Result<MinimumNorm, PathError>,
     /// Base moment of the least reaction.
-    pub least: Reaction,
+    pub least: BaseReaction,
 }
 
 /// The base moment of each way, and the t/T from which constant b is infeasible.
@@ -286,7 +286,7 @@ pub enum FixedB {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinimumNorm {
     /// Base moment.
-    pub reaction: Reaction,
+    pub reaction: BaseReaction,
     /// b at its end, rad.
     pub end_b: f64,
     /// Whether the joint limits are kept all the way.
@@ -319,7 +319,7 @@ fn followed(
         let at = map.project(&table.at(u).q);
         (map.forward(at.a, at.b) - p).norm()
     };
-    for step in [STATIONS / 2, STATIONS / 4] {
+    for step in [PIECE_STATIONS / 2, PIECE_STATIONS / 4] {
         let table = PathTable::even(nodes.iter().step_by(step).copied().collect()).ok_or(invalid.clone())?;
         if stations.iter().all(|station| off(&table, station.u, station.point.p) <= CURVE_TOLERANCE * reach) {
             return Ok(table);

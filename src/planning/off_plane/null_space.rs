@@ -22,14 +22,14 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::mechanics::dynamics::mass_matrix;
 use crate::mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
-use crate::mechanics::machine::{BALANCED, Inertia};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector};
+use crate::mechanics::machine::{BALANCE_TOLERANCE, Inertia};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::table::PathTable;
 
 /// Returns D_k at a pose, kg m², (A3).
 #[inline]
-pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
+pub fn momentum_row(model: &Inertia, e: &UnitVectors) -> PerDrive {
     let n = model.drives();
     let (h, _) = mass_matrix(model, e, &PerDrive::zeros(n));
     PerDrive::from_fn(n, |k| h.momentum_row(k))
@@ -37,7 +37,7 @@ pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
 
 /// Returns Ḋ_k at a pose for rates q̇, kg m²/s.
 #[inline]
-pub fn momentum_row_rate(model: &Inertia, e: &Units, qd: &PerDrive) -> PerDrive {
+pub fn momentum_row_rate(model: &Inertia, e: &UnitVectors, qd: &PerDrive) -> PerDrive {
     let n = model.drives();
     // Re Z_kl changes at −Im Z_kl (q̇_l − q̇_k).
     PerDrive::from_fn(n, |k| (0..n).map(|l| -coupling(model, e, k, l).im * (qd[l] - qd[k])).sum())
@@ -45,7 +45,7 @@ pub fn momentum_row_rate(model: &Inertia, e: &Units, qd: &PerDrive) -> PerDrive 
 
 /// Returns Z_kl, kg m².
 #[inline]
-fn coupling(model: &Inertia, e: &Units, k: usize, l: usize) -> Vector {
+fn coupling(model: &Inertia, e: &UnitVectors, k: usize, l: usize) -> Vector {
     model.coupling(k, l) * (e[k].conj() * e[l])
 }
 
@@ -179,7 +179,8 @@ pub(super) fn determines(model: &Inertia) -> bool {
 pub fn turns_nothing(model: &Inertia) -> bool {
     let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());
     let max_momentum = model.momenta().max_abs();
-    max_momentum <= BALANCED * whole && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCED * whole)
+    max_momentum <= BALANCE_TOLERANCE * whole
+        && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCE_TOLERANCE * whole)
 }
 
 /// Returns the least rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, and their
@@ -195,7 +196,7 @@ pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: 
 
 /// Returns [J; D/scale] of three drives and the scale, kg m, at which D is as long as the arm. Returns `None` for other
 /// numbers of drives, or if the matrix has lost rank.
-pub(super) fn lines(model: &Inertia, e: &Units) -> Option<(Matrix3<f64>, f64)> {
+pub(super) fn lines(model: &Inertia, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
     }
@@ -242,7 +243,7 @@ pub fn is_integrable(model: &Inertia) -> bool {
     let own = model.momenta();
     let holds = |j: usize, k: usize, l: usize| {
         let residual = own[j] * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
-        residual.norm() <= BALANCED * whole * whole
+        residual.norm() <= BALANCE_TOLERANCE * whole * whole
     };
     Inertia::pairs(n).all(|(k, l)| (0..n).filter(|j| *j != k && *j != l).all(|j| holds(j, k, l)))
 }

@@ -25,7 +25,7 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::curves::table::PathTable;
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::Posed;
+use crate::planning::posed::PoseAngles;
 use crate::planning::reactionless::BSet;
 use crate::planning::timing::law::TimeLaw;
 use crate::settings::number::counted;
@@ -227,11 +227,11 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
 }
 
 /// Fractions of the way to the middle of an interval of b, tried in turn if rounding leaves its bound without a pose.
-pub const INWARDS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+pub const INWARD_SHARES: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
 /// Returns the straight joint line between two poses of any b; b then follows the time law. Limits of relative angles
 /// form a box, so that the line keeps them if its ends do.
-pub fn joint_line([from, to]: &[Posed; 2]) -> Path {
+pub fn joint_line([from, to]: &[PoseAngles; 2]) -> Path {
     Path::JointLine { from: from.q, to: to.q }
 }
 
@@ -241,7 +241,7 @@ pub fn joint_line([from, to]: &[Posed; 2]) -> Path {
 ///
 /// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the second half begins at the next floating-point
 /// number after ½.
-pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[Posed; 2]) -> Option<PathTable> {
+pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[PoseAngles; 2]) -> Option<PathTable> {
     let step = to.a.minus(&from.a);
     let delta_b = to.b - from.b;
     let point = |share: [f64; 3], turn: [f64; 3]| {

@@ -21,7 +21,7 @@ const DAMPING: f64 = 1e-14;
 const RELATIVE_TOLERANCE: f64 = 1e-13;
 
 /// A box-constrained least-squares problem.
-pub(super) struct Boxed<'a> {
+pub(super) struct BoxedStep<'a> {
     /// Columns c_i of the equations.
     pub columns: &'a [Vector; MAX_DRIVES],
     /// Weights w_i, above 0.
@@ -32,7 +32,7 @@ pub(super) struct Boxed<'a> {
     pub range: [[f64; 2]; MAX_DRIVES],
 }
 
-impl Boxed<'_> {
+impl BoxedStep<'_> {
     /// Returns the step x for the right-hand side r = `wanted`, and the multiplier ν.
     pub fn step(&self, wanted: Vector) -> (PerDrive, Vector) {
         let n = self.wish.len();

@@ -14,8 +14,8 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::boxed::Boxed;
-use super::critical::Critical;
+use super::boxed::BoxedStep;
+use super::critical::CriticalPose;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
@@ -35,7 +35,7 @@ const CRITICAL_RESIDUAL: f64 = 5e-10;
 const MAX_SLOW_ITERATIONS: usize = 6;
 /// Limits on the work of one continuation in b.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Effort {
+pub(super) struct ContinuationLimits {
     /// Maximum number of steps of b.
     max_steps: usize,
     /// Least step of b, as a fraction of the whole change.
@@ -45,11 +45,14 @@ pub(super) struct Effort {
 }
 
 /// While no pose has been found.
-pub(super) const THOROUGH: Effort = Effort { max_steps: 60, min_step_fraction: 1e-5, max_rejected: usize::MAX };
+pub(super) const FULL_CONTINUATION: ContinuationLimits =
+    ContinuationLimits { max_steps: 60, min_step_fraction: 1e-5, max_rejected: usize::MAX };
 /// For further poses.
-pub(super) const BRIEF: Effort = Effort { max_steps: 8, min_step_fraction: 0.05, max_rejected: usize::MAX };
+pub(super) const SHORT_CONTINUATION: ContinuationLimits =
+    ContinuationLimits { max_steps: 8, min_step_fraction: 0.05, max_rejected: usize::MAX };
 /// Where most likely there is no pose.
-pub(super) const GLANCE: Effort = Effort { max_steps: 4, min_step_fraction: 0.2, max_rejected: 2 };
+pub(super) const MINIMAL_CONTINUATION: ContinuationLimits =
+    ContinuationLimits { max_steps: 4, min_step_fraction: 0.2, max_rejected: 2 };
 /// Greatest first step along the direction of largest curvature, rad.
 const MAX_FIRST_STEP_RAD: f64 = 0.2;
 /// Number of first steps that are tried, each for a tenth of the rise of the previous one.
@@ -60,7 +63,7 @@ const GAIN_TOLERANCE: f64 = 1e-9;
 /// A change of b from a critical pose: by `rise`, rad, down if negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Climb<'a> {
-    pub from: &'a Critical,
+    pub from: &'a CriticalPose,
     pub rise: f64,
 }
 
@@ -123,7 +126,7 @@ impl PoseSpace {
                 return Some(a);
             }
             let range = within(windows, &a, longest);
-            let (step, _) = Boxed { columns: &columns, weight: &even, wish: &none, range }.step(residual);
+            let (step, _) = BoxedStep { columns: &columns, weight: &even, wish: &none, range }.step(residual);
             let next = PerDrive::from_fn(n, |i| (a[i] + step[i]).clamp(windows[i][0], windows[i][1]));
             let (place, next_columns) = self.columns(&self.lift(&next, b));
             let next_residual = p - place;
@@ -151,7 +154,7 @@ impl PoseSpace {
         p: Vector,
         (from, mut b): (&PerDrive, f64),
         to: f64,
-        (windows, effort): (&[[f64; 2]; MAX_DRIVES], Effort),
+        (windows, effort): (&[[f64; 2]; MAX_DRIVES], ContinuationLimits),
     ) -> Option<PerDrive> {
         let mut a = *from;
         let mut step = to - b;
@@ -175,7 +178,7 @@ impl PoseSpace {
     }
 
     /// Returns all critical poses of points at a distance from B, m; none for B itself.
-    pub(super) fn starts(&self, distance: f64) -> Vec<Critical> {
+    pub(super) fn starts(&self, distance: f64) -> Vec<CriticalPose> {
         let mut starts = Vec::new();
         if distance > 0.0 {
             self.criticals(distance, |critical| starts.push(critical));
@@ -185,7 +188,7 @@ impl PoseSpace {
 
     /// Returns the changes of b from critical poses to the given b, rad, the smallest first. If b is a critical value
     /// within rounding, that pose is among them.
-    pub(super) fn climbs<'a>(&self, starts: &'a [Critical], b: f64) -> Vec<Climb<'a>> {
+    pub(super) fn climbs<'a>(&self, starts: &'a [CriticalPose], b: f64) -> Vec<Climb<'a>> {
         let period = self.period();
         let mut climbs: Vec<Climb<'a>> = Vec::with_capacity(starts.len());
         for from in starts {
@@ -206,7 +209,7 @@ impl PoseSpace {
     }
 
     /// Follows a climb to a pose at p, m, on the x axis; a critical pose within rounding counts as one.
-    pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
+    pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: ContinuationLimits) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
         self.climbed_strictly(p, climb, effort).or_else(|| {
             let there =
@@ -216,8 +219,13 @@ impl PoseSpace {
     }
 
     /// Does the same without accepting the critical pose itself.
-    pub(super) fn climbed_strictly(&self, p: Vector, climb: &Climb<'_>, effort: Effort) -> Option<PerDrive> {
-        let Climb { from: Critical { a, b, .. }, rise } = climb;
+    pub(super) fn climbed_strictly(
+        &self,
+        p: Vector,
+        climb: &Climb<'_>,
+        effort: ContinuationLimits,
+    ) -> Option<PerDrive> {
+        let Climb { from: CriticalPose { a, b, .. }, rise } = climb;
         let (b, to) = (*b, b + rise);
         let windows = &self.windows();
         let leave = self.leaving(a, b, rise.signum());

@@ -1,6 +1,6 @@
-//! [`Covered`]: the values of b at which points at a given distance from B can be reached.
+//! [`BCoverage`]: the values of b at which points at a given distance from B can be reached.
 
-use super::critical::Critical;
+use super::critical::CriticalPose;
 use crate::planning::reactionless::BSet;
 
 /// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it from one circle to
@@ -12,16 +12,16 @@ const NEAR_GAP: f64 = 0.125;
 /// feasible too, or not, unless a third value has passed both. In that case the neighbouring values have mostly
 /// changed.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Covered {
+pub(super) struct BCoverage {
     /// The critical values, ascending in b.
-    pub ends: Vec<Critical>,
+    pub ends: Vec<CriticalPose>,
     /// Whether the gap after each critical value is feasible; a single entry for the whole circle if there are no
     /// critical values.
     pub gaps: Vec<bool>,
     pub period: f64,
 }
 
-impl Covered {
+impl BCoverage {
     /// Returns the feasible set of b.
     pub fn set(&self, period: f64) -> BSet {
         let n = self.ends.len();
@@ -81,7 +81,7 @@ impl Covered {
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
         let near = NEAR_GAP * self.period;
         let (here, there) = (self.middle(j), of.middle(i));
-        let off = |c: &Critical, middle: f64| {
+        let off = |c: &CriticalPose, middle: f64| {
             let half = 0.5 * self.period;
             (c.b - middle + half).rem_euclid(self.period) - half
         };

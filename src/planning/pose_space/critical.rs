@@ -5,13 +5,13 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::pattern::{At, Pattern, SPACES, Signs, place};
+use super::pattern::{LimitState, Pattern, SIGN_INTERVALS, Signs, place};
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// A pose at which b is stationary, and whether b can rise or fall from there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Critical {
+pub(super) struct CriticalPose {
     /// b for the point on the x axis, rad.
     pub b: f64,
     /// Whether b can rise from here while the end effector stays.
@@ -20,7 +20,7 @@ pub(super) struct Critical {
     pub down: bool,
     /// Identifies the same critical value at other distances: its pattern, signs, side and whole turns.
     pub name: u64,
-    pub spot: Spot,
+    pub spot: CriticalPoint,
     /// Relative angles, rad.
     pub a: PerDrive,
     /// Whether `up` and `down` are certain; where several values of b merge they may not be.
@@ -29,7 +29,7 @@ pub(super) struct Critical {
     count: usize,
 }
 
-impl Critical {
+impl CriticalPose {
     /// Whether b certainly can rise from here.
     pub fn rises(&self) -> bool {
         self.sure && self.up
@@ -81,15 +81,15 @@ impl Critical {
 
 /// A place on the curves of critical poses: the curve, and the parameter along it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Spot {
-    pub curve: Curve,
+pub(super) struct CriticalPoint {
+    pub curve: CriticalCurve,
     /// With two compounds the angle γ between their arms, 0 to π; with more the t of ν = ν_max sin t.
     pub t: f64,
 }
 
 /// A curve of critical poses, parametrised over the distance from B.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-pub(super) struct Curve {
+pub(super) struct CriticalCurve {
     pattern: u32,
     bits: u32,
     /// Whether it is mirrored in the line from B to the point.
@@ -98,7 +98,7 @@ pub(super) struct Curve {
     turns: [i8; MAX_DRIVES],
 }
 
-impl Curve {
+impl CriticalCurve {
     fn of(pattern: usize, bits: u32) -> Self {
         Self { pattern: pattern as u32, bits, ..Self::default() }
     }
@@ -135,16 +135,16 @@ const NEWTON_TOLERANCE: f64 = 1e-11;
 impl PoseSpace {
     /// Visits each critical value of b for points at a distance from B above 0, m, with its relative angles. Returns
     /// false if rounding affects some of them: all arms may be on one line, or all joints at limits.
-    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
+    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(CriticalPose)) -> bool {
         let mut regular = true;
         for (i, pattern) in self.patterns().iter().enumerate() {
             let name = (i as u64) << 44;
-            let curve = Curve::of(i, 0);
+            let curve = CriticalCurve::of(i, 0);
             if pattern.count == 2 {
                 regular &= self.triangle(pattern, (name, curve), distance, &mut found);
             } else {
                 for signs in &pattern.signs {
-                    let curve = Curve::of(i, signs.bits);
+                    let curve = CriticalCurve::of(i, signs.bits);
                     regular &= self.stationary(pattern, signs, (name, curve), distance, &mut found);
                 }
             }
@@ -154,7 +154,7 @@ impl PoseSpace {
 
     /// Returns the distance from B, m, and b for the point on the x axis, rad, of a pose on a curve; `None` outside the
     /// limits.
-    pub(super) fn along(&self, curve: &Curve, t: f64) -> Option<(f64, f64)> {
+    pub(super) fn along(&self, curve: &CriticalCurve, t: f64) -> Option<(f64, f64)> {
         let c = self.patterns().get(curve.pattern as usize)?;
         let mut angle = [0.0; MAX_DRIVES];
         let distance = if c.count == 2 {
@@ -173,9 +173,9 @@ impl PoseSpace {
         for (i, joint) in self.joints.iter().enumerate() {
             let [low, high] = joint.limits;
             a[i] = match c.at[i] {
-                At::Least => low,
-                At::Greatest => high,
-                At::Free => {
+                LimitState::Least => low,
+                LimitState::Greatest => high,
+                LimitState::Free => {
                     let [near, far] = joint.ends.map(|k| turn(c.of[k]));
                     joint.sense * (far - near) + c.shift[i] - TAU * f64::from(curve.turns[i])
                 }
@@ -189,7 +189,13 @@ impl PoseSpace {
 
     /// Two compounds: the point leaves no freedom, and each pose has a single b. Returns false if a pose is in a corner
     /// of the limits.
-    fn triangle(&self, c: &Pattern, (name, curve): (u64, Curve), r: f64, found: &mut impl FnMut(Critical)) -> bool {
+    fn triangle(
+        &self,
+        c: &Pattern,
+        (name, curve): (u64, CriticalCurve),
+        r: f64,
+        found: &mut impl FnMut(CriticalPose),
+    ) -> bool {
         let [l, m] = [c.length[0], c.length[1]];
         let cos = (r * r + l * l - m * m) / (2.0 * r * l);
         if cos.abs() > 1.0 + 1e-12 {
@@ -203,8 +209,8 @@ impl PoseSpace {
         for sign in [1.0, -1.0] {
             let turn = |i: usize| sign * psi[i] - c.lean[i];
             let name = name | u64::from(sign < 0.0) << 28;
-            let spot = Spot { curve: curve.mirrored(sign < 0.0), t };
-            let mut noted = |critical: Critical| {
+            let spot = CriticalPoint { curve: curve.mirrored(sign < 0.0), t };
+            let mut noted = |critical: CriticalPose| {
                 regular &= !self.in_corner(c, &critical.a, r);
                 found(critical);
             };
@@ -230,7 +236,7 @@ impl PoseSpace {
     /// the tolerance of the limits allows. All curves that meet in a corner give the same answer. Two drives have one
     /// curve only.
     fn in_corner(&self, c: &Pattern, a: &PerDrive, r: f64) -> bool {
-        let Some(i) = (0..self.joints.len()).find(|i| c.at[*i] == At::Free && self.joints.len() > 1) else {
+        let Some(i) = (0..self.joints.len()).find(|i| c.at[*i] == LimitState::Free && self.joints.len() > 1) else {
             return false;
         };
         let limits = self.joints[i].limits;
@@ -249,9 +255,9 @@ impl PoseSpace {
         &self,
         c: &Pattern,
         signs: &Signs,
-        (name, curve): (u64, Curve),
+        (name, curve): (u64, CriticalCurve),
         r: f64,
-        found: &mut impl FnMut(Critical),
+        found: &mut impl FnMut(CriticalPose),
     ) -> bool {
         let n = c.count;
         let mut regular = signs.cells & 1 == 0 || (signs.values[0] - r * r).abs() > 1e-11 * r * r;
@@ -267,7 +273,7 @@ impl PoseSpace {
             for side in [1.0, -1.0] {
                 let turn = |i: usize| side * (alpha[i] - chi) - c.lean[i];
                 let name = name | u64::from(signs.bits) << 36 | (turns as u64) << 29 | u64::from(side < 0.0) << 28;
-                let spot = Spot { curve: curve.mirrored(side < 0.0), t };
+                let spot = CriticalPoint { curve: curve.mirrored(side < 0.0), t };
                 regular &= self.poses_of(c, (name, spot), turn, found, || {
                     let [up, down] = *ways_up.get_or_insert_with(|| ways(n, nu, &cos, &c.lambda));
                     let mu = unit(PI - side * chi) / (side * nu);
@@ -284,9 +290,9 @@ impl PoseSpace {
     fn poses_of(
         &self,
         c: &Pattern,
-        (name, mut spot): (u64, Spot),
+        (name, mut spot): (u64, CriticalPoint),
         turn: impl Fn(usize) -> f64,
-        found: &mut impl FnMut(Critical),
+        found: &mut impl FnMut(CriticalPose),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
     ) -> bool {
         // The least feasible value of each angle.
@@ -294,9 +300,9 @@ impl PoseSpace {
         for (i, joint) in self.joints.iter().enumerate() {
             let [low, high] = joint.limits;
             a[i] = match c.at[i] {
-                At::Least => low,
-                At::Greatest => high,
-                At::Free => {
+                LimitState::Least => low,
+                LimitState::Greatest => high,
+                LimitState::Free => {
                     let [near, far] = joint.ends.map(|k| turn(c.of[k]));
                     let own = joint.sense * (far - near) + c.shift[i];
                     let turns = ((own - low + LIMIT_TOLERANCE_RAD) / TAU).floor();
@@ -322,7 +328,7 @@ impl PoseSpace {
             for (joint, at) in self.joints.iter().zip(c.at).rev() {
                 let [near, far] = joint.ends;
                 let own = joint.sense * gain[far];
-                if at == At::Free {
+                if at == LimitState::Free {
                     continue;
                 }
                 gain[near] += gain[far];
@@ -332,7 +338,7 @@ impl PoseSpace {
                 if own.abs() <= GAIN_TOLERANCE * scale {
                     undecided = true;
                 } else {
-                    let rises = (own > 0.0) == (at == At::Least);
+                    let rises = (own > 0.0) == (at == LimitState::Least);
                     up |= rises;
                     down |= !rises;
                 }
@@ -346,7 +352,7 @@ impl PoseSpace {
             for (i, turns) in spot.curve.turns[..a.len()].iter_mut().enumerate() {
                 *turns -= (name >> (4 * i) & 15) as i8;
             }
-            found(Critical { b, up, down, name, spot, a: *a, sure: true, count: c.count });
+            found(CriticalPose { b, up, down, name, spot, a: *a, sure: true, count: c.count });
         });
         !undecided || (up && down)
     }
@@ -354,7 +360,7 @@ impl PoseSpace {
     /// Visits each choice of whole turns that puts all free angles within their limits, in ascending order.
     fn each_winding(&self, i: usize, c: &Pattern, mut a: PerDrive, name: u64, take: &mut impl FnMut(&PerDrive, u64)) {
         let Some(joint) = self.joints.get(i) else { return take(&a, name) };
-        if c.at[i] != At::Free {
+        if c.at[i] != LimitState::Free {
             return self.each_winding(i + 1, c, a, name, take);
         }
         let [low, high] = joint.limits;
@@ -465,7 +471,7 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     let (mut first, mut from) = (0, end(0));
     for turns in 0..=signs.turns.len() {
         let (last, to, next) = match signs.turns.get(turns) {
-            None => (SPACES, end(SPACES), (SPACES, end(SPACES))),
+            None => (SIGN_INTERVALS, end(SIGN_INTERVALS), (SIGN_INTERVALS, end(SIGN_INTERVALS))),
             Some(turn) if alive(turn.cell) => {
                 let to = (turn.t, turn.value - square);
                 (turn.cell + 1, to, (turn.cell, to))

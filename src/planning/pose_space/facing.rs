@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::joint::Joint;
+use super::joint::RelativeJoint;
 use super::pattern::Patterns;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
@@ -52,7 +52,7 @@ impl PoseSpace {
         let place = |k: usize| k - usize::from(k > drive);
         let others = |of: &PerDrive| PerDrive::from_fn(of.len() - 1, |k| of[k + usize::from(k >= drive)]);
         let kept = self.joints.iter().enumerate().filter(|(i, _)| *i != joint);
-        let joints = kept.map(|(_, joint)| Joint { ends: joint.ends.map(place), ..*joint }).collect();
+        let joints = kept.map(|(_, joint)| RelativeJoint { ends: joint.ends.map(place), ..*joint }).collect();
         let mut rest = self.clone();
         (rest.tip, rest.lambda, rest.sum, rest.joints) = (others(&self.tip), others(&self.lambda), sum, joints);
         rest.patterns = Patterns::default();

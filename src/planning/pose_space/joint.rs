@@ -1,8 +1,8 @@
-//! [`Joint`]: one of the relative angles that connect all drives.
+//! [`RelativeJoint`]: one of the relative angles that connect all drives.
 
 /// A relative angle between two drives, one of them nearer to drive 1 in the tree of joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
+pub struct RelativeJoint {
     /// The drive nearer to drive 1, and the other, counted from 0.
     pub(super) ends: [usize; 2],
     /// Sign of the farther drive's angle in the relative angle: 1 or −1.
@@ -17,7 +17,7 @@ pub struct Joint {
     pub(super) angle: Option<usize>,
 }
 
-impl Joint {
+impl RelativeJoint {
     /// Returns the bounds, rad; [−π, π] if the joint is free.
     pub fn limits(&self) -> [f64; 2] {
         self.limits

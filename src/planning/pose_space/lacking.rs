@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::reactionless::WIDEST;
-use crate::settings::number::{Short, counted, significant};
+use crate::planning::reactionless::MAX_LIMIT_RANGE;
+use crate::settings::number::{ShortNumber, counted, significant};
 
 /// Why a machine has no pose constant, in words.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -31,7 +31,7 @@ pub enum NoPoseSpace {
     /// Turning the machine as a whole decreases b, or leaves it unchanged.
     #[error(
         "turned as a whole, this machine changes b by Σλ = {}: want it above 0, with rotors that turn the other way less \
-         fast or lighter", Short(*sum)
+         fast or lighter", ShortNumber(*sum)
     )]
     Sum {
         /// Σλ.
@@ -47,7 +47,7 @@ pub enum NoPoseSpace {
         angle: String,
     },
     /// Limits too far apart for windings to be counted one by one.
-    #[error("angle {angle:?} may turn by {width:.2} rad: want limits at most eight turns apart, {WIDEST} rad")]
+    #[error("angle {angle:?} may turn by {width:.2} rad: want limits at most eight turns apart, {MAX_LIMIT_RANGE} rad")]
     TooWide {
         /// Name of the angle.
         angle: String,
@@ -55,7 +55,7 @@ pub enum NoPoseSpace {
         width: f64,
     },
     /// The reach is 0 or otherwise outside the numerical range.
-    #[error("the arms reach {} m: want a reach of 1e-9 to 1e9 m", Short(*reach))]
+    #[error("the arms reach {} m: want a reach of 1e-9 to 1e9 m", ShortNumber(*reach))]
     Size {
         /// Reach Σ |c_k|, m.
         reach: f64,
@@ -65,7 +65,7 @@ pub enum NoPoseSpace {
 /// Why the end effector cannot follow prescribed curves while b is held, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("while b is held the end effector of a machine with {} has its own way", counted(*.drives, "drive"))]
-pub struct OwnWay {
+pub struct NotFollowable {
     /// Number of drives of the machine.
     pub drives: usize,
 }
@@ -86,7 +86,7 @@ pub(crate) fn is_reactionless(machine: &Machine) -> bool {
 ///
 /// # Errors
 /// If the machine has no pose constant: the reason.
-pub(crate) fn held(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
+pub(crate) fn constant_inertia(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
     let inertia = Inertia::of(machine);
     if inertia.pose_dependence() > MAX_POSE_DEPENDENCE {
         return Err(varies(machine, &inertia));

@@ -8,9 +8,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::continuation::{Climb, GLANCE};
-use super::critical::Critical;
-use super::space::{AT_BASE, PoseSpace};
+use super::continuation::{Climb, MINIMAL_CONTINUATION};
+use super::critical::CriticalPose;
+use super::space::{BASE_RADIUS, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
@@ -36,14 +36,14 @@ const NEAR_BASE_DISTANCE: f64 = 1e-2;
 const SAME_CRITICAL_RAD: f64 = 1e-9;
 
 /// The interval between two critical values of b, rad.
-pub(super) struct Gap {
+pub(super) struct CriticalInterval {
     pub from: f64,
     pub to: f64,
     /// Maximum distances below and above the gap of critical poses from which it can be reached, rad.
     pub free: [f64; 2],
 }
 
-impl Gap {
+impl CriticalInterval {
     /// Some values of b in the gap: near its ends too, as a set that is about to split has few poses.
     fn places(&self) -> [f64; 5] {
         [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| self.from + part * (self.to - self.from))
@@ -52,7 +52,7 @@ impl Gap {
 
 /// Cached samples at one distance: they hold for every b.
 #[derive(Default)]
-pub(super) struct Looks {
+pub(super) struct ReachGrid {
     /// Feasible intervals of b with the last joints held at each grid point, rad; and the end index of each grid point.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
@@ -62,7 +62,7 @@ pub(super) struct Looks {
     pub careful: bool,
 }
 
-impl Looks {
+impl ReachGrid {
     /// Clears the samples for another point.
     pub fn clear(&mut self) {
         self.spans.clear();
@@ -74,7 +74,13 @@ impl Looks {
 impl PoseSpace {
     /// Whether some pose is on the x axis at a distance from B, m, with b in a gap between critical poses, given in
     /// ascending b.
-    pub(super) fn has_pose(&self, distance: f64, gap: &Gap, criticals: &[Critical], looks: &mut Looks) -> bool {
+    pub(super) fn has_pose(
+        &self,
+        distance: f64,
+        gap: &CriticalInterval,
+        criticals: &[CriticalPose],
+        looks: &mut ReachGrid,
+    ) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
             return self.is_reached_by_climbs(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
@@ -86,7 +92,12 @@ impl PoseSpace {
     }
 
     /// Whether a climb from a critical pose near a gap leads into it.
-    fn is_reached_by_climbs(&self, p: Vector, gap: &Gap, (criticals, nearest): (&[Critical], usize)) -> bool {
+    fn is_reached_by_climbs(
+        &self,
+        p: Vector,
+        gap: &CriticalInterval,
+        (criticals, nearest): (&[CriticalPose], usize),
+    ) -> bool {
         let (period, n) = (self.period(), criticals.len());
         let into = (GAP_DEPTH * (gap.to - gap.from)).min(MAX_GAP_DEPTH * period);
         let past = |by: f64| (by + SAME_CRITICAL_RAD).rem_euclid(period) - SAME_CRITICAL_RAD;
@@ -106,12 +117,12 @@ impl PoseSpace {
         (0..nearest).any(|_| {
             let rise = below.next().map(|(from, by)| Climb { from, rise: by + into });
             let fall = above.next().map(|(from, by)| Climb { from, rise: -(by + into) });
-            rise.iter().chain(&fall).any(|climb| self.climbed_strictly(p, climb, GLANCE).is_some())
+            rise.iter().chain(&fall).any(|climb| self.climbed_strictly(p, climb, MINIMAL_CONTINUATION).is_some())
         })
     }
 
     /// Whether a pose at one of these b exists with the last joints held at a grid point.
-    fn is_reached_on_grid(&self, p: Vector, b: &[f64], looks: &mut Looks) -> bool {
+    fn is_reached_on_grid(&self, p: Vector, b: &[f64], looks: &mut ReachGrid) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = GRID_POINTS[(self.drives() - 4).min(GRID_POINTS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -138,7 +149,7 @@ impl PoseSpace {
     }
 
     /// Whether a sampled pose at the distance has a b in the gap.
-    fn is_sampled(&self, distance: f64, gap: &Gap, looks: &mut Looks) -> bool {
+    fn is_sampled(&self, distance: f64, gap: &CriticalInterval, looks: &mut ReachGrid) -> bool {
         if looks.samples.is_empty() {
             let b = |a: PerDrive| {
                 let q = self.unturned(&a);
@@ -167,11 +178,11 @@ impl PoseSpace {
     }
 
     /// Whether any pose is at a distance from B, m, where no critical values exist: then it exists at every b.
-    pub(super) fn any_pose(&self, distance: f64, looks: &Looks) -> bool {
+    pub(super) fn any_pose(&self, distance: f64, looks: &ReachGrid) -> bool {
         let starts = START_SAMPLES[usize::from(looks.careful)];
         match self.drives() {
             ..4 => self.has_isolated_pose(Vector::new(distance, 0.0), 0.0),
-            _ if distance <= AT_BASE * self.farthest() => self.has_pose_at_base(starts),
+            _ if distance <= BASE_RADIUS * self.farthest() => self.has_pose_at_base(starts),
             _ if (0..starts).any(|i| self.pose_at_distance(distance, self.spread(i)).is_some()) => true,
             // By continuity, between a pose farther from B and one at B.
             _ => {

@@ -1,4 +1,4 @@
-//! [`Traced`]: the boundary of a workspace as closed polygons.
+//! [`TracedBoundary`]: the boundary of a workspace as closed polygons.
 //!
 //! Where every end of the workspace on a circle continues on the next circle, edges join them. Where the number or
 //! order of the ends changes, both neighbouring circles count as one, and their ends are joined along it in pairs.
@@ -7,7 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use super::rings::{Ring, Rings, Step};
+use super::rings::{BoundaryStep, Ring, Rings};
 use crate::mechanics::planar::{Vector, unit};
 
 /// Points within this fraction of the reach are equal; loops nowhere wider are dropped.
@@ -17,7 +17,7 @@ const BASE_RADIUS: f64 = 1e-6;
 
 /// A boundary: loops with the workspace on their left.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Traced {
+pub(super) struct TracedBoundary {
     /// Area of the workspace, m².
     pub area: f64,
     pub loops: Vec<Vec<[f64; 2]>>,
@@ -51,7 +51,7 @@ struct Node {
 
 impl Rings {
     /// Joins all ends to the boundary.
-    pub fn traced(&self) -> Traced {
+    pub fn traced(&self) -> TracedBoundary {
         let far = self.rings.last().map_or(0.0, |ring| ring.r);
         let mut all = All { of: self, nodes: Vec::new(), first: Vec::new(), circles: Vec::new() };
         for ring in &self.rings {
@@ -66,7 +66,7 @@ impl Rings {
         }
         for j in 0..self.rings.len() {
             match self.steps.get(j) {
-                Some(Step::On { first, to, .. }) => all.join_by_edges(j, *first, to),
+                Some(BoundaryStep::On { first, to, .. }) => all.join_by_edges(j, *first, to),
                 _ => all.join_along_circle(Some(j), self.rings.get(j + 1).map(|_| j + 1)),
             }
         }
@@ -87,7 +87,7 @@ impl Rings {
         }
         loops.retain(|line| line.len() > 2 && signed(line).abs() > 10.0 * SAME_POINT * far * far);
         let flat = |line: Vec<Vector>| line.into_iter().map(|p| [p.re, p.im]).collect();
-        Traced { area, loops: loops.into_iter().map(flat).collect() }
+        TracedBoundary { area, loops: loops.into_iter().map(flat).collect() }
     }
 }
 
@@ -172,7 +172,7 @@ impl All<'_> {
                 match link.way {
                     Way::Circle { r, by } => self.arc(self.nodes[at].at, r, by, &mut line),
                     Way::Edge { step, points: [from, to], back } => {
-                        if let Step::On { points, .. } = &self.of.steps[step] {
+                        if let BoundaryStep::On { points, .. } = &self.of.steps[step] {
                             let points = &points[from..to];
                             if back {
                                 line.extend(points.iter().rev());

@@ -44,9 +44,9 @@ mod space;
 mod toward;
 
 pub use in_reach::Reach;
-pub use joint::Joint;
-pub use lacking::{NoPoseSpace, OwnWay};
-pub(crate) use lacking::{held, is_reactionless};
+pub use joint::RelativeJoint;
+pub use lacking::{NoPoseSpace, NotFollowable};
+pub(crate) use lacking::{constant_inertia, is_reactionless};
 pub use outline::Outline;
 pub use planes::{PlaneError, Planes, plane_area, plane_map};
-pub use space::{Lead, PoseSpace};
+pub use space::{GuidanceMode, PoseSpace};

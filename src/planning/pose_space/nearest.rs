@@ -8,7 +8,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::boxed::Boxed;
+use super::boxed::BoxedStep;
 use super::continuation::within;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
@@ -27,7 +27,7 @@ const WEIGHT_OFFSET: f64 = 1e-3;
 const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
 
 /// Preferred relative angles.
-pub(super) struct Wish {
+pub(super) struct PreferredAngles {
     /// Preferred angles y_i, rad.
     pub angles: PerDrive,
     /// Weights w_i.
@@ -47,7 +47,7 @@ impl PoseSpace {
         };
         let weight = PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2));
         let bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
-        self.drawn((p, b), from, &Wish { angles: self.middle(), weight }, &bounds)
+        self.drawn((p, b), from, &PreferredAngles { angles: self.middle(), weight }, &bounds)
     }
 
     /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another
@@ -56,7 +56,7 @@ impl PoseSpace {
         &self,
         (p, b): (Vector, f64),
         from: &PerDrive,
-        wish: &Wish,
+        wish: &PreferredAngles,
         windows: &[[f64; 2]; MAX_DRIVES],
     ) -> PerDrive {
         let n = self.joints.len();
@@ -71,7 +71,7 @@ impl PoseSpace {
             let (place, columns) = self.columns(&self.lift(&a, b));
             let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
             let range = within(windows, &a, MAX_STEP_RAD);
-            let (step, nu) = Boxed { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
+            let (step, nu) = BoxedStep { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
             if step.max_abs() < STEP_TOLERANCE_RAD {
                 break;
             }
@@ -105,7 +105,7 @@ impl PoseSpace {
     fn newton_step(
         &self,
         (a, b): (&PerDrive, f64),
-        wish: &Wish,
+        wish: &PreferredAngles,
         (nu, columns, off): (Vector, &[Vector; MAX_DRIVES], Vector),
         held: &dyn Fn(usize) -> bool,
     ) -> Option<PerDrive> {

@@ -4,10 +4,10 @@
 //! reached. Then the points at r that belong to the workspace have the angles φ = (b − β)/Σλ. The ends of the sets of
 //! β, over r, are the boundary.
 
-use super::loops::Traced;
+use super::loops::TracedBoundary;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, dot, unit};
-use crate::planning::reactionless::Extent;
+use crate::planning::reactionless::BoundingBox;
 
 /// The workspace of a b: a region, or a curve for two drives.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,7 +69,7 @@ impl PoseSpace {
     pub fn outline_within(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
         if let Ok(planes) = self.planes() {
             let (boundary, loops) = (planes.boundary(), planes.boundary().turned(b));
-            let Extent { x_min, x_max, y_min, y_max } = boundary.extent(b);
+            let BoundingBox { x_min, x_max, y_min, y_max } = boundary.extent(b);
             return Some(Outline {
                 area: boundary.area(),
                 extent: [x_min, x_max, y_min, y_max],
@@ -117,7 +117,7 @@ impl PoseSpace {
     }
 
     fn region(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
-        let Traced { area, loops } = self.rings(b, chord, goes_on)?.traced();
+        let TracedBoundary { area, loops } = self.rings(b, chord, goes_on)?.traced();
         Some(Outline { area, extent: extent(loops.iter().flatten()), loops, ..Outline::default() })
     }
 }

@@ -4,15 +4,15 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};
 
-use super::joint::Joint;
+use super::joint::RelativeJoint;
 use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
 
 /// Number of cells in which a sign change is sought.
-pub(super) const SPACES: usize = 24;
+pub(super) const SIGN_INTERVALS: usize = 24;
 
 /// Returns the boundary of a cell: t from 0 to π/2, ν = ν_max sin t.
 pub(super) fn place(i: usize) -> f64 {
-    FRAC_PI_2 * i as f64 / SPACES as f64
+    FRAC_PI_2 * i as f64 / SIGN_INTERVALS as f64
 }
 
 /// Returns where the slope at a cell boundary is evaluated: slightly inside at both ends, where the slope is 0 or 0/0.
@@ -29,7 +29,7 @@ const PRESELECTION_TOLERANCE_RAD: f64 = 1e-6;
 
 /// State of a joint: free, or held at its least or greatest angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum At {
+pub(super) enum LimitState {
     Free,
     Least,
     Greatest,
@@ -39,7 +39,7 @@ pub(super) enum At {
 #[derive(Debug)]
 pub(super) struct Pattern {
     /// State of each joint.
-    pub at: [At; MAX_DRIVES],
+    pub at: [LimitState; MAX_DRIVES],
     /// Number of compounds.
     pub count: usize,
     /// The compound of each drive, and the angle of the drive within it, rad.
@@ -70,16 +70,16 @@ pub(super) struct Signs {
     /// Bit i is set if the joints may be within their limits in cell i.
     pub cells: u32,
     /// |p|² at each cell boundary, and its least and greatest value within the feasible cells, m².
-    pub values: [f64; SPACES + 1],
+    pub values: [f64; SIGN_INTERVALS + 1],
     pub least: f64,
     pub greatest: f64,
     /// Turning points of |p|², ascending in t; between them it is monotone. Exact in feasible cells only.
-    pub turns: Vec<Turn>,
+    pub turns: Vec<TurningPoint>,
 }
 
 /// A turning point of |p|².
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
+pub(super) struct TurningPoint {
     /// The cell that contains it.
     pub cell: usize,
     pub t: f64,
@@ -116,27 +116,29 @@ impl PartialEq for Patterns {
 }
 
 impl Patterns {
-    pub fn of(&self, tip: &[f64], lambda: &[f64], joints: &[Joint]) -> &[Pattern] {
+    pub fn of(&self, tip: &[f64], lambda: &[f64], joints: &[RelativeJoint]) -> &[Pattern] {
         self.0.get_or_init(|| all(tip, lambda, joints))
     }
 }
 
-fn all(tip: &[f64], lambda: &[f64], joints: &[Joint]) -> Vec<Pattern> {
+fn all(tip: &[f64], lambda: &[f64], joints: &[RelativeJoint]) -> Vec<Pattern> {
     let mut patterns = Vec::new();
-    let mut at = [At::Free; MAX_DRIVES];
+    let mut at = [LimitState::Free; MAX_DRIVES];
     loop {
         patterns.extend(Pattern::new(tip, lambda, joints, at));
         // Next combination, counting in base 3.
-        let Some(i) = (0..joints.len()).find(|i| at[*i] != At::Greatest) else { return patterns };
-        at[..i].fill(At::Free);
-        at[i] = if at[i] == At::Free { At::Least } else { At::Greatest };
+        let Some(i) = (0..joints.len()).find(|i| at[*i] != LimitState::Greatest) else { return patterns };
+        at[..i].fill(LimitState::Free);
+        at[i] = if at[i] == LimitState::Free { LimitState::Least } else { LimitState::Greatest };
     }
 }
 
 impl Pattern {
     /// Returns `None` if b cannot be stationary, or if another pattern is equal.
-    fn new(tip: &[f64], lambda: &[f64], joints: &[Joint], at: [At; MAX_DRIVES]) -> Option<Self> {
-        let twice = |(at, joint): (&At, &Joint)| *at == At::Greatest && joint.limits[0] == joint.limits[1];
+    fn new(tip: &[f64], lambda: &[f64], joints: &[RelativeJoint], at: [LimitState; MAX_DRIVES]) -> Option<Self> {
+        let twice = |(at, joint): (&LimitState, &RelativeJoint)| {
+            *at == LimitState::Greatest && joint.limits[0] == joint.limits[1]
+        };
         if at.iter().zip(joints).any(twice) {
             return None;
         }
@@ -159,13 +161,13 @@ impl Pattern {
         for (joint, at) in joints.iter().zip(at) {
             let [near, far] = joint.ends;
             let held = match at {
-                At::Free => {
+                LimitState::Free => {
                     c.of[far] = c.count;
                     c.count += 1;
                     continue;
                 }
-                At::Least => joint.limits[0],
-                At::Greatest => joint.limits[1],
+                LimitState::Least => joint.limits[0],
+                LimitState::Greatest => joint.limits[1],
             };
             c.of[far] = c.of[near];
             c.delta[far] = c.delta[near] + joint.sense * (held - joint.offset);
@@ -207,12 +209,12 @@ impl Pattern {
 
     /// Returns the cells in which all joints may be within their limits, given the angles α at the cell boundaries for
     /// positive cosines. A cell that is not returned is certainly infeasible.
-    fn within(&self, joints: &[Joint], bits: u32, alpha: &[[f64; MAX_DRIVES]; SPACES + 1]) -> u32 {
+    fn within(&self, joints: &[RelativeJoint], bits: u32, alpha: &[[f64; MAX_DRIVES]; SIGN_INTERVALS + 1]) -> u32 {
         let at = |i: usize, place: usize| {
             let own = alpha[place][i];
             if i > 0 && bits >> (i - 1) & 1 == 1 { PI - own } else { own }
         };
-        let free = || joints.iter().zip(self.at).enumerate().filter(|(_, (_, at))| *at == At::Free);
+        let free = || joints.iter().zip(self.at).enumerate().filter(|(_, (_, at))| *at == LimitState::Free);
         let may = |place: usize, side: f64| {
             free().all(|(i, (joint, _))| {
                 let [near, far] = joint.ends.map(|k| self.of[k]);
@@ -230,23 +232,23 @@ impl Pattern {
                 first - (high - low) <= joint.limits[1]
             })
         };
-        (0..SPACES).filter(|i| may(*i, 1.0) || may(*i, -1.0)).fold(0, |cells, i| cells | 1 << i)
+        (0..SIGN_INTERVALS).filter(|i| may(*i, 1.0) || may(*i, -1.0)).fold(0, |cells, i| cells | 1 << i)
     }
 
-    fn scanned(&self, bits: u32, cells: u32, places: &[Place; SPACES + 1]) -> Signs {
+    fn scanned(&self, bits: u32, cells: u32, places: &[Place; SIGN_INTERVALS + 1]) -> Signs {
         let sign = |i: usize| if i > 0 && bits >> (i - 1) & 1 == 1 { -1.0 } else { 1.0 };
         let signed = |of: &[f64; MAX_DRIVES]| (0..self.count).map(|i| sign(i) * of[i]).sum::<f64>();
-        let values: [f64; SPACES + 1] = std::array::from_fn(|i| {
+        let values: [f64; SIGN_INTERVALS + 1] = std::array::from_fn(|i| {
             let (_, cos, sum) = &places[i].at;
             Vector::new(signed(cos), sum.im).norm_sqr()
         });
-        let slopes: [f64; SPACES + 1] = std::array::from_fn(|i| {
+        let slopes: [f64; SIGN_INTERVALS + 1] = std::array::from_fn(|i| {
             let Rates { cos, sum, changes, across } = &places[i].rates;
             2.0 * (signed(cos) * signed(changes) + sum * across)
         });
         let alive = |i: usize| cells >> i & 1 == 1;
         let mut turns = Vec::new();
-        for cell in 0..SPACES {
+        for cell in 0..SIGN_INTERVALS {
             let ends = [cell, cell + 1];
             let [from, to] = ends.map(slope_place);
             let [rise, fall] = ends.map(|i| slopes[i]);
@@ -261,12 +263,12 @@ impl Pattern {
             for [from, to] in &parts[..if parts[0] == parts[1] { 1 } else { 2 }] {
                 if from.1 * to.1 < 0.0 {
                     let t = if alive(cell) { self.turn(bits, [*from, *to]) } else { 0.5 * (from.0 + to.0) };
-                    turns.push(Turn { cell, t, value: self.square(bits, t).0 });
+                    turns.push(TurningPoint { cell, t, value: self.square(bits, t).0 });
                 }
             }
         }
-        let within = |i: &usize| alive(*i) && *i < SPACES || (*i > 0 && alive(*i - 1));
-        let ends = (0..=SPACES).filter(within).map(|i| values[i]);
+        let within = |i: &usize| alive(*i) && *i < SIGN_INTERVALS || (*i > 0 && alive(*i - 1));
+        let ends = (0..=SIGN_INTERVALS).filter(within).map(|i| values[i]);
         let within = || ends.clone().chain(turns.iter().filter(|turn| alive(turn.cell)).map(|turn| turn.value));
         let least = within().fold(f64::INFINITY, f64::min);
         let greatest = within().fold(f64::NEG_INFINITY, f64::max);

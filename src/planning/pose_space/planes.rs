@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::in_reach::Reach;
-use super::lacking::{NoPoseSpace, held, is_reactionless};
+use super::lacking::{NoPoseSpace, constant_inertia, is_reactionless};
 use crate::mechanics::machine::{Machine, RelativeAngle};
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, NotAPlaneMap, PlaneMap};
@@ -194,7 +194,7 @@ pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
         return Err(PlaneError::Unlimited(free.name.clone()));
     }
     let tip = machine.end_effector();
-    let lambda = held(machine).map_err(PlaneError::NoPoseConstant)?.lambda();
+    let lambda = constant_inertia(machine).map_err(PlaneError::NoPoseConstant)?.lambda();
     let angle = |a: &RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
     let limit = |a: &RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
     Ok(PlaneMap::new(

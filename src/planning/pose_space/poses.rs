@@ -1,7 +1,7 @@
 //! Poses of a point at a b: all of them if they are isolated, otherwise the one nearest to given angles.
 
-use super::continuation::{BRIEF, THOROUGH};
-use super::nearest::Wish;
+use super::continuation::{FULL_CONTINUATION, SHORT_CONTINUATION};
+use super::nearest::PreferredAngles;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
@@ -86,7 +86,7 @@ impl PoseSpace {
             if any && i >= MAX_CLIMBS {
                 break;
             }
-            if let Some(a) = self.climbed(p, climb, if any { BRIEF } else { THOROUGH }) {
+            if let Some(a) = self.climbed(p, climb, if any { SHORT_CONTINUATION } else { FULL_CONTINUATION }) {
                 any = true;
                 if !take(&a) {
                     return;
@@ -121,7 +121,7 @@ impl PoseSpace {
     fn nearest_pose(&self, p: Vector, b: f64, near: &[f64]) -> Option<PerDrive> {
         let (n, windows) = (self.joints.len(), self.windows());
         let near = PerDrive::from_fn(n, |i| near[i]);
-        let wish = Wish { angles: near, weight: PerDrive::from_fn(n, |_| 1.0) };
+        let wish = PreferredAngles { angles: near, weight: PerDrive::from_fn(n, |_| 1.0) };
         let far = |a: &PerDrive| a.minus(&near).dot(&a.minus(&near));
         let own = PerDrive::from_fn(n, |i| near[i].clamp(windows[i][0], windows[i][1]));
         let mut starts = self.sheets(p, b);

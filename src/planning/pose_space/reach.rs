@@ -1,9 +1,9 @@
 //! The b at which a point can be reached.
 
-use super::covered::Covered;
-use super::critical::Critical;
-use super::looks::{Gap, Looks};
-use super::space::{AT_BASE, PoseSpace};
+use super::covered::BCoverage;
+use super::critical::CriticalPose;
+use super::looks::{CriticalInterval, ReachGrid};
+use super::space::{BASE_RADIUS, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::reactionless::{BSet, NoReach};
 
@@ -78,9 +78,9 @@ impl PoseSpace {
             let b = if self.tip[0] < 0.0 { 0.5 * period } else { 0.0 };
             return BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period };
         }
-        let mut work = Work::default();
+        let mut work = ReachBuffers::default();
         work.looks.careful = careful;
-        if distance <= AT_BASE * self.farthest() {
+        if distance <= BASE_RADIUS * self.farthest() {
             let any = self.any_pose(distance, &work.looks);
             return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
         }
@@ -101,7 +101,12 @@ impl PoseSpace {
     /// Returns the feasible b at a distance from B, m, for three and more drives. Results at neighbouring distances
     /// save searches for poses. If rounding affects the result, the distance is shifted by up to twice
     /// [`NEIGHBOUR_OFFSET`]; it is returned too.
-    pub(super) fn covered(&self, distance: f64, neighbours: &[&Covered], work: &mut Work) -> (f64, Covered) {
+    pub(super) fn covered(
+        &self,
+        distance: f64,
+        neighbours: &[&BCoverage],
+        work: &mut ReachBuffers,
+    ) -> (f64, BCoverage) {
         let mut at = distance;
         for by in [0.0, 1.0, -1.0, 2.0, -2.0] {
             at = distance + by * NEIGHBOUR_OFFSET * self.farthest();
@@ -115,14 +120,14 @@ impl PoseSpace {
 
     /// Determines which gaps between critical values are feasible: by the critical poses beside them, by neighbouring
     /// distances, or by a search for poses.
-    fn joined(&self, distance: f64, neighbours: &[&Covered], work: &mut Work) -> Covered {
+    fn joined(&self, distance: f64, neighbours: &[&BCoverage], work: &mut ReachBuffers) -> BCoverage {
         let period = self.period();
         work.looks.clear();
         for c in &mut work.ends {
             c.b = c.b.rem_euclid(period);
         }
         work.ends.sort_unstable_by(|x, y| x.b.total_cmp(&y.b));
-        let joins = |c: &Critical, last: &mut Critical, apart: f64| {
+        let joins = |c: &CriticalPose, last: &mut CriticalPose, apart: f64| {
             let same = apart < SAME_B_RAD;
             if same {
                 last.merge(c);
@@ -142,10 +147,10 @@ impl PoseSpace {
             // Without critical values b may go round without end: near B the machine turns as a whole.
             let known = agreed(neighbours.iter().map(|seen| seen.whole())).filter(|_| neighbours.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
-            return Covered { ends: Vec::new(), gaps: vec![whole], period };
+            return BCoverage { ends: Vec::new(), gaps: vec![whole], period };
         }
         let gaps = (0..n).map(|i| merged[i].rises() || merged[(i + 1) % n].falls()).collect();
-        let mut covered = Covered { ends: merged, gaps, period };
+        let mut covered = BCoverage { ends: merged, gaps, period };
         covered.spread();
         let mut empty = vec![false; n];
         for i in 0..n {
@@ -155,12 +160,12 @@ impl PoseSpace {
             }
             // Several sheets may overlap in b. Whether one covers this gap is known from the same gap at neighbouring
             // distances, or from a search for poses.
-            let seen = |seen: &Covered, all: bool| Some(seen.gaps[seen.gap(&covered, i, all)?]);
+            let seen = |seen: &BCoverage, all: bool| Some(seen.gaps[seen.gap(&covered, i, all)?]);
             let on_both_sides =
                 neighbours.len() > 1 && neighbours.iter().all(|neighbour| seen(neighbour, false).is_some());
             let known = agreed(neighbours.iter().map(|neighbour| seen(neighbour, !on_both_sides)));
             let search = || {
-                let gap = Gap { from, to, free: covered.free(i, &empty) };
+                let gap = CriticalInterval { from, to, free: covered.free(i, &empty) };
                 self.has_pose(distance, &gap, &work.ends, &mut work.looks)
             };
             if known.unwrap_or_else(search) {
@@ -176,9 +181,9 @@ impl PoseSpace {
 
 /// Buffers reused at each distance.
 #[derive(Default)]
-pub(super) struct Work {
-    ends: Vec<Critical>,
-    pub looks: Looks,
+pub(super) struct ReachBuffers {
+    ends: Vec<CriticalPose>,
+    pub looks: ReachGrid,
 }
 
 /// Returns the common value of all known ones; `None` if they disagree or there are none.

@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use super::covered::Covered;
-use super::critical::Spot;
-use super::reach::Work;
+use super::covered::BCoverage;
+use super::critical::CriticalPoint;
+use super::reach::ReachBuffers;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, unit};
 
@@ -33,12 +33,12 @@ const ENDPOINT_TOLERANCE: f64 = 1e-6;
 
 /// A point where the workspace begins or ends on a circle, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End {
+pub(super) struct ArcEnd {
     /// Angle from 0 to 2π, rad.
     pub angle: f64,
     /// Whether the workspace begins here.
     pub opens: bool,
-    spot: Spot,
+    spot: CriticalPoint,
 }
 
 /// A circle about B.
@@ -47,7 +47,7 @@ pub(super) struct Ring {
     /// Radius, m.
     pub r: f64,
     /// Ends in order of their angles: opening and closing ones alternate.
-    pub ends: Vec<End>,
+    pub ends: Vec<ArcEnd>,
     /// If there are no ends: whether the whole circle belongs to the workspace.
     pub whole: bool,
 }
@@ -85,14 +85,14 @@ impl Ring {
         if n != other.ends.len() || (n == 0 && self.whole != other.whole) {
             return None;
         }
-        let same = |x: &End, y: &End| x.opens == y.opens && x.spot.curve == y.spot.curve;
+        let same = |x: &ArcEnd, y: &ArcEnd| x.opens == y.opens && x.spot.curve == y.spot.curve;
         (0..n.max(1)).find(|k| (0..n).all(|i| same(&self.ends[i], &other.ends[(i + k) % n])))
     }
 }
 
 /// Continuation of the boundary from one circle to the next.
 #[derive(Clone, Debug)]
-pub(super) enum Step {
+pub(super) enum BoundaryStep {
     /// Every end continues: the first one to end `first` of the next circle. `points` lie between the circles; those of
     /// end i go up to index `to[i]`.
     On { first: usize, points: Vec<Vector>, to: Vec<usize> },
@@ -105,7 +105,7 @@ pub(super) enum Step {
 pub(super) struct Rings {
     pub rings: Vec<Ring>,
     /// One for each two neighbouring circles.
-    pub steps: Vec<Step>,
+    pub steps: Vec<BoundaryStep>,
     /// Area between the boundary and its chords, m².
     pub chord_area: f64,
     /// Maximum deviation of chords from arcs of circles, m.
@@ -143,13 +143,13 @@ impl PoseSpace {
         let mut sweep = Sweep {
             space: self,
             b,
-            work: Work::default(),
+            work: ReachBuffers::default(),
             carries,
             budget: [MAX_RINGS, MAX_POINTS],
             done: Rings { rings: Vec::new(), steps: Vec::new(), chord_area: 0.0, chord, jumps: 0.0 },
         };
         sweep.work.looks.careful = careful;
-        let mut all: Vec<(f64, Covered)> = Vec::with_capacity(INITIAL_CIRCLES + 1);
+        let mut all: Vec<(f64, BCoverage)> = Vec::with_capacity(INITIAL_CIRCLES + 1);
         for i in 0..=INITIAL_CIRCLES {
             if !goes_on(0.5 * i as f64 / INITIAL_CIRCLES as f64) {
                 return None;
@@ -188,7 +188,7 @@ impl PoseSpace {
 struct Sweep<'a> {
     space: &'a PoseSpace,
     b: f64,
-    work: Work,
+    work: ReachBuffers,
     /// Whether results of circles are reused for those between them.
     carries: bool,
     /// Remaining numbers of circles and of points.
@@ -204,14 +204,14 @@ struct Edge {
 }
 
 impl Sweep<'_> {
-    fn ring(&mut self, r: f64, neighbours: &[&Covered]) -> (Ring, Covered) {
+    fn ring(&mut self, r: f64, neighbours: &[&BCoverage]) -> (Ring, BCoverage) {
         self.budget[0] = self.budget[0].saturating_sub(1);
         let neighbours = if self.carries { neighbours } else { &[] };
         let covered = self.space.covered(r, neighbours, &mut self.work);
         self.ring_of(covered)
     }
 
-    fn ring_of(&self, (r, covered): (f64, Covered)) -> (Ring, Covered) {
+    fn ring_of(&self, (r, covered): (f64, BCoverage)) -> (Ring, BCoverage) {
         let n = covered.ends.len();
         let whole = covered.gaps.iter().all(|gap| *gap);
         // The angle falls as b rises.
@@ -219,9 +219,9 @@ impl Sweep<'_> {
             let [before, after] = [covered.gaps[(i + n - 1) % n], covered.gaps[i]];
             let c = &covered.ends[i];
             let angle = self.angle(c.b);
-            (before != after).then_some(End { angle, opens: before, spot: c.spot })
+            (before != after).then_some(ArcEnd { angle, opens: before, spot: c.spot })
         };
-        let mut ends: Vec<End> = (0..n).rev().filter_map(end).collect();
+        let mut ends: Vec<ArcEnd> = (0..n).rev().filter_map(end).collect();
         if let Some(least) = (0..ends.len()).min_by(|i, j| ends[*i].angle.total_cmp(&ends[*j].angle)) {
             ends.rotate_left(least);
         }
@@ -233,7 +233,7 @@ impl Sweep<'_> {
     }
 
     /// Adds a circle and the step to the next one, with further circles between them if the boundary changes.
-    fn between(&mut self, from: &(Ring, Covered), to: &(Ring, Covered)) {
+    fn between(&mut self, from: &(Ring, BCoverage), to: &(Ring, BCoverage)) {
         let far = self.space.farthest();
         if let Some(step) = self.step(&from.0, &to.0) {
             self.done.rings.push(from.0.clone());
@@ -243,7 +243,7 @@ impl Sweep<'_> {
                 self.done.jumps += (from.0.apart(&to.0) - JUMP_TOLERANCE_RAD).max(0.0);
             }
             self.done.rings.push(from.0.clone());
-            self.done.steps.push(Step::Changes);
+            self.done.steps.push(BoundaryStep::Changes);
         } else {
             let middle = self.ring(0.5 * (from.0.r + to.0.r), &[&from.1, &to.1]);
             self.between(from, &middle);
@@ -252,7 +252,7 @@ impl Sweep<'_> {
     }
 
     /// Returns the step between two circles if every end continues from one to the other.
-    fn step(&mut self, from: &Ring, to: &Ring) -> Option<Step> {
+    fn step(&mut self, from: &Ring, to: &Ring) -> Option<BoundaryStep> {
         let first = from.turned_to(to)?;
         let n = from.ends.len();
         let (mut edge, mut upto) = (Edge::default(), Vec::with_capacity(n));
@@ -268,16 +268,16 @@ impl Sweep<'_> {
         }
         self.budget[1] = self.budget[1].saturating_sub(edge.points.len());
         self.done.chord_area += edge.chord_area;
-        Some(Step::On { first, points: edge.points, to: upto })
+        Some(BoundaryStep::On { first, points: edge.points, to: upto })
     }
 
-    fn point(&self, spot: &Spot) -> Option<Vector> {
+    fn point(&self, spot: &CriticalPoint) -> Option<Vector> {
         let (r, b) = self.space.along(&spot.curve, spot.t)?;
         Some(r * unit(self.angle(b)))
     }
 
     /// Adds the points of a curve between two of its places; `None` if the curve does not join them within the limits.
-    fn trace(&self, spots: [Spot; 2], ends: [Vector; 2], edge: &mut Edge) -> Option<()> {
+    fn trace(&self, spots: [CriticalPoint; 2], ends: [Vector; 2], edge: &mut Edge) -> Option<()> {
         let missed = ENDPOINT_TOLERANCE * self.space.farthest();
         for (spot, end) in spots.iter().zip(ends) {
             if (self.point(spot)? - end).norm() > missed {
@@ -285,19 +285,19 @@ impl Sweep<'_> {
             }
         }
         let [from, to] = spots.map(|spot| spot.t);
-        self.bisected(&Spot { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
+        self.bisected(&CriticalPoint { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
     }
 
     /// Does the same between two parameters t, given the middle, by bisection.
     fn bisected(
         &self,
-        middle: &Spot,
+        middle: &CriticalPoint,
         [from, to]: [f64; 2],
         [start, end]: [Vector; 2],
         depth: usize,
         edge: &mut Edge,
     ) -> Option<()> {
-        let spot = |t: f64| Spot { t, ..*middle };
+        let spot = |t: f64| CriticalPoint { t, ..*middle };
         let quarters = [0.25, 0.5, 0.75].map(|part| spot(from + part * (to - from)));
         let q2 = self.point(&quarters[1])?;
         let off = |p: Vector, [a, b]: [Vector; 2]| {

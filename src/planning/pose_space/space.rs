@@ -6,17 +6,17 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::joint::Joint;
-use super::lacking::{NoPoseSpace, OwnWay, held, is_reactionless};
+use super::joint::RelativeJoint;
+use super::lacking::{NoPoseSpace, NotFollowable, constant_inertia, is_reactionless};
 use super::pattern::{Pattern, Patterns};
 use super::planes::{PlaneError, Planes, plane_map};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
-use crate::planning::reactionless::{PlaneMap, PlanePoint, WIDEST};
+use crate::planning::reactionless::{MAX_LIMIT_RANGE, PlaneMap, PlanePoint};
 
 /// A point within this distance of the base pin B, as a fraction of the reach, is treated as B: turning the workspace
 /// does not move it.
-pub(super) const AT_BASE: f64 = 1e-12;
+pub(super) const BASE_RADIUS: f64 = 1e-12;
 
 /// The set of poses of a machine in coordinates (a, b): relative angles and pose constant.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +25,8 @@ pub struct PoseSpace {
     pub(super) lambda: PerDrive,
     pub(super) sum: f64,
     /// Ordered as a tree: each comes after the joint that leads to its nearer drive.
-    pub(super) joints: Box<[Joint]>,
-    pub(super) lead: Lead,
+    pub(super) joints: Box<[RelativeJoint]>,
+    pub(super) lead: GuidanceMode,
     inertia: f64,
     is_reactionless: bool,
     /// Cache for these arms and joints; a space with other ones needs its own.
@@ -37,7 +37,7 @@ pub struct PoseSpace {
 
 /// Use of the redundant freedoms while the end effector is dragged.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Lead {
+pub enum GuidanceMode {
     /// Each step minimises the kinetic energy.
     #[default]
     LeastEnergy,
@@ -67,7 +67,7 @@ impl PoseSpace {
     }
 
     fn holding(machine: &Machine, planes: Result<Arc<Planes>, PlaneError>) -> Result<Self, NoPoseSpace> {
-        let inertia = held(machine)?;
+        let inertia = constant_inertia(machine)?;
         Self::with(machine, inertia.lambda(), inertia.pose_inertia(), planes)
     }
 
@@ -106,7 +106,7 @@ impl PoseSpace {
             lambda,
             sum,
             joints: joints.into(),
-            lead: Lead::LeastEnergy,
+            lead: GuidanceMode::LeastEnergy,
             inertia,
             is_reactionless: is_reactionless(machine),
             patterns: Patterns::default(),
@@ -116,7 +116,7 @@ impl PoseSpace {
 
     /// Returns the same space with another use of redundant freedoms.
     #[must_use]
-    pub fn led(self, lead: Lead) -> Self {
+    pub fn led(self, lead: GuidanceMode) -> Self {
         Self { lead, ..self }
     }
 
@@ -181,7 +181,7 @@ impl PoseSpace {
     }
 
     /// Returns the n − 1 relative angles.
-    pub fn joints(&self) -> &[Joint] {
+    pub fn joints(&self) -> &[RelativeJoint] {
         &self.joints
     }
 
@@ -195,8 +195,8 @@ impl PoseSpace {
     ///
     /// # Errors
     /// If not: the reason.
-    pub fn follows_curves(&self) -> Result<(), OwnWay> {
-        if self.reaches_area() { Ok(()) } else { Err(OwnWay { drives: self.drives() }) }
+    pub fn follows_curves(&self) -> Result<(), NotFollowable> {
+        if self.reaches_area() { Ok(()) } else { Err(NotFollowable { drives: self.drives() }) }
     }
 
     /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
@@ -245,7 +245,7 @@ impl PoseSpace {
             return PerDrive::from(map.project_rates(qd).0);
         }
         PerDrive::from_fn(self.joints.len(), |i| {
-            let Joint { ends, sense, .. } = self.joints[i];
+            let RelativeJoint { ends, sense, .. } = self.joints[i];
             sense * (qd[ends[1]] - qd[ends[0]])
         })
     }
@@ -313,9 +313,9 @@ impl PoseSpace {
 
 /// Orders the machine's relative angles as a tree from drive 1. Drives that they leave unconnected get a free joint to
 /// drive 1.
-fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
+fn joints(machine: &Machine) -> Result<Vec<RelativeJoint>, NoPoseSpace> {
     let n = machine.drives();
-    let mut joints: Vec<Joint> = Vec::with_capacity(n - 1);
+    let mut joints: Vec<RelativeJoint> = Vec::with_capacity(n - 1);
     let mut known = [false; MAX_DRIVES];
     known[0] = true;
     let mut used = vec![false; machine.angles().len()];
@@ -325,16 +325,23 @@ fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
             let (ends, sense) = if known[a.from] { ([a.from, a.to], 1.0) } else { ([a.to, a.from], -1.0) };
             let limits = window(*a.limits.start(), *a.limits.end());
             let width = limits[1] - limits[0];
-            if width > WIDEST {
+            if width > MAX_LIMIT_RANGE {
                 return Err(NoPoseSpace::TooWide { angle: a.name.clone(), width });
             }
             known[ends[1]] = true;
             used[i] = true;
             let free = !(a.limits.start().is_finite() && a.limits.end().is_finite());
-            joints.push(Joint { ends, sense, offset: a.offset, limits, free, angle: Some(i) });
+            joints.push(RelativeJoint { ends, sense, offset: a.offset, limits, free, angle: Some(i) });
         } else if let Some(k) = (0..n).find(|k| !known[*k]) {
             known[k] = true;
-            joints.push(Joint { ends: [0, k], sense: 1.0, offset: 0.0, limits: [-PI, PI], free: true, angle: None });
+            joints.push(RelativeJoint {
+                ends: [0, k],
+                sense: 1.0,
+                offset: 0.0,
+                limits: [-PI, PI],
+                free: true,
+                angle: None,
+            });
         } else {
             break;
         }

@@ -7,7 +7,7 @@
 //! are rejected. If the point is out of reach, Newton's iteration minimises |p − Σ c_k e^{iq_k}|². Its second
 //! derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a nearest pose.
 
-use super::space::{Lead, PoseSpace};
+use super::space::{GuidanceMode, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
 
@@ -47,16 +47,16 @@ impl PoseSpace {
         if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }
     }
 
-    /// Does the same for a space [led](Self::led) to [keep](Lead::Keep) the angle of a drive, or to approach the
-    /// [middle](Lead::Middle) of all ranges; `None` for other spaces.
+    /// Does the same for a space [led](Self::led) to [keep](GuidanceMode::Keep) the angle of a drive, or to approach the
+    /// [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
     pub fn toward_led(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
-            Lead::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
-            Lead::Middle => {
+            GuidanceMode::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
+            GuidanceMode::Middle => {
                 let (a, off) = self.approach(p, b, from, None);
                 Some((self.centred(p, b, &a), off))
             }
-            Lead::LeastEnergy | Lead::Weighed(_) => None,
+            GuidanceMode::LeastEnergy | GuidanceMode::Weighed(_) => None,
         }
     }
 
@@ -210,7 +210,7 @@ impl PoseSpace {
         // A drive without inertia has no weight; a small one keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
         let light = match &self.lead {
-            Lead::Weighed(inverse) => {
+            GuidanceMode::Weighed(inverse) => {
                 SMatrix::<f64, MAX_DRIVES, MAX_DRIVES>::from_fn(|k, l| inverse[k][l]) * c.transpose()
             }
             _ => {

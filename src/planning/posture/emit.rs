@@ -1,9 +1,9 @@
 //! A path through the poses at all stations, with its derivatives, its errors and its objective values.
 
-use super::goal::{Weight, times};
-use super::refine::Bound;
-use super::rows::Held;
-use super::stations::{GAUSS, Leg, Stations, weights};
+use super::goal::{WeightMatrix, times};
+use super::refine::AngleBound;
+use super::rows::PoseConstraint;
+use super::stations::{GAUSS_NODES, PathLeg, Stations, weights};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::curves::{PathPoint, PathTable};
 
@@ -13,11 +13,11 @@ const LIMIT_SAMPLES: usize = 4;
 const PEAK_STEPS: usize = 4;
 
 /// Returns a table for each leg of a path; `None` if the rows depend on each other at a pose.
-pub(super) fn tables(held: &Held<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
+pub(super) fn tables(held: &PoseConstraint<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
     stations.legs.iter().map(|leg| table(held, leg, &q[leg.first..=leg.last()])).collect()
 }
 
-fn table(held: &Held<'_>, leg: &Leg, q: &[PerDrive]) -> Option<PathTable> {
+fn table(held: &PoseConstraint<'_>, leg: &PathLeg, q: &[PerDrive]) -> Option<PathTable> {
     let count = q.len();
     let stencil = count.min(5);
     let nodes = (0..count).map(|i| {
@@ -34,14 +34,14 @@ fn table(held: &Held<'_>, leg: &Leg, q: &[PerDrive]) -> Option<PathTable> {
 }
 
 /// Returns the distance of paths from their curves between stations, m, by leg and interval.
-pub(super) fn off_curve(held: &Held<'_>, stations: &Stations, tables: &[PathTable]) -> Vec<Vec<f64>> {
+pub(super) fn curve_error(held: &PoseConstraint<'_>, stations: &Stations, tables: &[PathTable]) -> Vec<Vec<f64>> {
     let off = |table: &PathTable, (s, p): &(f64, Vector)| (held.space.place(&table.at(*s).q) - p).norm();
     let legs = stations.legs.iter().zip(tables);
     legs.map(|(leg, table)| leg.between.iter().map(|between| off(table, between)).collect()).collect()
 }
 
 /// Returns the pose where a relative angle has an extremum in an interval of s, by Newton's method on its derivative.
-fn peak(table: &PathTable, bound: &Bound, [from, place, to]: [f64; 3]) -> PerDrive {
+fn peak(table: &PathTable, bound: &AngleBound, [from, place, to]: [f64; 3]) -> PerDrive {
     let mut s = place;
     for _ in 0..PEAK_STEPS {
         let point = table.at(s);
@@ -54,7 +54,7 @@ fn peak(table: &PathTable, bound: &Bound, [from, place, to]: [f64; 3]) -> PerDri
 }
 
 /// Returns for each limited angle the maximum distance beyond its limits, rad; negative inside.
-pub(super) fn past(bounds: &[Bound], stations: &Stations, tables: &[PathTable]) -> Vec<f64> {
+pub(super) fn limit_excess(bounds: &[AngleBound], stations: &Stations, tables: &[PathTable]) -> Vec<f64> {
     let mut largest = vec![f64::NEG_INFINITY; bounds.len()];
     for (leg, table) in stations.legs.iter().zip(tables) {
         let within = |w: &[f64], k: usize| w[0] + k as f64 / LIMIT_SAMPLES as f64 * (w[1] - w[0]);
@@ -77,7 +77,7 @@ pub(super) fn past(bounds: &[Bound], stations: &Stations, tables: &[PathTable]) 
 }
 
 /// Returns ∫ q′ᵀ S q′ ds along all legs, with s proportional to their length.
-pub(super) fn rates(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
+pub(super) fn rates(stations: &Stations, tables: &[PathTable], weight: &WeightMatrix) -> f64 {
     along(stations, tables, |point| point.first.dot(&times(weight, &point.first)), |share| 1.0 / share)
 }
 
@@ -92,10 +92,10 @@ fn along(
     what: impl Fn(&PathPoint) -> f64,
     counted: impl Fn(f64) -> f64,
 ) -> f64 {
-    let leg = |(leg, table): (&Leg, &PathTable)| {
+    let leg = |(leg, table): (&PathLeg, &PathTable)| {
         let space = |w: &[f64]| {
             let at = |[share, weight]: [f64; 2]| weight * (w[1] - w[0]) * what(&table.at(w[0] + share * (w[1] - w[0])));
-            GAUSS.into_iter().map(at).sum::<f64>()
+            GAUSS_NODES.into_iter().map(at).sum::<f64>()
         };
         counted(leg.share) * leg.s.windows(2).map(space).sum::<f64>()
     };
@@ -103,8 +103,8 @@ fn along(
 }
 
 /// Returns ∫ q̈ᵀ S q̈ dt along all legs for a duration of 1.
-pub(super) fn accelerations(stations: &Stations, tables: &[PathTable], weight: &Weight) -> f64 {
-    let leg = |(leg, table): (&Leg, &PathTable)| {
+pub(super) fn accelerations(stations: &Stations, tables: &[PathTable], weight: &WeightMatrix) -> f64 {
+    let leg = |(leg, table): (&PathLeg, &PathTable)| {
         let at = |(_, [s, rate, acceleration, time]): (usize, [f64; 4])| {
             let point = table.at(s);
             let turned = point.second.scaled(rate * rate).plus(acceleration, &point.first);

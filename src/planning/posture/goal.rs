@@ -1,4 +1,4 @@
-//! [`Goal`]: the objective of a path as a quadratic form of its poses at all stations.
+//! [`PostureCost`]: the objective of a path as a quadratic form of its poses at all stations.
 
 use super::stations::{Stations, weights};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
@@ -9,41 +9,41 @@ const BAND: usize = 4;
 const SMOOTHING_WAVELENGTH: f64 = 8.0;
 
 /// A matrix over the drives.
-pub(super) type Weight = [[f64; MAX_DRIVES]; MAX_DRIVES];
+pub(super) type WeightMatrix = [[f64; MAX_DRIVES]; MAX_DRIVES];
 
 /// A form ½ Σ κ_ij (q_i − c)ᵀ S (q_j − c) over stations i and j.
 #[derive(Clone, Debug)]
-pub(super) struct Term {
+pub(super) struct CostTerm {
     /// κ_ij of j = i … i + 3.
     pub kappa: Vec<[f64; BAND]>,
     /// S.
-    pub weight: Weight,
+    pub weight: WeightMatrix,
 }
 
 /// A sum of forms about one pose c.
 #[derive(Clone, Debug)]
-pub(super) struct Goal {
-    pub terms: Vec<Term>,
+pub(super) struct PostureCost {
+    pub terms: Vec<CostTerm>,
     pub centre: PerDrive,
 }
 
 /// Returns the identity matrix over n drives.
-pub(super) fn even(n: usize) -> Weight {
+pub(super) fn even(n: usize) -> WeightMatrix {
     std::array::from_fn(|k| std::array::from_fn(|l| f64::from(u8::from(k == l && k < n))))
 }
 
 /// Returns S x.
-pub(super) fn times(weight: &Weight, x: &PerDrive) -> PerDrive {
+pub(super) fn times(weight: &WeightMatrix, x: &PerDrive) -> PerDrive {
     PerDrive::from_fn(x.len(), |k| x.dot(&weight[k]))
 }
 
 /// Returns a weight matrix multiplied by a factor.
-pub(super) fn scaled(weight: &Weight, by: f64) -> Weight {
+pub(super) fn scaled(weight: &WeightMatrix, by: f64) -> WeightMatrix {
     weight.map(|row| row.map(|x| by * x))
 }
 
-impl Term {
-    fn zeros(stations: &Stations, weight: Weight) -> Self {
+impl CostTerm {
+    fn zeros(stations: &Stations, weight: WeightMatrix) -> Self {
         Self { kappa: vec![[0.0; BAND]; stations.places.len()], weight }
     }
 
@@ -55,7 +55,7 @@ impl Term {
     }
 
     /// Returns the form of ∫ |q′|²_S ds.
-    pub fn rates(stations: &Stations, weight: Weight) -> Self {
+    pub fn rates(stations: &Stations, weight: WeightMatrix) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
             for (i, w) in leg.s.windows(2).enumerate() {
@@ -66,7 +66,7 @@ impl Term {
     }
 
     /// Returns the form of ∫ ½ |q − c|²_S ds.
-    pub fn places(stations: &Stations, weight: Weight) -> Self {
+    pub fn places(stations: &Stations, weight: WeightMatrix) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
             for (i, w) in leg.s.windows(2).enumerate() {
@@ -78,7 +78,7 @@ impl Term {
     }
 
     /// Returns the form of ∫ |q̈|²_S dt for a duration of 1.
-    pub fn accelerations(stations: &Stations, weight: Weight) -> Self {
+    pub fn accelerations(stations: &Stations, weight: WeightMatrix) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in &stations.legs {
             let stencil = BAND.min(leg.s.len());
@@ -94,7 +94,7 @@ impl Term {
 
     /// Returns a form in third derivatives that suppresses short waves. With `factor` = 1, a wave of
     /// [`SMOOTHING_WAVELENGTH`] intervals weighs as much as its rates.
-    pub fn smooth(stations: &Stations, weight: Weight, factor: f64) -> Self {
+    pub fn smooth(stations: &Stations, weight: WeightMatrix, factor: f64) -> Self {
         let mut term = Self::zeros(stations, weight);
         for leg in stations.legs.iter().filter(|leg| leg.s.len() >= BAND) {
             for i in 0..=leg.s.len() - BAND {
@@ -109,7 +109,7 @@ impl Term {
     }
 }
 
-impl Goal {
+impl PostureCost {
     /// Returns the gradient at each station.
     pub fn gradient(&self, q: &[PerDrive]) -> Vec<PerDrive> {
         let n = self.centre.len();
@@ -140,7 +140,7 @@ impl Goal {
     /// Returns the stiffness of a single pose: the trace of S times the median of κ_ii, per drive, summed over the
     /// terms.
     pub fn stiffness(&self) -> f64 {
-        let of = |term: &Term| {
+        let of = |term: &CostTerm| {
             let trace: f64 = (0..MAX_DRIVES).map(|k| term.weight[k][k]).sum();
             let mut own: Vec<f64> = term.kappa.iter().map(|row| row[0]).collect();
             own.sort_by(f64::total_cmp);

@@ -1,8 +1,8 @@
-//! [`Postures`]: weights of motor torques and of ranges.
+//! [`PostureWeights`]: weights of motor torques and of ranges.
 
 use nalgebra::SMatrix;
 
-use super::goal::Weight;
+use super::goal::WeightMatrix;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 use crate::planning::pose_space::PoseSpace;
@@ -12,15 +12,15 @@ const MIN_DRIVE_WEIGHT: f64 = 1e-9;
 
 /// Weights of a machine's drives.
 #[derive(Clone, Debug)]
-pub struct Postures<'a> {
+pub struct PostureWeights<'a> {
     space: &'a PoseSpace,
     /// TᵀT divided by its trace.
-    pub(super) torque: Weight,
+    pub(super) torque: WeightMatrix,
     /// ∂x_i/∂q_k.
     shares: Vec<PerDrive>,
 }
 
-impl<'a> Postures<'a> {
+impl<'a> PostureWeights<'a> {
     /// Returns the weights of a machine with its pose space.
     pub fn of(machine: &Machine, space: &'a PoseSpace) -> Self {
         let n = machine.drives();
@@ -58,7 +58,7 @@ impl<'a> Postures<'a> {
     }
 
     /// Returns the Hessian ∂²/∂q_k∂q_l of ½ Σ x².
-    pub(super) fn ranges(&self) -> Weight {
+    pub(super) fn ranges(&self) -> WeightMatrix {
         std::array::from_fn(|k| {
             std::array::from_fn(|l| {
                 let inside = k < self.space.drives() && l < self.space.drives();

@@ -5,7 +5,7 @@
 //! free directions until it covers its component. Then each pose is continued to the next station, within the limits.
 //! If no pose reaches a station in this way, no path is assumed to reach it.
 
-use super::rows::{left_free, lifted};
+use super::rows::{lifted, null_directions};
 use super::stations::Stations;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 use crate::planning::pose_space::PoseSpace;
@@ -154,7 +154,7 @@ fn free_directions(space: &PoseSpace, q: &PerDrive) -> Vec<PerDrive> {
             across.push(rest.scaled(1.0 / length));
         }
     }
-    left_free(&across, n)
+    null_directions(&across, n)
 }
 
 /// Returns whether the squared distance of relative angles is at most `square`, rad².

@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use super::{Posture, Postures};
+use super::{Posture, PostureWeights};
 use crate::mechanics::machine::Machine;
-use crate::planning::pose_space::{Lead, PoseSpace};
-use crate::query::{Quick, Same};
+use crate::planning::pose_space::{GuidanceMode, PoseSpace};
+use crate::query::{ByIdentity, QuickQuery};
 
 /// Query for a pose space of a machine with the rule of a posture for dragging. Its paths avoid change points or cross
 /// them.
-pub struct Led;
+pub struct GuidedSpace;
 
-impl Quick for Led {
-    type Input = (Same<PoseSpace>, Machine, Posture, bool);
+impl QuickQuery for GuidedSpace {
+    type Input = (ByIdentity<PoseSpace>, Machine, Posture, bool);
     type Answer = Arc<PoseSpace>;
 
-    fn answer((Same(space), machine, posture, keep_off): &Self::Input) -> Self::Answer {
+    fn answer((ByIdentity(space), machine, posture, keep_off): &Self::Input) -> Self::Answer {
         let space = led(PoseSpace::clone(space), machine, *posture);
         Arc::new(space.keeping_off_change_points(*keep_off))
     }
@@ -27,12 +27,12 @@ fn led(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
         return space;
     }
     let lead = match posture {
-        Posture::LeastRates => Lead::LeastEnergy,
-        Posture::Orientation => Lead::Keep(machine.resolved_links()[machine.end_link()].drive),
-        Posture::LeastTorque => Postures::of(machine, &space)
+        Posture::LeastRates => GuidanceMode::LeastEnergy,
+        Posture::Orientation => GuidanceMode::Keep(machine.resolved_links()[machine.end_link()].drive),
+        Posture::LeastTorque => PostureWeights::of(machine, &space)
             .least_torque()
-            .map_or(Lead::LeastEnergy, |inverse| Lead::Weighed(Box::new(inverse))),
-        Posture::MidRange => Lead::Middle,
+            .map_or(GuidanceMode::LeastEnergy, |inverse| GuidanceMode::Weighed(Box::new(inverse))),
+        Posture::MidRange => GuidanceMode::Middle,
     };
     space.led(lead)
 }

@@ -26,9 +26,9 @@ mod rows;
 mod search;
 mod stations;
 
-pub use hand::Postures;
-pub use led::Led;
-pub use search::{Asked, Found, NoWay};
+pub use hand::PostureWeights;
+pub use led::GuidedSpace;
+pub use search::{NoPosturePath, PosturePaths, PostureRequest};
 
 use crate::settings::word::words;
 

@@ -7,8 +7,8 @@
 //! back onto (p, b).
 
 use super::envelope::Envelope;
-use super::goal::{Goal, times};
-use super::rows::{Held, Rows, arms};
+use super::goal::{PostureCost, times};
+use super::rows::{ConstraintJacobian, PoseConstraint, arms};
 use super::stations::Stations;
 use crate::mechanics::planar::{PerDrive, dot};
 
@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A relative angle and its limits.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bound {
+pub(super) struct AngleBound {
     /// ∂a/∂q.
     pub row: PerDrive,
     /// a at q = 0, rad.
@@ -38,7 +38,7 @@ pub(super) struct Bound {
     pub limits: [f64; 2],
 }
 
-impl Bound {
+impl AngleBound {
     /// Returns the angle, rad.
     pub fn of(&self, q: &PerDrive) -> f64 {
         self.row.dot(q) + self.offset
@@ -53,10 +53,10 @@ impl Bound {
 
 /// Problem data of a refinement.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Refining<'a> {
-    pub held: &'a Held<'a>,
+pub(super) struct RefinementProblem<'a> {
+    pub held: &'a PoseConstraint<'a>,
     pub stations: &'a Stations,
-    pub bounds: &'a [Bound],
+    pub bounds: &'a [AngleBound],
     /// Whether the last pose must equal the first one.
     pub closed: bool,
     /// Step tolerance: the iteration ends with a step below this, rad.
@@ -65,12 +65,12 @@ pub(super) struct Refining<'a> {
 
 /// Constraint rows at a pose, and an orthonormal basis of their null space.
 struct Frame {
-    rows: Rows,
+    rows: ConstraintJacobian,
     free: Vec<PerDrive>,
 }
 
 impl Frame {
-    fn of(rows: Rows) -> Self {
+    fn of(rows: ConstraintJacobian) -> Self {
         Self { free: rows.free(), rows }
     }
 }
@@ -86,9 +86,9 @@ struct Forces {
     penalty: f64,
 }
 
-impl Refining<'_> {
+impl RefinementProblem<'_> {
     /// Finds a local minimum of the objective, starting from a path; `None` if a Newton step cannot be computed.
-    pub fn refined(&self, goal: &Goal, start: &[PerDrive]) -> Option<Vec<PerDrive>> {
+    pub fn refined(&self, goal: &PostureCost, start: &[PerDrive]) -> Option<Vec<PerDrive>> {
         let mut q = start.to_vec();
         let d = self.held.freedoms();
         if d == 0 || q.len() < 3 {
@@ -181,7 +181,7 @@ impl Refining<'_> {
     /// Makes a Newton step and returns the new poses and the length of the step, rad.
     fn step(
         &self,
-        goal: &Goal,
+        goal: &PostureCost,
         q: &[PerDrive],
         forces: &Forces,
         matrix: &mut Envelope,
@@ -245,7 +245,7 @@ impl Refining<'_> {
     /// Assembles the reduced Hessian. Without `bent`, negative curvature of the constraint p is set to zero.
     fn assemble(
         &self,
-        goal: &Goal,
+        goal: &PostureCost,
         q: &[PerDrive],
         (frames, gradient, active): (&[Frame], &[PerDrive], &[ActiveLimit]),
         bent: bool,

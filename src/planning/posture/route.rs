@@ -19,7 +19,7 @@ const STRETCH_FACTOR: f64 = 4.0;
 const STRETCH_SLACK_RAD: f64 = 0.02;
 
 /// Cost of a step of a route: index of the layer that it leaves, start pose and end pose.
-pub(super) type Cost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
+pub(super) type StepCost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
 
 /// Steps between layers, by layer and pose: index of the next pose, and the cost.
 type Steps = Vec<Vec<Vec<(usize, f64)>>>;
@@ -27,7 +27,7 @@ type Steps = Vec<Vec<Vec<(usize, f64)>>>;
 impl Layers<'_> {
     /// Returns the poses at all stations along the cheapest route; if `closed`, along the cheapest that ends where it
     /// began.
-    pub fn route(&self, stations: &Stations, cost: Cost<'_>, closed: bool) -> Option<Vec<PerDrive>> {
+    pub fn route(&self, stations: &Stations, cost: StepCost<'_>, closed: bool) -> Option<Vec<PerDrive>> {
         let mut steps = self.steps(cost);
         if closed {
             self.closing(&mut steps, cost);
@@ -47,17 +47,17 @@ impl Layers<'_> {
     }
 
     /// Replaces the steps to the last layer by steps to the first, for closed paths.
-    fn closing(&self, steps: &mut Steps, cost: Cost<'_>) {
+    fn closing(&self, steps: &mut Steps, cost: StepCost<'_>) {
         let last = self.all.len() - 1;
         steps[last - 1] = self.leaving(last - 1, &self.all[0], cost);
     }
 
-    fn steps(&self, cost: Cost<'_>) -> Steps {
+    fn steps(&self, cost: StepCost<'_>) -> Steps {
         (0..self.all.len() - 1).map(|i| self.leaving(i, &self.all[i + 1], cost)).collect()
     }
 
     /// Returns the steps from layer i to the layer `onto`.
-    fn leaving(&self, i: usize, onto: &Layer, cost: Cost<'_>) -> Vec<Vec<(usize, f64)>> {
+    fn leaving(&self, i: usize, onto: &Layer, cost: StepCost<'_>) -> Vec<Vec<(usize, f64)>> {
         let (layer, square) = (&self.all[i], (NEXT_POSE_FACTOR * self.apart).powi(2));
         let each = |(k, there): (usize, &Option<PerDrive>)| {
             let Some(there) = there else { return Vec::new() };

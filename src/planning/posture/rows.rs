@@ -1,4 +1,4 @@
-//! [`Held`]: constraints on every pose of a path, and their null space.
+//! [`PoseConstraint`]: constraints on every pose of a path, and their null space.
 
 use super::super::pose_space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
@@ -16,7 +16,7 @@ const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Constraints on a pose: the position of the end effector, b, and optionally the angle of one drive.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held<'a> {
+pub(super) struct PoseConstraint<'a> {
     pub space: &'a PoseSpace,
     /// Pose constant, rad.
     pub b: f64,
@@ -26,13 +26,13 @@ pub(super) struct Held<'a> {
 
 /// The rows ∂(p, b, hand)/∂q at a pose, scaled to the length of the arm, factorised as L U with orthonormal U.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rows {
+pub(super) struct ConstraintJacobian {
     count: usize,
     across: [PerDrive; ROWS],
     lower: [[f64; ROWS]; ROWS],
 }
 
-impl Held<'_> {
+impl PoseConstraint<'_> {
     /// Returns the number of free directions.
     pub fn freedoms(&self) -> usize {
         self.space.drives() - 3 - usize::from(self.hand.is_some())
@@ -51,7 +51,7 @@ impl Held<'_> {
     }
 
     /// Returns the rows at a pose; `None` if they are linearly dependent.
-    pub fn rows(&self, q: &PerDrive) -> Option<Rows> {
+    pub fn rows(&self, q: &PerDrive) -> Option<ConstraintJacobian> {
         let n = self.space.drives();
         let arms = arms(self.space, q);
         let none = PerDrive::zeros(n);
@@ -63,7 +63,7 @@ impl Held<'_> {
             all[3][drive] = self.space.farthest();
         }
         let count = ROWS - usize::from(self.hand.is_none());
-        let mut rows = Rows { count, across: [none; ROWS], lower: [[0.0; ROWS]; ROWS] };
+        let mut rows = ConstraintJacobian { count, across: [none; ROWS], lower: [[0.0; ROWS]; ROWS] };
         for (i, row) in all[..count].iter().enumerate() {
             let mut rest = *row;
             for _ in 0..2 {
@@ -127,7 +127,7 @@ impl Held<'_> {
     }
 }
 
-impl Rows {
+impl ConstraintJacobian {
     /// Returns the minimum-norm change of q for a wanted change of the rows.
     pub fn least(&self, wanted: &[f64; ROWS]) -> PerDrive {
         let mut delta = PerDrive::zeros(self.across[0].len());
@@ -152,12 +152,12 @@ impl Rows {
 
     /// Returns an orthonormal basis of the null space: n − 3 vectors, or n − 4 with a drive of constant angle.
     pub fn free(&self) -> Vec<PerDrive> {
-        left_free(&self.across[..self.count], self.across[0].len())
+        null_directions(&self.across[..self.count], self.across[0].len())
     }
 }
 
 /// Returns orthonormal vectors that complete others to a basis of n dimensions.
-pub(super) fn left_free(across: &[PerDrive], n: usize) -> Vec<PerDrive> {
+pub(super) fn null_directions(across: &[PerDrive], n: usize) -> Vec<PerDrive> {
     let mut all: Vec<PerDrive> = Vec::with_capacity(n);
     all.extend_from_slice(across);
     // Squared length of each axis outside the span so far.

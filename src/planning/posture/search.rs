@@ -1,14 +1,14 @@
-//! [`Asked`]: the search for the best path of a posture.
+//! [`PostureRequest`]: the search for the best path of a posture.
 
 use thiserror::Error;
 
 use super::Posture;
 use super::emit;
-use super::goal::{Goal, Term, Weight, even, scaled};
-use super::hand::Postures;
+use super::goal::{CostTerm, PostureCost, WeightMatrix, even, scaled};
+use super::hand::PostureWeights;
 use super::layers::{Detail, Layers};
-use super::refine::{Bound, Refining};
-use super::rows::{Held, lifted};
+use super::refine::{AngleBound, RefinementProblem};
+use super::rows::{PoseConstraint, lifted};
 use super::stations::Stations;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -62,7 +62,7 @@ const MAX_ORIENTATION_STARTS: usize = 80;
 
 /// Task of the search: the end effector follows curves from rest to rest, with b constant.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
+pub struct PostureRequest<'a> {
     /// The machine.
     pub machine: &'a Machine,
     /// Its pose space.
@@ -82,14 +82,14 @@ pub struct Asked<'a> {
 
 /// Result of the search.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct PosturePaths {
     /// Path of the drives for each curve.
     pub tables: Vec<PathTable>,
 }
 
 /// Why the search found no path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum NoWay {
+pub enum NoPosturePath {
     /// The poses that can be reached from the start end before the path does.
     #[error("no way of the joints within their limits goes farther than {:.1} % along", 100.0 * .share)]
     Ends {
@@ -104,7 +104,7 @@ pub enum NoWay {
     Abrupt,
 }
 
-impl NoWay {
+impl NoPosturePath {
     /// Returns a number that is greater the nearer the search came to a path.
     fn rank(&self) -> f64 {
         match self {
@@ -142,21 +142,21 @@ const GOALS: [Posture; 3] = [Posture::LeastRates, Posture::LeastTorque, Posture:
 
 /// Data that all paths of a search share.
 struct Search<'a> {
-    asked: &'a Asked<'a>,
+    asked: &'a PostureRequest<'a>,
     stations: Stations,
-    weights: Postures<'a>,
-    bounds: Vec<Bound>,
-    goals: [Vec<Goal>; GOALS.len()],
+    weights: PostureWeights<'a>,
+    bounds: Vec<AngleBound>,
+    goals: [Vec<PostureCost>; GOALS.len()],
     /// Step tolerance of the refinement, rad.
     done: f64,
 }
 
-impl Asked<'_> {
+impl PostureRequest<'_> {
     /// Finds the path with the least objective of a posture.
     ///
     /// # Errors
     /// Why no path was found, and up to which fraction of the path poses reach.
-    pub fn path(&self, posture: Posture) -> Result<Found, NoWay> {
+    pub fn path(&self, posture: Posture) -> Result<PosturePaths, NoPosturePath> {
         self.searched(&RESOLUTIONS, posture, |ways, turned| match posture {
             Posture::Orientation => Some(self.finest(turned, posture)?.1),
             _ => self.least_of_all(ways, turned, posture),
@@ -167,7 +167,7 @@ impl Asked<'_> {
     ///
     /// # Errors
     /// As [`path`](Self::path).
-    pub fn quick_path(&self, posture: Posture) -> Result<Found, NoWay> {
+    pub fn quick_path(&self, posture: Posture) -> Result<PosturePaths, NoPosturePath> {
         self.searched(&RESOLUTIONS[..1], posture, |ways, turned| {
             Some(self.finest(if posture == Posture::Orientation { turned } else { ways }, posture)?.1)
         })
@@ -180,21 +180,21 @@ impl Asked<'_> {
         details: &[(usize, f64, usize)],
         posture: Posture,
         best: impl Fn(&[Way], &[Way]) -> Option<Way>,
-    ) -> Result<Found, NoWay> {
+    ) -> Result<PosturePaths, NoPosturePath> {
         let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH_INTERVALS), ROUGH_STEP_TOLERANCE_RAD);
         let starts = self.space.sheets(rough.stations.places[0], self.b);
-        let mut refused = NoWay::Ends { share: 0.0 };
+        let mut refused = NoPosturePath::Ends { share: 0.0 };
         for detail in details {
             let why = match rough.layers(&starts, *detail) {
-                Err(at) => NoWay::Ends { share: rough.stations.done(at) },
+                Err(at) => NoPosturePath::Ends { share: rough.stations.done(at) },
                 Ok(layers) => {
                     let is_held = posture == Posture::Orientation;
                     let turned = rough.oriented(&layers, self.hand.1.filter(|_| is_held));
                     let ways = if is_held { Vec::new() } else { rough.ways(&layers, turned.first()) };
                     if let Some(way) = best(&ways, &turned) {
-                        return Ok(Found { tables: way.tables });
+                        return Ok(PosturePaths { tables: way.tables });
                     }
-                    if is_held && turned.is_empty() { NoWay::Turns } else { NoWay::Abrupt }
+                    if is_held && turned.is_empty() { NoPosturePath::Turns } else { NoPosturePath::Abrupt }
                 }
             };
             refused = if why.rank() > refused.rank() { why } else { refused };
@@ -244,42 +244,42 @@ fn goal_of(posture: Posture) -> usize {
 }
 
 impl<'a> Search<'a> {
-    fn on(asked: &'a Asked<'a>, stations: Stations, done: f64) -> Self {
+    fn on(asked: &'a PostureRequest<'a>, stations: Stations, done: f64) -> Self {
         let (space, n) = (asked.space, asked.space.drives());
-        let weights = Postures::of(asked.machine, space);
+        let weights = PostureWeights::of(asked.machine, space);
         let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
         let none = PerDrive::zeros(n);
         let bounds = space.joints().iter().filter(|joint| joint.bounds()[0].is_finite()).map(|joint| {
             let offset = joint.of(&none);
-            Bound { row: PerDrive::from_fn(n, |k| joint.of(&one(k)) - offset), offset, limits: joint.limits() }
+            AngleBound { row: PerDrive::from_fn(n, |k| joint.of(&one(k)) - offset), offset, limits: joint.limits() }
         });
         let bounds = bounds.collect();
         let centre = lifted(space, &space.middle(), asked.b);
-        let goal = |terms: Vec<Term>| Goal { terms, centre };
+        let goal = |terms: Vec<CostTerm>| PostureCost { terms, centre };
         let all = even(n);
-        let rates = goal(vec![Term::rates(&stations, all), Term::smooth(&stations, all, 1.0)]);
+        let rates = goal(vec![CostTerm::rates(&stations, all), CostTerm::smooth(&stations, all, 1.0)]);
         let torque = weights.torque;
-        let slow: Weight =
+        let slow: WeightMatrix =
             std::array::from_fn(|k| std::array::from_fn(|l| torque[k][l] + LIGHT_DRIVE_WEIGHT * all[k][l]));
         let torques = goal(vec![
-            Term::accelerations(&stations, torque),
-            Term::rates(&stations, scaled(&all, RATE_WEIGHT_IN_TORQUE)),
-            Term::smooth(&stations, slow, SMOOTHNESS_WEIGHT),
+            CostTerm::accelerations(&stations, torque),
+            CostTerm::rates(&stations, scaled(&all, RATE_WEIGHT_IN_TORQUE)),
+            CostTerm::smooth(&stations, slow, SMOOTHNESS_WEIGHT),
         ]);
         let middle = RATE_WEIGHTS_IN_MID_RANGE.map(|beside| {
             let own = scaled(&all, beside);
             goal(vec![
-                Term::places(&stations, weights.ranges()),
-                Term::rates(&stations, own),
-                Term::smooth(&stations, own, 1.0),
+                CostTerm::places(&stations, weights.ranges()),
+                CostTerm::rates(&stations, own),
+                CostTerm::smooth(&stations, own, 1.0),
             ])
         });
         let goals = [vec![rates], vec![torques], middle.to_vec()];
         Self { asked, stations, weights, bounds, goals, done }
     }
 
-    fn held(&self) -> Held<'a> {
-        Held { space: self.asked.space, b: self.asked.b, hand: None }
+    fn held(&self) -> PoseConstraint<'a> {
+        PoseConstraint { space: self.asked.space, b: self.asked.b, hand: None }
     }
 
     fn layers(
@@ -355,7 +355,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             before.push(way);
-            let held = Held { hand: way.hand, ..self.held() };
+            let held = PoseConstraint { hand: way.hand, ..self.held() };
             let Some(start) = self.placed(way, &held) else { continue };
             match self.refined(&if turned { held } else { self.held() }, goal, &start, way.closed) {
                 Ok(made) => {
@@ -376,7 +376,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the poses of a rough path at these stations.
-    fn placed(&self, way: &Way, held: &Held<'_>) -> Option<Vec<PerDrive>> {
+    fn placed(&self, way: &Way, held: &PoseConstraint<'_>) -> Option<Vec<PerDrive>> {
         let mut q: Vec<PerDrive> = Vec::with_capacity(self.stations.places.len());
         for (leg, table) in self.stations.legs.iter().zip(&way.tables) {
             for (s, point) in leg.s.iter().zip(&leg.points).skip(usize::from(!q.is_empty())) {
@@ -418,7 +418,7 @@ impl<'a> Search<'a> {
     }
 
     /// Refines a path by an objective, through its stages of weights.
-    fn refined(&self, held: &Held<'_>, goal: usize, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
+    fn refined(&self, held: &PoseConstraint<'_>, goal: usize, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
         let mut best: Result<Way, Missed> = Err(Missed::Elsewhere);
         let mut q = start.to_vec();
         for goal in &self.goals[goal] {
@@ -435,16 +435,23 @@ impl<'a> Search<'a> {
     }
 
     /// Refines a path by one quadratic objective. Final paths also keep the limits between stations, by margins.
-    fn within_limits(&self, held: &Held<'_>, goal: &Goal, start: &[PerDrive], closed: bool) -> Result<Way, Missed> {
+    fn within_limits(
+        &self,
+        held: &PoseConstraint<'_>,
+        goal: &PostureCost,
+        start: &[PerDrive],
+        closed: bool,
+    ) -> Result<Way, Missed> {
         let mut bounds = self.bounds.clone();
         let mut q = start.to_vec();
         let rough = self.done >= ROUGH_STEP_TOLERANCE_RAD;
         let curve_tolerance = held.space.farthest() * if rough { ROUGH_CURVE_TOLERANCE } else { CURVE_TOLERANCE };
         for i in 0..MAX_MARGINS {
-            let refining = Refining { held, stations: &self.stations, bounds: &bounds, closed, done: self.done };
+            let refining =
+                RefinementProblem { held, stations: &self.stations, bounds: &bounds, closed, done: self.done };
             q = refining.refined(goal, &q).ok_or(Missed::Elsewhere)?;
             let tables = emit::tables(held, &self.stations, &q).ok_or(Missed::Elsewhere)?;
-            let off = emit::off_curve(held, &self.stations, &tables);
+            let off = emit::curve_error(held, &self.stations, &tables);
             if off.iter().flatten().any(|off| off.is_nan()) {
                 return Err(Missed::Elsewhere);
             }
@@ -452,7 +459,7 @@ impl<'a> Search<'a> {
                 let marks = off.iter().map(|leg| leg.iter().map(|off| *off > curve_tolerance).collect());
                 return Err(Missed::Between(marks.collect()));
             }
-            let past = emit::past(&self.bounds, &self.stations, &tables);
+            let past = emit::limit_excess(&self.bounds, &self.stations, &tables);
             let worst = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             if rough || worst <= LIMIT_TOLERANCE_RAD || (i + 1 == MAX_MARGINS && worst <= FINAL_LIMIT_TOLERANCE_RAD) {
                 let values = self.values(&tables);
@@ -495,7 +502,7 @@ impl<'a> Search<'a> {
                 all.iter().step_by(all.len().div_ceil(MAX_ORIENTATION_STARTS)).copied().collect()
             }
         };
-        let held = |q: &PerDrive| Held { hand: Some((drive, q[drive])), ..self.held() };
+        let held = |q: &PerDrive| PoseConstraint { hand: Some((drive, q[drive])), ..self.held() };
         let mut found: Vec<(f64, Vec<PerDrive>)> = Vec::new();
         for q in starts {
             let Some(path) = followed(&held(&q), &q, places) else { continue };
@@ -523,7 +530,7 @@ impl<'a> Search<'a> {
 }
 
 /// Continues a pose along places; `None` if it jumps.
-fn followed(held: &Held<'_>, start: &PerDrive, places: &[Vector]) -> Option<Vec<PerDrive>> {
+fn followed(held: &PoseConstraint<'_>, start: &PerDrive, places: &[Vector]) -> Option<Vec<PerDrive>> {
     let mut path: Vec<PerDrive> = vec![*start];
     for p in &places[1..] {
         let last = path[path.len() - 1];

@@ -11,12 +11,12 @@ const MIN_PIECE_SHARE: f64 = 1.0 / 16.0;
 /// A curve with more joints than this needs only one interval between two joints.
 const MANY_JOINTS: usize = 100;
 /// Points and weights of Gaussian quadrature on an interval of length 1.
-pub(super) const GAUSS: [[f64; 2]; 3] =
+pub(super) const GAUSS_NODES: [[f64; 2]; 3] =
     [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
 /// A curve from rest to rest.
 #[derive(Clone, Debug)]
-pub(super) struct Leg {
+pub(super) struct PathLeg {
     /// Index of its first station among all; its last one is the first of the next leg.
     pub first: usize,
     /// s of each station on this curve alone, 0 to 1.
@@ -31,7 +31,7 @@ pub(super) struct Leg {
     pub profile: Profile,
 }
 
-impl Leg {
+impl PathLeg {
     /// Returns the index of its last station among all.
     pub fn last(&self) -> usize {
         self.first + self.s.len() - 1
@@ -44,7 +44,7 @@ impl Leg {
         let each = |i: usize| {
             let from = if i == 0 { 0.0 } else { ends[i] };
             let to = if i == last { self.profile.duration() } else { ends[i + 1] };
-            GAUSS.map(|[share, weight]| {
+            GAUSS_NODES.map(|[share, weight]| {
                 let now = self.profile.at(from + share * (to - from));
                 (i, [now.s, now.rate, now.acceleration, weight * (to - from)])
             })
@@ -56,7 +56,7 @@ impl Leg {
 /// All stations of curves, one after another.
 #[derive(Clone, Debug)]
 pub(super) struct Stations {
-    pub legs: Vec<Leg>,
+    pub legs: Vec<PathLeg>,
     /// Position of the end effector at each station, m.
     pub places: Vec<Vector>,
 }
@@ -85,7 +85,7 @@ impl Stations {
     /// Returns stations with the marked intervals divided in four and their neighbours in two. Marks are by leg and
     /// interval.
     pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
-        let grid = |(leg, marked): (&Leg, &Vec<bool>)| {
+        let grid = |(leg, marked): (&PathLeg, &Vec<bool>)| {
             let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);
             let parts = |i: usize| match () {
                 () if is_marked(i) => 4,
@@ -103,7 +103,7 @@ impl Stations {
     }
 
     fn at(curves: &[Curve], law: Option<TimeLaw>, grids: Vec<Vec<f64>>) -> Self {
-        let mut legs: Vec<Leg> = Vec::with_capacity(curves.len());
+        let mut legs: Vec<PathLeg> = Vec::with_capacity(curves.len());
         let mut places: Vec<Vector> = Vec::new();
         for ((curve, share), s) in curves.iter().zip(shares(curves)).zip(grids) {
             let points: Vec<CurvePoint> = s.iter().map(|s| curve.at(*s)).collect();
@@ -114,14 +114,14 @@ impl Stations {
                 Some(law) => Profile::of(if law.is_fastest() { TimeLaw::Quintic } else { law }, share),
                 None => Profile::running(share),
             };
-            legs.push(Leg { first, s, points, between, share, profile });
+            legs.push(PathLeg { first, s, points, between, share, profile });
         }
         Self { legs, places }
     }
 
     /// Returns the fraction of the whole length up to a station.
     pub fn done(&self, station: usize) -> f64 {
-        let part = |leg: &Leg| match station {
+        let part = |leg: &PathLeg| match station {
             i if i >= leg.last() => leg.share,
             i if i > leg.first => leg.share * leg.s[i - leg.first],
             _ => 0.0,

@@ -1,6 +1,6 @@
 //! [`BSet`]: pose constants as intervals within a period.
 
-use super::plane::SLACK;
+use super::plane::LIMIT_SLACK;
 
 /// Intervals separated by less than this are merged, rad.
 const MERGE_TOLERANCE_RAD: f64 = 1e-11;
@@ -73,11 +73,11 @@ impl BSet {
         })
     }
 
-    /// Whether the set contains b, modulo the period and within [`SLACK`].
+    /// Whether the set contains b, modulo the period and within [`LIMIT_SLACK`].
     pub fn contains(&self, b: f64) -> bool {
         self.intervals.iter().any(|[low, high]| {
             let past = wrap(b - low, self.period);
-            past <= high - low + SLACK || past >= self.period - SLACK
+            past <= high - low + LIMIT_SLACK || past >= self.period - LIMIT_SLACK
         })
     }
 

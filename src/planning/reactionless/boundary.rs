@@ -27,9 +27,9 @@ mod region;
 mod sides;
 mod span;
 
-use arrangement::{Arrangement, Portion, Strand};
+use arrangement::{Arrangement, SpanPart, Strand};
 use cycle::Cycle;
-pub use line::{BoundaryLine, BoundaryLoop, Vertex};
+pub use line::{BoundaryLine, BoundaryLoop, BoundaryVertex};
 use region::Region;
 pub use sides::ChangeCurve;
 pub use span::BoundaryCurve;
@@ -48,7 +48,7 @@ pub struct Boundary {
     cycle: Cycle,
     strands: Vec<Strand>,
     loops: Vec<BoundaryLoop>,
-    cusps: Vec<Vertex>,
+    cusps: Vec<BoundaryVertex>,
     area: f64,
     sheet_area: f64,
     interior_singularity: bool,
@@ -59,7 +59,7 @@ pub struct Boundary {
 /// Bounds of a workspace, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
-pub struct Extent {
+pub struct BoundingBox {
     pub x_min: f64,
     pub x_max: f64,
     pub y_min: f64,
@@ -113,7 +113,7 @@ impl Boundary {
             return Self::curve(on, region);
         }
         let area = loops.iter().map(BoundaryLoop::area).sum();
-        let cusp = |a: [f64; 2]| Vertex { a, at: on.map.forward_unturned(a), curve: BoundaryCurve::Fold };
+        let cusp = |a: [f64; 2]| BoundaryVertex { a, at: on.map.forward_unturned(a), curve: BoundaryCurve::Fold };
         let cusps = folds.cusps.into_iter().map(cusp).collect();
         Self { on, cycle, strands, loops, cusps, area, sheet_area, interior_singularity, flat: false }
     }
@@ -121,7 +121,7 @@ impl Boundary {
     /// Returns a workspace without area: its outline, traversed back and forth.
     fn curve(on: Surface, region: &Region) -> Self {
         let spans = region.outline(&on);
-        let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
+        let chain: Vec<SpanPart> = (0..spans.len()).map(|span| SpanPart { span, from: 0.0, to: 1.0 }).collect();
         let outline = BoundaryLoop::of(&on, &spans, &chain).without_area();
         Self {
             loops: vec![outline],
@@ -159,7 +159,7 @@ impl Boundary {
     /// Returns the vertices of all loops, turned by b, m.
     pub fn turned(&self, b: f64) -> Vec<Vec<[f64; 2]>> {
         let turn = unit(self.on.map.turn(b));
-        let point = |v: &Vertex| {
+        let point = |v: &BoundaryVertex| {
             let p = v.at * turn;
             [p.re, p.im]
         };
@@ -167,11 +167,11 @@ impl Boundary {
     }
 
     /// Returns the bounds in x and y of the workspace turned by b, m.
-    pub fn extent(&self, b: f64) -> Extent {
+    pub fn extent(&self, b: f64) -> BoundingBox {
         let turn = unit(self.on.map.turn(b));
         // A direction w of the turned workspace is w turned back in the unturned one.
         let most = |x: f64, y: f64| self.support(Vector::new(x, y) * turn.conj());
-        Extent { x_min: -most(-1.0, 0.0), x_max: most(1.0, 0.0), y_min: -most(0.0, -1.0), y_max: most(0.0, 1.0) }
+        BoundingBox { x_min: -most(-1.0, 0.0), x_max: most(1.0, 0.0), y_min: -most(0.0, -1.0), y_max: most(0.0, 1.0) }
     }
 
     /// Support function: returns the largest component along a unit vector, m.

@@ -9,21 +9,21 @@ use std::f64::consts::PI;
 use super::plane::{AngleLimit, PlaneMap};
 
 /// The pairs (k, l) of drives, counted from 0, in the order of sides and sines.
-pub const PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
+pub const DRIVE_PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 
 /// Poses this near to a change point count as on it, rad.
-pub(super) const TOUCH: f64 = 1e-9;
+pub(super) const CHANGE_POINT_MARGIN: f64 = 1e-9;
 
 /// The difference q_l − q_k = n · a + δ of a pair of drives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Difference {
+pub(super) struct AngleDifference {
     pub n: [f64; 2],
     delta: f64,
 }
 
-impl Difference {
+impl AngleDifference {
     pub fn of(map: &PlaneMap, pair: usize) -> Self {
-        let [k, l] = PAIRS[pair];
+        let [k, l] = DRIVE_PAIRS[pair];
         let (u, v) = (map.u(), map.v());
         Self { n: [0, 1].map(|j| (u[l][j] - u[k][j]).round()), delta: v[l] - v[k] }
     }
@@ -69,11 +69,11 @@ impl Difference {
 }
 
 impl PlaneMap {
-    /// Returns sin(q_l − q_k) of each pair of [`PAIRS`], the same for every b: 0 at a change point; its sign is the
+    /// Returns sin(q_l − q_k) of each pair of [`DRIVE_PAIRS`], the same for every b: 0 at a change point; its sign is the
     /// side.
     #[inline]
     pub fn sines(&self, a: [f64; 2]) -> [f64; 3] {
-        [0, 1, 2].map(|pair| Difference::of(self, pair).at(a).sin())
+        [0, 1, 2].map(|pair| AngleDifference::of(self, pair).at(a).sin())
     }
 
     /// Returns min |sin(q_k − q_l)|, which measures how well the parallelograms transmit forces: 0 at a change point.
@@ -81,9 +81,9 @@ impl PlaneMap {
         self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
     }
 
-    /// Returns the side of a pose for each pair of [`PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line in
+    /// Returns the side of a pose for each pair of [`DRIVE_PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line in
     /// (a_1, a_2) between two poses with equal sides crosses no change point.
     pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
-        [0, 1, 2].map(|pair| (Difference::of(self, pair).at(a) / PI).floor() as i32)
+        [0, 1, 2].map(|pair| (AngleDifference::of(self, pair).at(a) / PI).floor() as i32)
     }
 }

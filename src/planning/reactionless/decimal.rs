@@ -5,7 +5,7 @@ use std::fmt;
 use super::b_set::BSet;
 
 /// Maximum number of decimals that are printed.
-pub const MOST_DECIMALS: usize = 12;
+pub const MAX_DECIMALS: usize = 12;
 
 /// A number equal to its printed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Decimal {
 impl Decimal {
     /// Returns the nearest number with this number of decimals.
     pub fn nearest(x: f64, decimals: usize) -> Self {
-        let decimals = decimals.min(MOST_DECIMALS);
+        let decimals = decimals.min(MAX_DECIMALS);
         // Adding 0 turns −0 into 0.
         Self { value: format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0, decimals }
     }
@@ -29,9 +29,9 @@ impl Decimal {
     }
 
     /// Returns a number near x that passes a test, with the fewest decimals, but at least `least`: the nearest one or
-    /// one of its neighbours. `None` if none with up to `MOST_DECIMALS` passes.
+    /// one of its neighbours. `None` if none with up to `MAX_DECIMALS` passes.
     pub fn that(x: f64, least: usize, passes: impl Fn(f64) -> bool) -> Option<Self> {
-        (least..=MOST_DECIMALS).find_map(|decimals| {
+        (least..=MAX_DECIMALS).find_map(|decimals| {
             let nearest = Self::nearest(x, decimals);
             let sense = if nearest.value > x { -1 } else { 1 };
             [nearest, nearest.stepped(sense), nearest.stepped(-sense)].into_iter().find(|x| passes(x.value))
@@ -74,7 +74,7 @@ impl BSet {
 /// Describes an interval: `from 2.216 to 2.661`, with its ends rounded inwards to as many decimals as keep it
 /// non-empty.
 pub fn between(low: f64, high: f64) -> String {
-    let ends = (4..=MOST_DECIMALS).find_map(|decimals| {
+    let ends = (4..=MAX_DECIMALS).find_map(|decimals| {
         let [mut from, mut to] = [low, high].map(|x| Decimal::nearest(x, decimals));
         if from.value < low {
             from = from.stepped(1);
@@ -87,7 +87,7 @@ pub fn between(low: f64, high: f64) -> String {
     match ends {
         Some([from, to]) if from == to => format!("= {from}"),
         Some([from, to]) => format!("from {from} to {to}"),
-        None => format!("= {}", Decimal::nearest(0.5 * (low + high), MOST_DECIMALS)),
+        None => format!("= {}", Decimal::nearest(0.5 * (low + high), MAX_DECIMALS)),
     }
 }
 
@@ -107,5 +107,5 @@ pub fn metres_apart(x: f64, y: f64) -> [String; 2] {
         let both = [x, y].map(|x| metres(x, decimals));
         (both[0] != both[1]).then_some(both)
     };
-    (4..=MOST_DECIMALS).find_map(differ).unwrap_or_else(|| [x, y].map(|x| format!("{x:e}")))
+    (4..=MAX_DECIMALS).find_map(differ).unwrap_or_else(|| [x, y].map(|x| format!("{x:e}")))
 }

@@ -7,7 +7,7 @@
 //! | σ_1 ≥ σ_2 | singular values of J | m |
 
 use super::plane::PlaneMap;
-use crate::mechanics::planar::{Units, Vector, cross};
+use crate::mechanics::planar::{UnitVectors, Vector, cross};
 
 /// Three measures of a pose, independent of b.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ impl PlaneMap {
     }
 
     /// Returns the dexterity from the unit vectors e(q_k) of the drives: a common turn has no effect.
-    pub fn dexterity_at(&self, e: &Units) -> Dexterity {
+    pub fn dexterity_at(&self, e: &UnitVectors) -> Dexterity {
         self.dexterity_of([0, 1, 2].map(|k| self.c()[k] * e[k]))
     }
 

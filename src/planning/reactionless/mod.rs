@@ -24,10 +24,12 @@ mod reach;
 mod turned;
 
 pub use b_set::BSet;
-pub use boundary::{Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, ChangeCurve, Extent, Nearest, Vertex};
-pub use change::PAIRS;
+pub use boundary::{
+    Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, BoundaryVertex, BoundingBox, ChangeCurve, Nearest,
+};
+pub use change::DRIVE_PAIRS;
 pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;
-pub use plane::{AngleDefinition, AngleLimit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};
+pub use plane::{AngleDefinition, AngleLimit, LIMIT_SLACK, MAX_LIMIT_RANGE, NotAPlaneMap, PlaneMap, PlanePoint};
 pub use poses::Poses;
 pub use reach::NoReach;

@@ -68,7 +68,7 @@ pub enum NotAPlaneMap {
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
     OutOfRange,
     /// The range of an angle holds too many whole turns, which are counted one by one.
-    #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, WIDEST)]
+    #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, MAX_LIMIT_RANGE)]
     TooWide {
         /// Which angle: 0 for a_1, 1 for a_2.
         angle: usize,
@@ -101,7 +101,7 @@ const MIN_DET: f64 = 1e-5;
 const ZERO_DET: f64 = 1e-15;
 
 /// Maximum distance of limits, rad: slightly more than eight turns, so that ±4 turns are allowed.
-pub const WIDEST: f64 = 50.4;
+pub const MAX_LIMIT_RANGE: f64 = 50.4;
 
 impl PlaneMap {
     /// Returns the map of these numbers after checks.
@@ -186,13 +186,13 @@ impl PlaneMap {
     /// Returns the same map with other bounds.
     ///
     /// # Errors
-    /// If they are not finite and ordered, or more than [`WIDEST`] apart.
+    /// If they are not finite and ordered, or more than [`MAX_LIMIT_RANGE`] apart.
     pub fn with_limits(mut self, limits: [AngleLimit; 2]) -> Result<Self, NotAPlaneMap> {
         for (angle, AngleLimit { min, max }) in limits.into_iter().enumerate() {
             if !(min.is_finite() && max.is_finite() && min <= max) {
                 return Err(NotAPlaneMap::OutOfRange);
             }
-            if max - min > WIDEST {
+            if max - min > MAX_LIMIT_RANGE {
                 return Err(NotAPlaneMap::TooWide { angle, width: max - min });
             }
         }
@@ -309,7 +309,7 @@ impl PlaneMap {
             }
         }
         let miss = (goal - self.forward_unturned(a)).norm();
-        let inside = (0..2).all(|i| self.limits[i].contains(a[i], SLACK));
+        let inside = (0..2).all(|i| self.limits[i].contains(a[i], LIMIT_SLACK));
         (miss < 1e-11 * self.unit && inside && self.det(a) * sheet >= 0.0).then(|| self.clamp(a))
     }
 
@@ -320,4 +320,4 @@ impl PlaneMap {
 }
 
 /// Tolerance of joint limits, rad: the rounding error of the inverse kinematics at the boundary.
-pub const SLACK: f64 = 1e-9;
+pub const LIMIT_SLACK: f64 = 1e-9;

@@ -6,7 +6,7 @@
 use std::fmt;
 use std::ops::Deref;
 
-use super::plane::{PlaneMap, PlanePoint, SLACK};
+use super::plane::{LIMIT_SLACK, PlaneMap, PlanePoint};
 use super::quadrilateral::{Quadrilateral, Site};
 use crate::mechanics::planar::{Vector, cross, unit};
 
@@ -17,7 +17,7 @@ const INLINE: usize = 64;
 const FOLD_TOLERANCE: f64 = 1e-12;
 
 /// Tolerance of the position of poses clamped to the limits, as a fraction of the reach.
-const CLAMPED_TOLERANCE: f64 = 10.0 * SLACK;
+const CLAMPED_TOLERANCE: f64 = 10.0 * LIMIT_SLACK;
 
 /// Poses nearer to each other than this are equal, rad: where two merge at a fold, their difference is of the order of
 /// the square root of the rounding error.
@@ -97,7 +97,7 @@ impl PlaneMap {
     /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: each elbow and
     /// each sheet.
     ///
-    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits may be exceeded by [`SLACK`]; the poses returned
+    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits may be exceeded by [`LIMIT_SLACK`]; the poses returned
     /// keep them. The result is empty if there is no pose; [`reach`](Self::reach) gives the reason. Poses that form a
     /// continuum (the end effector is moved by one arm only) are not listed.
     pub fn poses(&self, p: Vector, b: f64) -> Poses {
@@ -105,7 +105,7 @@ impl PlaneMap {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return poses;
         }
-        let curve = Quadrilateral::new(self, p, SLACK);
+        let curve = Quadrilateral::new(self, p, LIMIT_SLACK);
         let farthest: f64 = self.c().iter().map(|c| c.abs()).sum();
         let mut push = |a: [f64; 2], tolerance: f64| {
             let a = self.clamp(a);

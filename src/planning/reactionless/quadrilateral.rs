@@ -24,7 +24,7 @@ mod lifts;
 mod singular;
 mod walk;
 
-pub(super) use arc::{Arc, Site};
+pub(super) use arc::{MonotoneArc, Site};
 
 use std::f64::consts::{PI, TAU};
 
@@ -34,7 +34,7 @@ use super::plane::{AngleLimit, PlaneMap};
 use crate::mechanics::planar::{Vector, unit};
 
 /// Tolerance of the distance of a point at the limits of the reach, as a fraction of the reach.
-pub(super) const ROUNDING: f64 = 1e-12;
+pub(super) const REACH_ROUNDING: f64 = 1e-12;
 
 /// The arms of a [`PlaneMap`], and a point.
 #[derive(Clone, Debug)]
@@ -83,7 +83,7 @@ impl Quadrilateral {
         let (m, l) = (length[shared], other.map(|k| length[k]));
         let far = length.iter().sum::<f64>();
         let near = (2.0 * length.into_iter().fold(0.0, f64::max) - far).max(0.0);
-        let rounding = ROUNDING * far;
+        let rounding = REACH_ROUNDING * far;
         let r = match p.norm() {
             r if r > far && r <= far + rounding => far,
             r if r < near && r >= near - rounding => near,
@@ -131,12 +131,12 @@ impl Quadrilateral {
 
     /// Whether the point is B itself, whose poses exist at every b.
     pub fn is_at_base(&self) -> bool {
-        self.r <= ROUNDING * self.size()
+        self.r <= REACH_ROUNDING * self.size()
     }
 
     /// Whether arms whose vector sum has this length reach the point.
     fn is_level(&self, length: f64) -> bool {
-        (length.abs() - self.r).abs() <= 10.0 * ROUNDING * self.size()
+        (length.abs() - self.r).abs() <= 10.0 * REACH_ROUNDING * self.size()
     }
 
     /// Visits all (a_1, a_2) within the limits that equal (α, β) modulo whole turns.

@@ -7,8 +7,8 @@ use thiserror::Error;
 
 use super::b_set::{BSet, wrap};
 use super::decimal::metres_apart;
-use super::plane::{PlaneMap, PlanePoint, SLACK};
-use super::quadrilateral::{Arc, Quadrilateral, ROUNDING, Site};
+use super::plane::{LIMIT_SLACK, PlaneMap, PlanePoint};
+use super::quadrilateral::{MonotoneArc, Quadrilateral, REACH_ROUNDING, Site};
 use crate::mechanics::planar::Vector;
 
 /// At corners of the limits, and where the arms are flat, a rounding error of the point moves the curve by its square
@@ -44,7 +44,7 @@ enum SelfMotion {
     /// The point is B: these (a_1, a_2) hold it at every b.
     EveryB(Vec<[f64; 2]>),
     /// Arcs along which b varies; and (a_1, a_2) at their ends that rounding may have removed from them.
-    Curve(Quadrilateral, Vec<Arc>, Vec<[f64; 2]>),
+    Curve(Quadrilateral, Vec<MonotoneArc>, Vec<[f64; 2]>),
 }
 
 impl PlaneMap {
@@ -57,7 +57,7 @@ impl PlaneMap {
         Ok(match self.curve(p)? {
             SelfMotion::EveryB(_) => BSet { intervals: vec![[0.0, period]], period },
             SelfMotion::Curve(_, arcs, points) => {
-                let span = |arc: &Arc| [arc.from.b.min(arc.to.b), arc.from.b.max(arc.to.b)];
+                let span = |arc: &MonotoneArc| [arc.from.b.min(arc.to.b), arc.from.b.max(arc.to.b)];
                 points.iter().fold(BSet::union(arcs.iter().map(span).collect(), period), |set, &a| {
                     let b = self.b_of(p, a);
                     let near = set.nearest(b).filter(|near| (b - near).abs() < BRANCH_TOLERANCE_RAD).unwrap_or(b);
@@ -78,7 +78,7 @@ impl PlaneMap {
         if self.within_reach(p).is_err() {
             return;
         }
-        for slack in [0.0, SLACK] {
+        for slack in [0.0, LIMIT_SLACK] {
             let (curve, mut any) = (Quadrilateral::new(self, p, slack), false);
             if curve.is_at_base() {
                 curve.triangles(|_| any = true);
@@ -134,11 +134,11 @@ impl PlaneMap {
         let lengths = self.c().map(f64::abs);
         let (distance, farthest) = (p.norm(), lengths.iter().sum::<f64>());
         let nearest = (2.0 * lengths.into_iter().fold(0.0, f64::max) - farthest).max(0.0);
-        let within = distance <= farthest * (1.0 + ROUNDING);
+        let within = distance <= farthest * (1.0 + REACH_ROUNDING);
         if !within {
             return Err(NoReach::TooFar { distance, farthest });
         }
-        if distance < nearest - ROUNDING * farthest {
+        if distance < nearest - REACH_ROUNDING * farthest {
             return Err(NoReach::TooNear { distance, nearest });
         }
         Ok(())
@@ -147,7 +147,7 @@ impl PlaneMap {
     fn curve(&self, p: Vector) -> Result<SelfMotion, NoReach> {
         self.within_reach(p)?;
         // A point on the workspace boundary may violate the limits by rounding.
-        for slack in [0.0, SLACK] {
+        for slack in [0.0, LIMIT_SLACK] {
             let curve = Quadrilateral::new(self, p, slack);
             if curve.is_at_base() {
                 let mut poses = Vec::new();
@@ -206,7 +206,7 @@ impl PlaneMap {
 
 /// An arc of a branch, and the sense in which the branch traverses it.
 struct Step {
-    arc: Arc,
+    arc: MonotoneArc,
     forwards: bool,
 }
 
@@ -230,10 +230,10 @@ impl Step {
 }
 
 /// Joins arcs end to end to branches.
-fn branches(mut arcs: Vec<Arc>) -> Vec<Vec<Step>> {
+fn branches(mut arcs: Vec<MonotoneArc>) -> Vec<Vec<Step>> {
     // Rounding can leave a single point beside an arc that begins there.
     let meets = |s: &Site, t: &Site| (s.alpha - t.alpha).abs().max((s.beta - t.beta).abs()) < 1e-9;
-    let lone = |i: usize, arcs: &[Arc]| {
+    let lone = |i: usize, arcs: &[MonotoneArc]| {
         let point = arcs[i].from;
         !arcs.iter().enumerate().any(|(k, arc)| {
             let before = k < i || arc.s[0] != arc.s[1];
@@ -244,7 +244,7 @@ fn branches(mut arcs: Vec<Arc>) -> Vec<Vec<Step>> {
     let mut keep = keep.into_iter();
     arcs.retain(|_| keep.next().unwrap_or(true));
 
-    let take = |arcs: &mut Vec<Arc>, end: &Site| {
+    let take = |arcs: &mut Vec<MonotoneArc>, end: &Site| {
         let i = arcs.iter().position(|arc| meets(&arc.from, end) || meets(&arc.to, end))?;
         let arc = arcs.swap_remove(i);
         Some((arc, meets(&arc.from, end)))

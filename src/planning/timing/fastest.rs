@@ -8,21 +8,23 @@ use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::path::Path;
-use crate::planning::timing::keep::{Glance, greatest_of, kept};
-use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{ConstraintRow, Constraints, DriveLimit, LimitedQuantity, Limits, Stretches};
-use crate::planning::timing::outcome::{Fastest, TimeError};
-use crate::planning::timing::profile::{Profile, Span, after};
+use crate::planning::timing::keep::{PhaseBound, greatest_of, slow_to_keep};
+use crate::planning::timing::law::PathProgress;
+use crate::planning::timing::limits::{
+    ConstraintRow, Constraints, DriveLimit, DriveLimits, LimitedQuantity, Stretches,
+};
+use crate::planning::timing::outcome::{FastestMotion, TimeError};
+use crate::planning::timing::profile::{JerkPhase, Profile, after};
 use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
-use crate::planning::timing::topp::{Grid, MENDED_FROM, NoSpeed, Sweep, UNLIMITED};
+use crate::planning::timing::topp::{NoTiming, PathConstraints, REPAIR_THRESHOLD, TimingSweep, UNLIMITED};
 use crate::planning::timing::usage::TimeShares;
 
 /// Initial number of intervals of the grid on a curve, unless the caller gives stations.
-pub const SPACES: usize = 600;
+pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
-/// grid begins with [`stations`] of [`SPACES`] and the path's own places. It is refined where limited quantities change
+/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited quantities change
 /// much. Finally the motion is slowed down by as much as limits are exceeded between stations, so that it keeps them
 /// everywhere.
 ///
@@ -32,9 +34,9 @@ pub fn fastest(
     path: &Path,
     model: &Inertia,
     around: &Surroundings,
-    limits: &Limits,
+    limits: &DriveLimits,
     smooth: bool,
-) -> Result<Fastest, TimeError> {
+) -> Result<FastestMotion, TimeError> {
     planned(path, model, around, limits, smooth, None)
 }
 
@@ -56,10 +58,10 @@ pub fn fastest_at(
     path: &Path,
     model: &Inertia,
     around: &Surroundings,
-    limits: &Limits,
+    limits: &DriveLimits,
     smooth: bool,
     stations: &[f64],
-) -> Result<Fastest, TimeError> {
+) -> Result<FastestMotion, TimeError> {
     let rising = stations.windows(2).all(|w| w[0] < w[1]);
     if !rising || stations.len() < 2 || stations.first() != Some(&0.0) || stations.last() != Some(&1.0) {
         return Err(TimeError::Stations);
@@ -71,10 +73,10 @@ fn planned(
     path: &Path,
     model: &Inertia,
     around: &Surroundings,
-    limits: &Limits,
+    limits: &DriveLimits,
     smooth: bool,
     stations: Option<&[f64]>,
-) -> Result<Fastest, TimeError> {
+) -> Result<FastestMotion, TimeError> {
     let drives = (path.at(0.0).q.len(), model.drives(), limits.torque.len());
     let alike = LimitedQuantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
     if drives.0 != drives.1 || !alike {
@@ -94,7 +96,7 @@ fn planned(
         Some(stations) => stations.to_vec(),
         None => dense(path),
     };
-    let grid = Grid::new(path, &constraints, nodes);
+    let grid = PathConstraints::new(path, &constraints, nodes);
     let (grid, timed, glances) = match stations {
         Some(_) => {
             let timed = curved(path, &grid, grid.fastest(), &constraints);
@@ -104,22 +106,26 @@ fn planned(
     };
     let bound = timed.map(|Timed { profile, x }| {
         let limiting = leading(path, &grid, &constraints, &x);
-        Fastest { profile, gap: None, limiting }
+        FastestMotion { profile, gap: None, limiting }
     });
     if smooth {
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
     }
     let found = bound?;
     let Some(glances) = glances else { return Ok(found) };
-    let factor = greatest_of(glances, |at: &Progress| constraints.stretches(path, at));
-    let profile = kept(&found.profile, factor).ok_or(TimeError::Stuck { s: 0.0 })?;
-    Ok(Fastest { profile, ..found })
+    let factor = greatest_of(glances, |at: &PathProgress| constraints.stretches(path, at));
+    let profile = slow_to_keep(&found.profile, factor).ok_or(TimeError::Stuck { s: 0.0 })?;
+    Ok(FastestMotion { profile, ..found })
 }
 
 /// Finds the fastest motion on a grid that is refined where limited quantities change much and where limits are
 /// exceeded between stations. Also returns samples of each phase.
-fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<Timed, TimeError>, Option<Vec<Glance>>) {
-    let stretches = |at: &Progress| constraints.stretches(path, at);
+fn mended(
+    path: &Path,
+    constraints: &Constraints,
+    grid: PathConstraints,
+) -> (PathConstraints, Result<Timed, TimeError>, Option<Vec<PhaseBound>>) {
+    let stretches = |at: &PathProgress| constraints.stretches(path, at);
     let jumps = jumps(path);
     let (mut grid, mut found) = grid.fastest_refined(path, constraints);
     let mut refinements = 0..MAX_REFINEMENTS;
@@ -129,8 +135,8 @@ fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<T
             error => return (grid, error, None),
         };
         let glances = glanced(&timed.profile, &grid, &jumps, stretches);
-        let enough = 1.0 + MENDED_FROM;
-        let closer = |glance: &Glance| match glance.bound > enough {
+        let enough = 1.0 + REPAIR_THRESHOLD;
+        let closer = |glance: &PhaseBound| match glance.bound > enough {
             true => glance.closer(enough, stretches)[0],
             false => glance.seen,
         };
@@ -144,18 +150,23 @@ fn mended(path: &Path, constraints: &Constraints, grid: Grid) -> (Grid, Result<T
 }
 
 /// Samples each phase. Limited quantities are known at the stations, except where they may jump.
-fn glanced(profile: &Profile, grid: &Grid, jumps: &[f64], stretches: impl Fn(&Progress) -> Stretches) -> Vec<Glance> {
+fn glanced(
+    profile: &Profile,
+    grid: &PathConstraints,
+    jumps: &[f64],
+    stretches: impl Fn(&PathProgress) -> Stretches,
+) -> Vec<PhaseBound> {
     let may_jump = |s: f64| {
         jumps[jumps.partition_point(|jump| *jump < s - S_TOLERANCE)..].first().is_some_and(|j| *j <= s + S_TOLERANCE)
     };
     let has_stations = profile.phases().count() + 1 == grid.s.len();
-    let glance = |(i, phase): (usize, (Progress, f64))| {
+    let glance = |(i, phase): (usize, (PathProgress, f64))| {
         if !has_stations || may_jump(grid.s[i]) || may_jump(grid.s[i + 1]) {
-            return Glance::of(phase, &stretches);
+            return PhaseBound::of(phase, &stretches);
         }
         let (from, time) = phase;
         let ends = [grid.stretches(i, &from), grid.stretches(i + 1, &after(&from, time))];
-        Glance::between(phase, ends.each_ref(), &stretches)
+        PhaseBound::between(phase, ends.each_ref(), &stretches)
     };
     profile.phases().enumerate().map(glance).collect()
 }
@@ -176,7 +187,7 @@ const MAX_REFINEMENTS: usize = 6;
 
 /// Returns [`stations`] merged with the places of a path, which replace stations close by.
 fn dense(path: &Path) -> Vec<f64> {
-    let (own, even) = (path.places(), stations(SPACES));
+    let (own, even) = (path.places(), stations(GRID_INTERVALS));
     let mut all = Vec::with_capacity(own.len() + even.len());
     let mut next = 0;
     for (i, s) in even.iter().enumerate() {
@@ -184,7 +195,7 @@ fn dense(path: &Path) -> Vec<f64> {
             all.push(own[next]);
             next += 1;
         }
-        let room = 0.25 * (even[(i + 1).min(SPACES)] - even[i.saturating_sub(1)]);
+        let room = 0.25 * (even[(i + 1).min(GRID_INTERVALS)] - even[i.saturating_sub(1)]);
         let clear = |near: Option<&f64>| near.is_none_or(|near| (near - s).abs() > room);
         if clear(all.last()) && clear(own.get(next)) {
             all.push(*s);
@@ -194,8 +205,8 @@ fn dense(path: &Path) -> Vec<f64> {
 }
 
 /// Returns the motion on a path of no length.
-fn nowhere() -> Fastest {
-    Fastest { profile: Profile::none(), gap: None, limiting: Vec::new() }
+fn nowhere() -> FastestMotion {
+    FastestMotion { profile: Profile::none(), gap: None, limiting: Vec::new() }
 }
 
 /// Returns the least limit on a derivative of s along a straight line, and the drive limit that sets it.
@@ -206,7 +217,7 @@ fn least(step: &PerDrive, quantity: LimitedQuantity, limit: impl Fn(usize) -> f6
 }
 
 /// Returns the fastest motion on a straight joint line in closed form.
-fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> Result<Fastest, TimeError> {
+fn straight(step: &PerDrive, model: &Inertia, limits: &DriveLimits, smooth: bool) -> Result<FastestMotion, TimeError> {
     let speed = least(step, LimitedQuantity::Speed, |k| limits.speed[k]);
     let torque = least(step, LimitedQuantity::Torque, |k| limits.torque[k] / model.diagonal(k));
     let wanted = least(step, LimitedQuantity::Acceleration, |k| limits.acceleration[k]);
@@ -227,9 +238,9 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> 
         let leads = [jerk, acceleration, jerk, speed, jerk, acceleration, jerk][i];
         shares.add(leads.1, span.time);
     }
-    let time = |spans: [Span; 7]| spans.iter().map(|s| s.time).sum::<f64>();
+    let time = |spans: [JerkPhase; 7]| spans.iter().map(|s| s.time).sum::<f64>();
     let gap = without.filter(|_| smooth).map(|w| (profile.duration() / time(w) - 1.0).max(0.0));
-    Ok(Fastest { profile, gap, limiting: shares.sorted() })
+    Ok(FastestMotion { profile, gap, limiting: shares.sorted() })
 }
 
 /// A timing on a grid.
@@ -241,8 +252,8 @@ struct Timed {
 
 fn curved(
     path: &Path,
-    grid: &Grid,
-    found: Result<Sweep, NoSpeed>,
+    grid: &PathConstraints,
+    found: Result<TimingSweep, NoTiming>,
     constraints: &Constraints,
 ) -> Result<Timed, TimeError> {
     let stations = &grid.s;
@@ -255,7 +266,7 @@ fn curved(
             (true, false) => Err(TimeError::Unlimited { s: 0.0 }),
         };
     }
-    let Sweep { x, rise } = found.map_err(|blocked| explain(grid, constraints, blocked))?;
+    let TimingSweep { x, rise } = found.map_err(|blocked| explain(grid, constraints, blocked))?;
     if let Some(i) = x.iter().position(|x| *x >= UNLIMITED) {
         return Err(TimeError::Unlimited { s: stations[i] });
     }
@@ -264,8 +275,8 @@ fn curved(
 }
 
 /// Returns why no motion passes a station.
-fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeError {
-    let (NoSpeed::At(i) | NoSpeed::Rest(i)) = blocked;
+fn explain(grid: &PathConstraints, constraints: &Constraints, blocked: NoTiming) -> TimeError {
+    let (NoTiming::At(i) | NoTiming::Rest(i)) = blocked;
     let near = [i, (i + 1).min(grid.s.len() - 1)];
     for i in near {
         for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
@@ -284,7 +295,7 @@ fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeErro
 }
 
 /// Returns the active limits with their fractions of the duration, the greatest first.
-fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
+fn leading(path: &Path, grid: &PathConstraints, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = TimeShares::default();
     for i in 0..x.len().saturating_sub(1) {
         let way = grid.s[i + 1] - grid.s[i];

@@ -3,8 +3,8 @@
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::planning::Motion;
-use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::Limits;
+use crate::planning::timing::law::PathProgress;
+use crate::planning::timing::limits::DriveLimits;
 use crate::planning::timing::profile::{Profile, after};
 use crate::planning::timing::usage::Demand;
 
@@ -20,8 +20,8 @@ const NEGLIGIBLE: f64 = 1e-7;
 
 /// Three samples within a phase of several quantities that are each smooth there. Their maximum is not smooth where one
 /// takes over from another, so each is assessed separately.
-pub(super) struct Glance {
-    phase: (Progress, f64),
+pub(super) struct PhaseBound {
+    phase: (PathProgress, f64),
     /// Maximum over the three samples.
     pub(super) seen: f64,
     /// Upper estimate of the maximum in the phase: the vertex of the parabola through the three values plus a quarter
@@ -33,18 +33,18 @@ pub(super) struct Glance {
     others: f64,
 }
 
-impl Glance {
+impl PhaseBound {
     /// Samples a phase at both ends and in its middle.
-    pub(super) fn of<const N: usize>(phase: (Progress, f64), of: impl Fn(&Progress) -> [f64; N]) -> Self {
+    pub(super) fn of<const N: usize>(phase: (PathProgress, f64), of: impl Fn(&PathProgress) -> [f64; N]) -> Self {
         let [from, to] = [0.0, 1.0].map(|u| within(&phase, u, &of));
         Self::between(phase, [&from, &to], of)
     }
 
     /// Samples a phase in its middle; the quantities at both ends are given.
     pub(super) fn between<const N: usize>(
-        phase: (Progress, f64),
+        phase: (PathProgress, f64),
         [from, to]: [&[f64; N]; 2],
-        of: impl Fn(&Progress) -> [f64; N],
+        of: impl Fn(&PathProgress) -> [f64; N],
     ) -> Self {
         let middle = within(&phase, 0.5, &of);
         let mut glance = Self { phase, seen: 0.0, bound: 0.0, likeliest: (0, [0.0; 3]), others: 0.0 };
@@ -68,7 +68,7 @@ impl Glance {
 
     /// Samples the phase more finely. Returns the maximum that is found and an upper estimate, which is at most
     /// `enough` or equal to the maximum.
-    pub(super) fn closer<const N: usize>(&self, enough: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; 2] {
+    pub(super) fn closer<const N: usize>(&self, enough: f64, of: impl Fn(&PathProgress) -> [f64; N]) -> [f64; 2] {
         // The error of the parabola at two more samples bounds the error of the parabolas through all five.
         let (k, [a, b, c]) = self.likeliest;
         let [p, q] = [0.25, 0.75].map(|u| within(&self.phase, u, &of)[k]);
@@ -87,21 +87,25 @@ impl Glance {
 }
 
 /// Returns the quantities at the fraction u of a phase.
-fn within<const N: usize>((from, time): &(Progress, f64), u: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; N] {
+fn within<const N: usize>(
+    (from, time): &(PathProgress, f64),
+    u: f64,
+    of: impl Fn(&PathProgress) -> [f64; N],
+) -> [f64; N] {
     of(&after(from, u.clamp(END_MARGIN_SHARE, 1.0 - END_MARGIN_SHARE) * time))
 }
 
 /// Returns the maximum of all quantities over all phases.
 pub(super) fn greatest<const N: usize>(
-    phases: impl Iterator<Item = (Progress, f64)>,
-    of: impl Fn(&Progress) -> [f64; N],
+    phases: impl Iterator<Item = (PathProgress, f64)>,
+    of: impl Fn(&PathProgress) -> [f64; N],
 ) -> f64 {
-    greatest_of(phases.map(|phase| Glance::of(phase, &of)).collect(), of)
+    greatest_of(phases.map(|phase| PhaseBound::of(phase, &of)).collect(), of)
 }
 
 /// Returns the maximum of all quantities over sampled phases, or a negligible excess. It samples finely the phases that
 /// may contain the maximum, the likeliest first.
-pub(super) fn greatest_of<const N: usize>(mut glances: Vec<Glance>, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
+pub(super) fn greatest_of<const N: usize>(mut glances: Vec<PhaseBound>, of: impl Fn(&PathProgress) -> [f64; N]) -> f64 {
     let mut found_max = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
     let mut upper = found_max;
     glances.retain(|glance| glance.bound > found_max);
@@ -128,7 +132,7 @@ fn crest([a, b, c]: [f64; 3]) -> f64 {
 
 /// Returns a profile slowed down by a factor on time, so that every limit is kept. Returns `None` if the factor is
 /// infinite.
-pub(super) fn kept(profile: &Profile, factor: f64) -> Option<Profile> {
+pub(super) fn slow_to_keep(profile: &Profile, factor: f64) -> Option<Profile> {
     // An excess at rounding level needs no slower profile.
     let needed = factor > 1.0 + ROUNDING;
     factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + ROUNDING)) } else { profile.clone() })
@@ -143,17 +147,17 @@ impl Motion {
     ///
     /// Its profile must consist of phases, as those of the fastest motions do.
     #[must_use]
-    pub fn slowed(&self, model: &Inertia, around: &Surroundings, limits: &Limits) -> Option<Self> {
-        let limits = Limits { jerk: Limits::none(limits.jerk.len()).jerk, ..*limits };
+    pub fn slowed(&self, model: &Inertia, around: &Surroundings, limits: &DriveLimits) -> Option<Self> {
+        let limits = DriveLimits { jerk: DriveLimits::none(limits.jerk.len()).jerk, ..*limits };
         let count = self.profile.phases().count().max(1);
         // An even number, so that a change in the middle of a phase falls between two parts.
         let parts = 2 * MIN_PARTS.div_ceil(2 * count);
-        let cut = |(from, time): (Progress, f64)| {
+        let cut = |(from, time): (PathProgress, f64)| {
             let time = time / parts as f64;
             (0..parts).map(move |i| (after(&from, i as f64 * time), time))
         };
-        let stretches = |at: &Progress| Demand::of(&self.path, model, around, &limits, at).stretches(&limits);
-        let profile = kept(&self.profile, greatest(self.profile.phases().flat_map(cut), stretches))?;
+        let stretches = |at: &PathProgress| Demand::of(&self.path, model, around, &limits, at).stretches(&limits);
+        let profile = slow_to_keep(&self.profile, greatest(self.profile.phases().flat_map(cut), stretches))?;
         Some(Self { path: self.path.clone(), profile })
     }
 }

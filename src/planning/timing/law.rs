@@ -4,7 +4,7 @@ use crate::settings::word::words;
 
 /// Position s on a path with its derivatives by time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub struct PathProgress {
     /// 0 at the start, 1 at the end.
     pub s: f64,
     /// ṡ, 1/s.
@@ -15,7 +15,7 @@ pub struct Progress {
     pub jerk: f64,
 }
 
-impl Progress {
+impl PathProgress {
     /// Returns rest at s.
     #[inline]
     pub fn still(s: f64) -> Self {
@@ -129,16 +129,16 @@ impl TimeLaw {
 
     /// Returns the progress at time t, s, of a motion of `duration`, s; at rest before its start and from its end on.
     #[inline]
-    pub fn at(self, t: f64, duration: f64) -> Progress {
+    pub fn at(self, t: f64, duration: f64) -> PathProgress {
         if t < 0.0 {
-            return Progress::still(0.0);
+            return PathProgress::still(0.0);
         }
         if t >= duration {
-            return Progress::still(1.0);
+            return PathProgress::still(1.0);
         }
         let [s, rate, acceleration, jerk] = (self.data().at)(t / duration);
         let per = 1.0 / duration;
-        Progress { s, rate: rate * per, acceleration: acceleration * (per * per), jerk: jerk * (per * per * per) }
+        PathProgress { s, rate: rate * per, acceleration: acceleration * (per * per), jerk: jerk * (per * per * per) }
     }
 }
 

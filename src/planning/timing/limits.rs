@@ -20,7 +20,7 @@ use crate::mechanics::machine::{Inertia, Machine, Motors};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
-use crate::planning::timing::law::Progress;
+use crate::planning::timing::law::PathProgress;
 
 /// A limited quantity of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl fmt::Display for DriveLimit {
 
 /// Maximum magnitudes for each drive in either direction; infinite if there is no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct DriveLimits {
     /// Maximum |τ_k|, N m.
     pub torque: PerDrive,
     /// Maximum |q̇_k|, rad/s.
@@ -74,7 +74,7 @@ pub struct Limits {
     pub jerk: PerDrive,
 }
 
-impl Limits {
+impl DriveLimits {
     /// Returns infinite limits for n drives.
     pub fn none(n: usize) -> Self {
         let free = PerDrive::from_fn(n.min(MAX_DRIVES), |_| f64::INFINITY);
@@ -149,7 +149,7 @@ pub(super) type Stretches = [f64; MAX_ROWS + MAX_DRIVES];
 
 /// Returns the factors on time with which a point that is passed with given progress just keeps its rows and speeds.
 #[inline]
-pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &Progress) -> Stretches {
+pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &PathProgress) -> Stretches {
     let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
     let (by_row, by_speed) = factors.split_at_mut(rows.len());
     let square = at.rate * at.rate;
@@ -163,7 +163,7 @@ pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &Progress) -
 pub struct Constraints<'a> {
     model: &'a Inertia,
     around: Surroundings,
-    limits: &'a Limits,
+    limits: &'a DriveLimits,
     /// If torque is D_k q̈_k in every pose: 1/limit of q̈_k from the limits of torque and acceleration.
     constant: Option<PerDrive>,
     rows: Vec<DriveLimit>,
@@ -173,7 +173,7 @@ pub struct Constraints<'a> {
 
 impl<'a> Constraints<'a> {
     /// Builds the constraints of a model; infinite limits give no row.
-    pub fn new(model: &'a Inertia, around: &Surroundings, limits: &'a Limits) -> Self {
+    pub fn new(model: &'a Inertia, around: &Surroundings, limits: &'a DriveLimits) -> Self {
         let n = model.drives();
         let weightless = around.gravity.norm_sqr() == 0.0 || model.is_force_balanced();
         let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0 && model.is_decoupled();
@@ -206,7 +206,7 @@ impl<'a> Constraints<'a> {
     }
 
     /// Returns the limits of the drives.
-    pub fn limits(&self) -> &Limits {
+    pub fn limits(&self) -> &DriveLimits {
         self.limits
     }
 
@@ -261,7 +261,7 @@ impl<'a> Constraints<'a> {
 
     /// Returns the factors on time with which a point of a path, passed with given progress, just keeps each limit
     /// except those on jerk.
-    pub(super) fn stretches(&self, path: &Path, at: &Progress) -> Stretches {
+    pub(super) fn stretches(&self, path: &Path, at: &PathProgress) -> Stretches {
         let (mut rows, mut speeds) = ([ConstraintRow::default(); MAX_ROWS], [0.0; MAX_DRIVES]);
         let (rows, speeds) = (&mut rows[..self.rows.len()], &mut speeds[..self.speed_limited.len()]);
         self.at(&path.at(at.s), rows, speeds);

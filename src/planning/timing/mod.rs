@@ -13,9 +13,9 @@ mod topp;
 pub mod usage;
 
 pub use fastest::fastest;
-pub use law::{Progress, TimeLaw};
-pub use limits::Limits;
-pub use outcome::{Fastest, TimeError};
+pub use law::{PathProgress, TimeLaw};
+pub use limits::DriveLimits;
+pub use outcome::{FastestMotion, TimeError};
 pub use profile::Profile;
 pub use s_curve::s_curve;
 pub use usage::Usage;

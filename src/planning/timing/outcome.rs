@@ -7,7 +7,7 @@ use super::profile::Profile;
 
 /// The fastest motion on a path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fastest {
+pub struct FastestMotion {
     /// Timing of the motion.
     pub profile: Profile,
     /// T/T* − 1, where T* is the least time without limits on jerk: an upper bound of the relative gain of a better

@@ -1,7 +1,7 @@
 //! Timings s(t): a time law over a duration, phases of constant jerk, both from rest to rest, or s proportional to
 //! time.
 
-use crate::planning::timing::law::{Progress, TimeLaw};
+use crate::planning::timing::law::{PathProgress, TimeLaw};
 
 /// Timing of a motion on its path: s(t) from 0 to 1 with its derivatives, at rest before 0 and from T on.
 ///
@@ -41,7 +41,7 @@ struct Leg {
 
 /// A time span of constant s⃛.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct JerkPhase {
     /// Duration, s.
     pub time: f64,
     /// s̈ at its start, 1/s².
@@ -54,7 +54,7 @@ pub struct Span {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Start {
     t: f64,
-    at: Progress,
+    at: PathProgress,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl Phases {
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Progress {
+    fn at(&self, t: f64) -> PathProgress {
         let last = self.guide.len() - 1;
         let mut i = self.guide[((t * self.pace) as usize).min(last)] as usize;
         // A part of the lookup table may begin late by a rounding error.
@@ -99,9 +99,9 @@ impl Phases {
 
 /// Returns the progress after a time t, s, at constant jerk.
 #[inline]
-pub(super) fn after(from: &Progress, t: f64) -> Progress {
-    let Progress { s, rate, acceleration, jerk } = *from;
-    Progress {
+pub(super) fn after(from: &PathProgress, t: f64) -> PathProgress {
+    let PathProgress { s, rate, acceleration, jerk } = *from;
+    PathProgress {
         s: (s + t * (rate + t * (acceleration / 2.0 + t * (jerk / 6.0)))).min(1.0),
         rate: rate + t * (acceleration + t * (jerk / 2.0)),
         acceleration: acceleration + t * jerk,
@@ -117,7 +117,7 @@ impl Profile {
 
     /// Returns s = t/T, for paths that contain their own timing and are at rest at both ends.
     pub fn even(duration: f64) -> Self {
-        Self::from_starts(vec![(0.0, Progress { rate: 1.0 / duration, ..Progress::still(0.0) })], duration)
+        Self::from_starts(vec![(0.0, PathProgress { rate: 1.0 / duration, ..PathProgress::still(0.0) })], duration)
     }
 
     /// Returns s = t/T including both ends, for paths that contain their own timing and need not be at rest at their
@@ -148,11 +148,11 @@ impl Profile {
     /// Builds a profile from rest through spans of constant jerk. Spans of zero duration are omitted.
     ///
     /// The caller must make sure that s ends at 1 at rest.
-    pub fn of_spans(spans: &[Span]) -> Self {
+    pub fn of_spans(spans: &[JerkPhase]) -> Self {
         let (mut t, mut s, mut rate) = (0.0, 0.0, 0.0);
         let mut starts = Vec::with_capacity(spans.len());
         for span in spans.iter().filter(|span| span.time > 0.0) {
-            let from = Progress { s, rate, acceleration: span.acceleration, jerk: span.jerk };
+            let from = PathProgress { s, rate, acceleration: span.acceleration, jerk: span.jerk };
             starts.push((t, from));
             let end = after(&from, span.time);
             (t, s, rate) = (t + span.time, end.s, end.rate);
@@ -174,7 +174,7 @@ impl Profile {
             // The distance is mean · time − rise · time² / 12.
             let mean = 0.5 * (rate + next);
             let time = 2.0 * way / (mean + (mean * mean - rise * way / 3.0).sqrt());
-            let from = Progress {
+            let from = PathProgress {
                 s: stations[i],
                 rate,
                 acceleration: if rise == 0.0 {
@@ -191,7 +191,7 @@ impl Profile {
         t.is_finite().then(|| Self::from_starts(starts, t))
     }
 
-    fn from_starts(starts: Vec<(f64, Progress)>, duration: f64) -> Self {
+    fn from_starts(starts: Vec<(f64, PathProgress)>, duration: f64) -> Self {
         if starts.is_empty() {
             return Self::none();
         }
@@ -215,25 +215,25 @@ impl Profile {
 
     /// Returns the progress t seconds after the start.
     #[inline]
-    pub fn at(&self, t: f64) -> Progress {
+    pub fn at(&self, t: f64) -> PathProgress {
         match &self.shape {
             Shape::Law(law) => law.at(t, self.duration),
             // The sum of integration steps may miss either end by rounding.
-            Shape::Running if t < -END_SLACK_SHARE * self.duration => Progress::still(0.0),
-            Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => Progress::still(1.0),
+            Shape::Running if t < -END_SLACK_SHARE * self.duration => PathProgress::still(0.0),
+            Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => PathProgress::still(1.0),
             Shape::Running => {
                 let s = (t / self.duration).clamp(0.0, 1.0);
-                Progress { rate: 1.0 / self.duration, ..Progress::still(s) }
+                PathProgress { rate: 1.0 / self.duration, ..PathProgress::still(s) }
             }
-            Shape::Phases(_) if t < 0.0 => Progress::still(0.0),
-            Shape::Phases(_) if t >= self.duration => Progress::still(1.0),
+            Shape::Phases(_) if t < 0.0 => PathProgress::still(0.0),
+            Shape::Phases(_) if t >= self.duration => PathProgress::still(1.0),
             Shape::Phases(phases) => phases.at(t),
-            Shape::Sequence(_) if t >= self.duration => Progress::still(1.0),
+            Shape::Sequence(_) if t >= self.duration => PathProgress::still(1.0),
             Shape::Sequence(legs) => {
                 let i = legs.partition_point(|leg| leg.start <= t).max(1) - 1;
-                legs.get(i).map_or(Progress::still(0.0), |leg| {
+                legs.get(i).map_or(PathProgress::still(0.0), |leg| {
                     let at = leg.profile.at(t - leg.start);
-                    Progress {
+                    PathProgress {
                         s: leg.from + leg.run * at.s,
                         rate: leg.run * at.rate,
                         acceleration: leg.run * at.acceleration,
@@ -254,7 +254,7 @@ impl Profile {
             Shape::Running => Self::running(duration),
             Shape::Phases(phases) => {
                 let f = 1.0 / factor;
-                let slower = |at: &Progress| Progress {
+                let slower = |at: &PathProgress| PathProgress {
                     s: at.s,
                     rate: f * at.rate,
                     acceleration: f * f * at.acceleration,
@@ -276,7 +276,7 @@ impl Profile {
             Shape::Law(law) => law.kinks().iter().map(|u| u * whole).collect(),
             Shape::Running => vec![-END_SLACK_SHARE * whole, (1.0 + END_SLACK_SHARE) * whole],
             Shape::Phases(Phases { starts, .. }) => {
-                let max_of = |f: fn(&Progress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
+                let max_of = |f: fn(&PathProgress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
                 let end = |i: usize| after(&starts[i].at, starts.get(i + 1).map_or(whole, |p| p.t) - starts[i].t);
                 let peak =
                     (0..starts.len()).map(|i| end(i).acceleration.abs()).fold(max_of(|p| p.acceleration), f64::max);
@@ -308,7 +308,7 @@ impl Profile {
 
     /// Returns the phases of constant s⃛, each with its initial progress and its duration, s. A law, a running profile
     /// and a sequence have none.
-    pub(super) fn phases(&self) -> impl Iterator<Item = (Progress, f64)> + '_ {
+    pub(super) fn phases(&self) -> impl Iterator<Item = (PathProgress, f64)> + '_ {
         let starts: &[Start] = match &self.shape {
             Shape::Phases(phases) => &phases.starts,
             Shape::Law(_) | Shape::Running | Shape::Sequence(_) => &[],
@@ -323,7 +323,7 @@ impl Profile {
             Shape::Law(law) => law.peak() / (self.duration * self.duration),
             Shape::Running => 0.0,
             Shape::Phases(_) => {
-                let ends = |(from, time): (Progress, f64)| {
+                let ends = |(from, time): (PathProgress, f64)| {
                     from.acceleration.abs().max((from.acceleration + time * from.jerk).abs())
                 };
                 self.phases().map(ends).fold(0.0, f64::max)
@@ -336,7 +336,7 @@ impl Profile {
 
     /// Builds a profile through instants with given s, ṡ and s̈. Between two instants, three phases of equal duration
     /// match the values at both.
-    pub(super) fn through_jets(jets: &[(f64, Progress)]) -> Self {
+    pub(super) fn through_jets(jets: &[(f64, PathProgress)]) -> Self {
         let mut starts = Vec::with_capacity(3 * jets.len());
         for w in jets.windows(2) {
             let ([(t, a), (end, b)], third) = ([w[0], w[1]], (w[1].0 - w[0].0) / 3.0);

@@ -1,11 +1,11 @@
 //! A straight line with bounded speed, acceleration and jerk, in closed form.
 
-use super::profile::Span;
+use super::profile::JerkPhase;
 
 /// Returns the fastest motion of s from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j. All bounds must be
 /// above 0 and may be infinite. The phases are positive jerk, constant s̈, negative jerk, constant ṡ, and their mirror
 /// image; unused phases have zero time. Returns `None` if both s̈ and s⃛ are unlimited.
-pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
+pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[JerkPhase; 7]> {
     if a.is_infinite() && j.is_infinite() {
         return None;
     }
@@ -25,7 +25,7 @@ pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
     let cruise = if peak < free { (1.0 / peak - 2.0 * up - constant).max(0.0) } else { 0.0 };
     let top = if j.is_infinite() { a } else { (j * up).min(a) };
     let jerk = if j.is_infinite() { 0.0 } else { j };
-    let span = |time, acceleration, jerk| Span { time, acceleration, jerk };
+    let span = |time, acceleration, jerk| JerkPhase { time, acceleration, jerk };
     Some([
         span(up, 0.0, jerk),
         span(constant, top, 0.0),

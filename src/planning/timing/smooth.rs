@@ -10,12 +10,12 @@ use crate::planning::Motion;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::jerk::{JerkProgram, eased, uneased};
 use crate::planning::timing::keep::greatest;
-use crate::planning::timing::law::Progress;
+use crate::planning::timing::law::PathProgress;
 use crate::planning::timing::limits::Constraints;
-use crate::planning::timing::outcome::{Fastest, TimeError};
-use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::outcome::{FastestMotion, TimeError};
+use crate::planning::timing::profile::{JerkPhase, Profile};
 use crate::planning::timing::s_curve::s_curve;
-use crate::planning::timing::topp::Grid;
+use crate::planning::timing::topp::PathConstraints;
 use crate::planning::timing::usage::{Demand, Usage};
 
 /// Number of samples from which the active limits are determined.
@@ -53,9 +53,9 @@ pub(super) fn smooth(
     model: &Inertia,
     around: &Surroundings,
     constraints: &Constraints,
-    grid: &Grid,
-    bound: Result<Fastest, TimeError>,
-) -> Result<Fastest, TimeError> {
+    grid: &PathConstraints,
+    bound: Result<FastestMotion, TimeError>,
+) -> Result<FastestMotion, TimeError> {
     let limits = constraints.limits();
     let bound = match bound {
         // Jerk alone may be limited, or jerk and speed.
@@ -75,7 +75,7 @@ pub(super) fn smooth(
         let share = (s - grid.s[i]) / (grid.s[i + 1] - grid.s[i]);
         (from * from + share * (to * to - from * from)) / (slope * slope)
     };
-    let stretches = |at: &Progress| Demand::of(path, model, around, limits, at).stretches(limits);
+    let stretches = |at: &PathProgress| Demand::of(path, model, around, limits, at).stretches(limits);
     let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
     for _ in 0..=MAX_REFINEMENTS {
         let solved = JerkProgram::new(path, constraints, nodes, max_square).solve(fastest, timing.as_ref());
@@ -102,15 +102,15 @@ pub(super) fn smooth(
     let gap = bound.map(|b| profile.duration() / b.profile.duration() - 1.0);
     let motion = Motion { path: path.clone(), profile };
     let limiting = Usage::of(&motion, model, around, limits, USAGE_SAMPLES).leading;
-    Ok(Fastest { profile: motion.profile, gap, limiting })
+    Ok(FastestMotion { profile: motion.profile, gap, limiting })
 }
 
 /// Returns the law of least jerk over the least duration that keeps all limits.
-fn by_law<const N: usize>(stretches: impl Fn(&Progress) -> [f64; N]) -> Option<Profile> {
+fn by_law<const N: usize>(stretches: impl Fn(&PathProgress) -> [f64; N]) -> Option<Profile> {
     let spans = s_curve(f64::INFINITY, f64::INFINITY, 32.0)?;
-    let cut = |span: &Span| {
+    let cut = |span: &JerkPhase| {
         let (time, from) = (span.time / CHECKED_PARTS as f64, *span);
-        (0..CHECKED_PARTS).map(move |i| Span {
+        (0..CHECKED_PARTS).map(move |i| JerkPhase {
             time,
             acceleration: from.acceleration + i as f64 * time * from.jerk,
             ..from
@@ -139,7 +139,7 @@ fn refined(nodes: &[f64], past: &[f64]) -> Vec<f64> {
 }
 
 /// Places the nodes θ with the density that the constants above define, at least at all joints of the path.
-fn nodes(path: &Path, grid: &Grid, bound: Option<&Profile>) -> Vec<f64> {
+fn nodes(path: &Path, grid: &PathConstraints, bound: Option<&Profile>) -> Vec<f64> {
     // Cumulative number of intervals over the grid.
     let thetas: Vec<f64> = grid.s.iter().map(|s| uneased(*s)).collect();
     let times: Vec<f64> = bound.map_or(Vec::new(), |b| b.phases().map(|(_, time)| time / b.duration()).collect());

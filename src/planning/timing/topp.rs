@@ -10,7 +10,7 @@
 //! met at both ends, and T is accurate to second order.
 
 use crate::planning::curves::path::Path;
-use crate::planning::timing::law::Progress;
+use crate::planning::timing::law::PathProgress;
 use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
 /// An x of this or more counts as unlimited, 1/s².
@@ -31,10 +31,10 @@ const MAX_INTERVALS: usize = 60_000;
 /// Number of parts into which an interval is divided in which a limit is exceeded.
 const PARTS_IF_EXCEEDED: usize = 4;
 /// Relative excess of the factor on time from which an interval is divided.
-pub(super) const MENDED_FROM: f64 = 1e-4;
+pub(super) const REPAIR_THRESHOLD: f64 = 1e-4;
 
 /// The constraints of a path at every station; at least two.
-pub(super) struct Grid {
+pub(super) struct PathConstraints {
     pub(super) s: Vec<f64>,
     /// Number of rows per station.
     pub(super) m: usize,
@@ -51,14 +51,14 @@ pub(super) struct Grid {
 
 /// Station at which the sweeps fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum NoSpeed {
+pub(super) enum NoTiming {
     /// No x is controllable at this station.
     At(usize),
     /// The start is not controllable at rest, or the motion stops at this station.
     Rest(usize),
 }
 
-impl Grid {
+impl PathConstraints {
     pub(super) fn new(path: &Path, constraints: &Constraints, s: Vec<f64>) -> Self {
         let mut grid = Self::with_capacity([constraints.rows().len(), constraints.speeds()], s.len());
         s.iter().for_each(|s| grid.push(path, constraints, *s));
@@ -111,7 +111,11 @@ impl Grid {
     }
 
     /// Finds the fastest motion on a grid that is refined wherever a limited quantity changes much within an interval.
-    pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, NoSpeed>) {
+    pub(super) fn fastest_refined(
+        mut self,
+        path: &Path,
+        constraints: &Constraints,
+    ) -> (Self, Result<TimingSweep, NoTiming>) {
         let mut level = self.level();
         for _ in 0..MAX_REFINEMENTS {
             let Ok(x) = &level else { break };
@@ -128,11 +132,16 @@ impl Grid {
 
     /// Finds the fastest motion on a grid that is refined where a profile exceeds a limit between two stations. `past`
     /// is the factor on time that each interval needs.
-    pub(super) fn mended(self, path: &Path, constraints: &Constraints, past: &[f64]) -> (Self, Result<Sweep, NoSpeed>) {
+    pub(super) fn mended(
+        self,
+        path: &Path,
+        constraints: &Constraints,
+        past: &[f64],
+    ) -> (Self, Result<TimingSweep, NoTiming>) {
         let parts: Vec<usize> = (0..past.len())
             .map(|i| {
                 let wide = self.s[i + 1] - self.s[i] > MIN_INTERVAL;
-                if past[i] > 1.0 + MENDED_FROM && wide { PARTS_IF_EXCEEDED } else { 1 }
+                if past[i] > 1.0 + REPAIR_THRESHOLD && wide { PARTS_IF_EXCEEDED } else { 1 }
             })
             .collect();
         let grid = self.divided(path, constraints, &parts);
@@ -171,47 +180,47 @@ impl Grid {
 
     /// Returns the factors on time with which a station, passed with given progress, just keeps each limit except those
     /// on jerk.
-    pub(super) fn stretches(&self, i: usize, at: &Progress) -> Stretches {
+    pub(super) fn stretches(&self, i: usize, at: &PathProgress) -> Stretches {
         stretches(self.rows_at(i), self.speeds_at(i), at)
     }
 
     /// Finds the fastest motion from rest to rest.
-    pub(super) fn fastest(&self) -> Result<Sweep, NoSpeed> {
+    pub(super) fn fastest(&self) -> Result<TimingSweep, NoTiming> {
         Ok(self.risen(self.level()?))
     }
 
     /// First pass: returns x at every station with u constant over each interval.
-    fn level(&self) -> Result<Vec<f64>, NoSpeed> {
+    fn level(&self) -> Result<Vec<f64>, NoTiming> {
         self.sweep(&vec![0.0; self.s.len().saturating_sub(1)])
     }
 
     /// Second pass: returns x and the rises of u, from the x of the first pass.
-    fn risen(&self, level: Vec<f64>) -> Sweep {
+    fn risen(&self, level: Vec<f64>) -> TimingSweep {
         let rise = self.rises(&level);
         match self.sweep(&rise) {
             Ok(x) => {
                 // Limit the rises to those with which the new x stays positive.
                 let rise = (0..rise.len()).map(|i| self.clamped(&x, i, rise[i])).collect();
-                Sweep { x, rise }
+                TimingSweep { x, rise }
             }
-            Err(_) => Sweep { rise: vec![0.0; rise.len()], x: level },
+            Err(_) => TimingSweep { rise: vec![0.0; rise.len()], x: level },
         }
     }
 
     /// Sweeps the grid backwards and forwards; returns x at every station of the fastest motion with given rises of u.
-    fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, NoSpeed> {
+    fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, NoTiming> {
         let n = self.s.len();
         let mut x = vec![0.0; n];
         let mut reach = vec![[0.0; 2]; n];
         let mut space = Space::new();
         for i in (0..rise.len()).rev() {
             space.set(self, i, rise[i], reach[i + 1]);
-            let least = space.least().ok_or(NoSpeed::At(i))?;
-            let greatest = space.greatest().filter(|x| *x >= least).ok_or(NoSpeed::At(i))?;
+            let least = space.least().ok_or(NoTiming::At(i))?;
+            let greatest = space.greatest().filter(|x| *x >= least).ok_or(NoTiming::At(i))?;
             reach[i] = [least, greatest];
         }
         if reach[0][0] > 0.0 {
-            return Err(NoSpeed::Rest(0));
+            return Err(NoTiming::Rest(0));
         }
         for i in 0..rise.len() {
             space.set(self, i, rise[i], reach[i + 1]);
@@ -219,7 +228,7 @@ impl Grid {
             let [least, most] = reach[i + 1];
             x[i + 1] = (x[i] + 2.0 * (self.s[i + 1] - self.s[i]) * u).clamp(least, most);
             if x[i] == 0.0 && x[i + 1] == 0.0 {
-                return Err(NoSpeed::Rest(i));
+                return Err(NoTiming::Rest(i));
             }
         }
         Ok(x)
@@ -251,7 +260,7 @@ impl Grid {
 }
 
 /// x at every station, and the rise of u over every interval.
-pub(super) struct Sweep {
+pub(super) struct TimingSweep {
     pub(super) x: Vec<f64>,
     pub(super) rise: Vec<f64>,
 }
@@ -287,7 +296,7 @@ impl Space {
     }
 
     #[inline]
-    fn set(&mut self, grid: &Grid, i: usize, rise: f64, arrive: [f64; 2]) {
+    fn set(&mut self, grid: &PathConstraints, i: usize, rise: f64, arrive: [f64; 2]) {
         let twice = 2.0 * (grid.s[i + 1] - grid.s[i]);
         self.x = [0.0, grid.cap[i]];
         let (here, there) = (grid.rows_at(i), grid.rows_at(i + 1));

@@ -5,16 +5,16 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 use crate::planning::Motion;
 use crate::planning::curves::path::Path;
-use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
+use crate::planning::timing::law::PathProgress;
+use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
 
 /// A limit counts as active when at least this fraction of it is used.
-pub const ACTIVE: f64 = 1.0 - 1e-3;
+pub const ACTIVE_SHARE: f64 = 1.0 - 1e-3;
 
 /// Utilisation of the limits by a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Usage {
-    /// Fraction of T during which some limit is active, see [`ACTIVE`].
+    /// Fraction of T during which some limit is active, see [`ACTIVE_SHARE`].
     pub active: f64,
     /// Maximum utilisation of a limit: 1 is the limit, more is a violation.
     pub most: f64,
@@ -31,7 +31,7 @@ impl Usage {
     /// T.
     ///
     /// Torques come from the inverse dynamics (4) along the motion, independently of its planning.
-    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, samples: usize) -> Self {
+    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, samples: usize) -> Self {
         let mut usage = Self { active: 0.0, most: 0.0, when: 0.0, limit: None, leading: Vec::new() };
         let mut shares = TimeShares::default();
         for i in 0..samples {
@@ -41,7 +41,7 @@ impl Usage {
             if part > usage.most || usage.limit.is_none() {
                 (usage.most, usage.when, usage.limit) = (part, t, Some(limit));
             }
-            usage.active += if part >= ACTIVE { 1.0 / samples as f64 } else { 0.0 };
+            usage.active += if part >= ACTIVE_SHARE { 1.0 / samples as f64 } else { 0.0 };
             shares.add(limit, 1.0 / samples as f64);
         }
         usage.leading = shares.sorted();
@@ -91,7 +91,13 @@ pub(super) struct Demand {
 
 impl Demand {
     /// Computes the demand at an instant. Jerk is evaluated only if it is limited.
-    pub(super) fn of(path: &Path, model: &Inertia, around: &Surroundings, limits: &Limits, at: &Progress) -> Self {
+    pub(super) fn of(
+        path: &Path,
+        model: &Inertia,
+        around: &Surroundings,
+        limits: &DriveLimits,
+        at: &PathProgress,
+    ) -> Self {
         let point = path.at(at.s);
         let reference = point.timed(at);
         let e = point.q.units();
@@ -112,7 +118,7 @@ impl Demand {
     }
 
     /// Returns the maximum utilisation and its limit; `None` without limits.
-    pub(super) fn furthest(&self, limits: &Limits) -> Option<(f64, DriveLimit)> {
+    pub(super) fn furthest(&self, limits: &DriveLimits) -> Option<(f64, DriveLimit)> {
         let mut furthest: Option<(f64, DriveLimit)> = None;
         for quantity in LimitedQuantity::ALL {
             let used = match quantity {
@@ -134,7 +140,7 @@ impl Demand {
     /// Returns the factors on time with which the instant just keeps each limit. Rates fall with the first power of a
     /// factor, accelerations and the torque of motion with the second, jerks with the third. A factor is infinite if
     /// holding still already takes the whole torque.
-    pub(super) fn stretches(&self, limits: &Limits) -> [f64; 4 * MAX_DRIVES] {
+    pub(super) fn stretches(&self, limits: &DriveLimits) -> [f64; 4 * MAX_DRIVES] {
         let mut factors = [0.0; 4 * MAX_DRIVES];
         for (k, of) in factors.chunks_exact_mut(4).enumerate().take(self.speed.len()) {
             let (hold, moving, limit) = (self.holding[k], self.moving[k], limits.torque[k]);

@@ -6,7 +6,7 @@ use crate::mechanics::balance::{Breakdown, Condition};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Theme, palette};
-use crate::recording::rows::Track;
+use crate::recording::rows::SparseRows;
 use crate::recording::store::{Instant, Store, StoreError};
 use crate::recording::style::{colour, under};
 
@@ -91,7 +91,7 @@ impl Bars {
         states: impl Iterator<Item = (Instant, &'a Breakdown)>,
     ) -> Result<(), StoreError> {
         let path = under(root, &self.path);
-        let mut track = Track::new();
+        let mut track = SparseRows::new();
         let mut moves = false;
         for (at, breakdown) in states {
             moves |= at.edit.is_some();

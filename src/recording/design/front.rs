@@ -1,16 +1,16 @@
-//! [`Fronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
 //! machine.
 
 use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
 use super::state::bare;
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::picture::numbers::{at_step, signed, spaced};
+use crate::picture::numbers::{at_step, round_ticks, signed};
 use crate::picture::scene::palette::{Theme, mix, palette};
-use crate::recording::rows::Track;
+use crate::recording::rows::SparseRows;
 use crate::recording::store::{Instant, Store, StoreError};
 use crate::recording::style::{colour, under};
-use crate::session::design::Brief;
+use crate::session::design::DesignBrief;
 
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 13;
@@ -20,18 +20,18 @@ const SIZE: [f64; 2] = [2.2, 1.0];
 /// Margin around all points, as a fraction of their range.
 const MARGIN_FRACTION: f64 = 0.07;
 /// Left, top, right and bottom of the visible part of the drawing, with space for tick labels.
-pub const SEEN: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
+pub const FRONT_VIEW: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
 
 /// The Pareto fronts of the states of a design.
 #[derive(Debug)]
-pub struct Fronts {
+pub struct RecordedFronts {
     /// For each machine without counterweights: points of added mass, kg, and Σ D, kg m².
     all: Vec<(Machine, Vec<[f64; 2]>)>,
     /// Intervals of the axes, kg and kg m².
     ranges: [[f64; 2]; 2],
 }
 
-impl Fronts {
+impl RecordedFronts {
     /// Computes the Pareto fronts of those machines that have counterweights; `None` if no counterweights within the
     /// usual bounds balance any of them.
     pub fn of<'a>(machines: impl Iterator<Item = &'a Machine>) -> Option<Self> {
@@ -40,7 +40,7 @@ impl Fronts {
         for machine in machines {
             let Some(bare) = bare(machine) else { continue };
             if !all.iter().any(|(known, _)| *known == bare) {
-                let found = Brief::of(machine).front(&bare, FRONT_POINTS);
+                let found = DesignBrief::of(machine).front(&bare, FRONT_POINTS);
                 let points = found.map_or_else(|_| Vec::new(), |front| front.measures());
                 seen.extend(&points);
                 all.push((bare, points));
@@ -76,7 +76,7 @@ impl Fronts {
     ) -> Result<(), StoreError> {
         let root = &under(root, "front");
         self.axes(store, root)?;
-        let (mut curves, mut points) = (Track::new(), Track::new());
+        let (mut curves, mut points) = (SparseRows::new(), SparseRows::new());
         for (at, machine) in states {
             let known = bare(machine).and_then(|bare| self.all.iter().find(|(known, _)| *known == bare));
             curves.push(at, known.map(|(_, points)| points.iter().map(|at| self.place(*at)).collect::<Vec<_>>()));
@@ -127,7 +127,7 @@ impl Fronts {
         let (mut grid, mut places, mut words) = (Vec::new(), Vec::new(), Vec::new());
         let [wide, high] = SIZE.map(|x| x as f32);
         for (i, [from, to]) in self.ranges.into_iter().enumerate() {
-            let (marks, step) = spaced(from, to, if i == 0 { 7.0 } else { 5.0 });
+            let (marks, step) = round_ticks(from, to, if i == 0 { 7.0 } else { 5.0 });
             for mark in marks.into_iter().filter(|mark| (from..=to).contains(mark)) {
                 let mut at = [self.ranges[0][0], self.ranges[1][0]];
                 at[i] = mark;

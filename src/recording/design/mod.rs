@@ -10,26 +10,26 @@ mod words;
 use rerun::{EntityPath, TextDocument};
 
 use super::eye::Eye;
-use super::rows::Track;
-use super::space::Space;
+use super::rows::SparseRows;
+use super::space::RecordingSpace;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
 use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::Units;
-use crate::picture::scene::Changes;
-use crate::picture::scene::draft::Draft;
+use crate::mechanics::planar::UnitVectors;
+use crate::picture::scene::ItemChanges;
+use crate::picture::scene::draft::DesignDrawing;
 use crate::picture::scene::grid::Grid;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Theme, palette};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run, designs};
 use crate::simulation::frame::Frame;
 use bars::Bars;
-use front::Fronts;
-use state::State;
+use front::RecordedFronts;
+use state::DesignState;
 
-pub use front::SEEN;
+pub use front::FRONT_VIEW;
 pub use words::beside;
 
 /// Size of the machine as a fraction of the height and width of its view.
@@ -37,19 +37,19 @@ const FILL_FRACTION: f64 = 0.8;
 
 /// A design to be recorded.
 #[derive(Debug)]
-pub struct Design {
-    states: Vec<State>,
+pub struct RecordedDesign {
+    states: Vec<DesignState>,
     /// Frame at the start of the run; every state is drawn in its pose.
     start: Frame,
     /// Eye of the view of the machine.
     pub eye: Eye,
     /// Pareto fronts of the counterweights, if the machine has any.
-    pub fronts: Option<Fronts>,
+    pub fronts: Option<RecordedFronts>,
     /// Whether the design is the active tab: the machine has counterweights, or was changed in its session.
     pub leads: bool,
 }
 
-impl Design {
+impl RecordedDesign {
     /// Returns the design of a run of a scenario; `start` is its first frame.
     ///
     /// # Errors
@@ -60,13 +60,13 @@ impl Design {
         let first = all[0].machine.clone();
         let states = all.into_iter().map(|of| {
             let at = Instant { edit: several.then_some(of.changes), ..Instant::at(of.step, of.step as f64 * dt) };
-            State::of(at, of, &first, &run.plan().motion)
+            DesignState::of(at, of, &first, &run.plan().motion)
         });
-        let states: Vec<State> = states.collect();
+        let states: Vec<DesignState> = states.collect();
         let has_weights = states.iter().any(|state| !state.of.machine.spec().counterweights.is_empty());
         Ok(Self {
             eye: above(states.iter().map(|state| &state.of.machine), &start.q.units()),
-            fronts: has_weights.then(|| Fronts::of(states.iter().map(|state| &state.of.machine))).flatten(),
+            fronts: has_weights.then(|| RecordedFronts::of(states.iter().map(|state| &state.of.machine))).flatten(),
             leads: several || has_weights,
             states,
             start,
@@ -101,16 +101,16 @@ impl Design {
     /// Draws the machine from straight above.
     fn draw(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let palette = palette(Theme::Dark);
-        let mut space = Space::new(root.clone(), self.eye, palette.background);
+        let mut space = RecordingSpace::new(root.clone(), self.eye, palette.background);
         space.rename(vec![("design", "marks".into())]);
         let options = ViewOptions { invites: false, ..ViewOptions::default() };
         for state in &self.states {
             let machine = &state.of.machine;
-            let linkage = Linkage::of(machine);
-            let mut scene = Draft::of(machine).scene((&linkage, &Grid::of(&linkage)), &self.start, &options);
+            let linkage = LinkageModel::of(machine);
+            let mut scene = DesignDrawing::of(machine).scene((&linkage, &Grid::of(&linkage)), &self.start, &options);
             if state.at.edit.is_none() {
                 // There is only one state, so its solids are constant.
-                scene.solids.iter_mut().for_each(|solid| solid.changes = Changes::Nothing);
+                scene.solids.iter_mut().for_each(|solid| solid.changes = ItemChanges::Nothing);
             }
             space.draw(store, (state.at, state.at.edit.map(|_| state.at)), &scene)?;
         }
@@ -118,8 +118,13 @@ impl Design {
     }
 
     /// Writes the text of each state.
-    fn document(&self, store: &mut Store, path: &EntityPath, of: impl Fn(&State) -> String) -> Result<(), StoreError> {
-        let mut track = Track::new();
+    fn document(
+        &self,
+        store: &mut Store,
+        path: &EntityPath,
+        of: impl Fn(&DesignState) -> String,
+    ) -> Result<(), StoreError> {
+        let mut track = SparseRows::new();
         self.states.iter().for_each(|state| track.push(state.at, of(state)));
         let (clock, texts) = track.take();
         if let ([text], None) = (&texts[..], self.states[0].at.edit) {
@@ -133,12 +138,12 @@ impl Design {
 }
 
 /// Returns an eye from which all machines are completely visible.
-fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &Units) -> Eye {
+fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &UnitVectors) -> Eye {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let wider = |[low, high]: [f64; 2], x: f64, r: f64| [low.min(x - r), high.max(x + r)];
     let mut seen = [wider(none, 0.0, 0.0); 2];
     for machine in machines {
-        for bar in Linkage::of(machine).flat(e) {
+        for bar in LinkageModel::of(machine).flat(e) {
             for (p, r) in bar.ends.map(|end| (end, bar.radius)).into_iter().chain(bar.weights) {
                 seen = [wider(seen[0], p.re, r), wider(seen[1], p.im, r)];
             }

@@ -1,35 +1,35 @@
-//! [`State`]: the machine after a number of changes, with its balance and measures.
+//! [`DesignState`]: the machine after a number of changes, with its balance and measures.
 
 use crate::mechanics::balance::Breakdown;
 use crate::mechanics::machine::{Machine, MachineSpec};
 use crate::planning::Motion;
 use crate::recording::store::Instant;
-use crate::session::Designed;
+use crate::session::DesignVersion;
 use crate::study::measures::Measures;
 
 /// A state of a design.
 #[derive(Debug)]
-pub struct State {
+pub struct DesignState {
     /// Instant on the time lines.
     pub at: Instant,
     /// The machine, and the change that led to it.
-    pub of: Designed,
+    pub of: DesignVersion,
     /// Contributions of its parts to (7) and (8).
     pub breakdown: Breakdown,
     /// Cost of balance relative to a reference machine, and the name of that.
     pub measures: Option<(&'static str, Measures)>,
 }
 
-impl State {
+impl DesignState {
     /// Returns the state of a design; `first` is the machine at the start, `motion` the motion of the task.
-    pub fn of(at: Instant, of: Designed, first: &Machine, motion: &Motion) -> Self {
+    pub fn of(at: Instant, of: DesignVersion, first: &Machine, motion: &Motion) -> Self {
         Self { at, breakdown: Breakdown::of(&of.machine), measures: measured(&of, first, motion), of }
     }
 }
 
 /// Returns the cost of balance relative to the machine without its counterweights, as in the window, otherwise relative
 /// to the machine at the start.
-fn measured(of: &Designed, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
+fn measured(of: &DesignVersion, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
     let motion = Some(motion);
     match bare(&of.machine) {
         Some(bare) => Some(("beside it without discs", Measures::of(&bare, &of.machine, motion))),

@@ -1,13 +1,13 @@
 //! Texts about a state of a design, as Markdown.
 
-use super::state::State;
+use super::state::DesignState;
 use crate::mechanics::balance::Breakdown;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::settings::number::counted;
 use crate::settings::range::shortened;
-use crate::study::comparison::{DESIGN, Design};
+use crate::study::comparison::{DESIGN_COLUMNS, DesignMeasures};
 
 /// Maximum number of conditions as columns of a table; of more conditions the table is transposed.
 const MAX_COLUMNS: usize = 10;
@@ -18,7 +18,7 @@ const MAX_NAME_CHARS: usize = 24;
 const MAX_TEXT_CHARS: usize = 300;
 
 /// Returns the table of the measures of a machine; `count` is the total number of changes.
-pub(super) fn state(state: &State, count: usize) -> String {
+pub(super) fn state(state: &DesignState, count: usize) -> String {
     let machine = &state.of.machine;
     let inertia = Inertia::of(machine);
     let mut text = String::new();
@@ -137,10 +137,10 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
 }
 
 /// Returns the table that compares the machines of several cases, by name, with the first.
-pub fn beside(cases: &[(&str, Design)]) -> String {
+pub fn beside(cases: &[(&str, DesignMeasures)]) -> String {
     let heads = cases.iter().map(|(name, _)| cell(name, MAX_NAME_CHARS));
     let heads: Vec<String> = [String::new()].into_iter().chain(heads).collect();
-    let rows = DESIGN.iter().map(|column| {
+    let rows = DESIGN_COLUMNS.iter().map(|column| {
         let cells = cases.iter().map(|(_, design)| match (column.value)(design) {
             Some(x) => signed(x, column.decimals),
             None => "–".into(),

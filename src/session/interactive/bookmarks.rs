@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::Session;
-use super::change::Change;
+use super::change::HistoryStep;
 use crate::query::Shared;
-use crate::session::document::Kept;
+use crate::session::document::AnnotationKind;
 use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
 use crate::settings::range::shortened;
 
@@ -58,16 +58,23 @@ impl Session {
             let at = bookmarks.partition_point(|mark| mark.time <= time);
             bookmarks.insert(at, Bookmark { time, name });
         }
-        self.change_beside(title.clone(), Kept::Bookmarks, |document| document.bookmarks = Arc::new(bookmarks));
+        self.change_beside(title.clone(), AnnotationKind::Bookmarks, |document| {
+            document.bookmarks = Arc::new(bookmarks)
+        });
         Ok(Some(title))
     }
 
     /// Changes bookmarks or branches; the run stays as it is.
-    pub(super) fn change_beside(&mut self, title: String, kept: Kept, change: impl FnOnce(&mut super::Document)) {
+    pub(super) fn change_beside(
+        &mut self,
+        title: String,
+        kept: AnnotationKind,
+        change: impl FnOnce(&mut super::Document),
+    ) {
         self.end_gesture();
         let before = self.document.clone();
         change(&mut self.document);
         self.redo.clear();
-        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: Some(kept) }));
+        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, beside: Some(kept) }));
     }
 }

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use super::Session;
-use super::change::Change;
-use crate::query::{Same, Whole};
+use super::change::HistoryStep;
+use crate::query::{ByIdentity, QuickWork};
 use crate::session::Refusal;
 use crate::session::changes::in_order;
-use crate::session::document::{Document, Kept, Left, Watch};
+use crate::session::document::{AnnotationKind, Document, LeftBranch, ProgressCallback};
 use crate::session::fork::{Fork, Forks};
 use crate::session::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
 
@@ -28,23 +28,23 @@ impl Session {
         let branches = &self.document.branches;
         // Differences do not depend on how far the run goes beyond the longest branch.
         let end = self.document.end.min(branches.iter().map(|left| left.end).max().unwrap_or(0));
-        self.run.queries().ask::<Whole<Forks>>(&(Same(branches.clone()), self.edits.clone(), end))
+        self.run.queries().ask::<QuickWork<Forks>>(&(ByIdentity(branches.clone()), self.edits.clone(), end))
     }
 
-    fn fork(&self, left: &Left) -> Fork {
+    fn fork(&self, left: &LeftBranch) -> Fork {
         left.beside(&self.edits, self.document.end)
     }
 
     /// Returns the run on display as a branch.
-    fn as_left(&self) -> Left {
+    fn as_left(&self) -> LeftBranch {
         let last = (self.length() / self.scenario().step).round() as u64;
         let end = if self.frames.last().is_some_and(|frame| frame.is_finite()) { last } else { 0 };
         let (script, step) = (self.document.script.clone(), self.scenario().step);
-        Left { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
+        LeftBranch { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
     }
 
     /// Returns the branches with the present run added, and the new value of `partings`.
-    pub(super) fn with_left(&self) -> (Arc<Vec<Left>>, (u64, Option<String>)) {
+    pub(super) fn with_left(&self) -> (Arc<Vec<LeftBranch>>, (u64, Option<String>)) {
         let left = self.as_left();
         let mut all = self.document.branches.to_vec();
         let mut partings = (self.partings.0, None);
@@ -65,7 +65,7 @@ impl Session {
     ///
     /// # Errors
     /// If the branch cannot be run again, or `watch` cancels it; then nothing has changed.
-    pub fn switch_branch_while(&mut self, branch: usize, watch: Watch<'_>) -> Result<(), Refusal> {
+    pub fn switch_branch_while(&mut self, branch: usize, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(next) = self.document.branches.get(branch) else { return Ok(()) };
         let title = format!("branch: {}", self.fork(next).title);
@@ -76,14 +76,14 @@ impl Session {
         self.restore(Document { script, end, branches: Arc::new(branches), ..before.clone() }, true, watch)?;
         self.playing = false;
         self.redo.clear();
-        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: None }));
+        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, beside: None }));
         Ok(())
     }
 
     /// Removes a branch. Returns a description of the change, if there is such a branch.
     pub fn drop_branch(&mut self, branch: usize) -> Option<String> {
         let title = format!("remove branch: {}", self.fork(self.document.branches.get(branch)?).title);
-        self.change_beside(title.clone(), Kept::Branches, |document| {
+        self.change_beside(title.clone(), AnnotationKind::Branches, |document| {
             Arc::make_mut(&mut document.branches).remove(branch);
         });
         Some(title)
@@ -100,7 +100,7 @@ impl Session {
 
     /// Returns the branches as they are saved.
     pub(super) fn kept_branches(&self) -> Vec<Branch> {
-        let saved = |left: &Left| Branch { duration: left.end as f64 * left.step, edits: left.script.to_vec() };
+        let saved = |left: &LeftBranch| Branch { duration: left.end as f64 * left.step, edits: left.script.to_vec() };
         self.document.branches.iter().map(saved).collect()
     }
 
@@ -114,7 +114,7 @@ impl Session {
             let last = script.last().map_or(0, |timed| timed.step);
             let end = ((branch.duration / step).round() as u64).max(last).min(MAX_FRAMES as u64 - 1);
             script.cut(end);
-            Left { script, end, step }
+            LeftBranch { script, end, step }
         };
         let branches = branches.iter().map(left).collect();
         (self.document.bookmarks, self.document.branches) = (Arc::new(bookmarks), Arc::new(branches));

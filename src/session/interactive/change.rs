@@ -1,11 +1,11 @@
-//! [`Change`]: an undo entry.
+//! [`HistoryStep`]: an undo entry.
 
-use crate::session::document::{Document, Kept};
+use crate::session::document::{AnnotationKind, Document};
 use crate::session::edit::{Edit, TimedEdit};
 
 /// Undo entry.
 #[derive(Clone, Debug)]
-pub(super) struct Change {
+pub(super) struct HistoryStep {
     /// Document before the change; for an entry of redo, after it.
     pub before: Document,
     /// The edit, if the change is one.
@@ -15,10 +15,10 @@ pub(super) struct Change {
     /// Description.
     pub title: String,
     /// Set if only bookmarks or only branches have changed.
-    pub beside: Option<Kept>,
+    pub beside: Option<AnnotationKind>,
 }
 
-impl Change {
+impl HistoryStep {
     /// Whether it changes path or base: the motion is then planned anew, so the edit is allowed only before the first
     /// step.
     pub fn plans(&self) -> bool {

@@ -1,9 +1,9 @@
 //! Applies edits to a session: at the present step, or to the run as a whole.
 
 use super::Session;
-use crate::query::Watch;
-use crate::session::changes::Failed;
-use crate::session::document::{Document, Performed};
+use crate::query::ProgressCallback;
+use crate::session::changes::ScriptError;
+use crate::session::document::{Document, DocumentRun};
 use crate::session::edit::{Edit, TimedEdit};
 use crate::session::refusal::Refusal;
 
@@ -22,7 +22,7 @@ impl Session {
     ///
     /// # Errors
     /// As [`apply`](Self::apply), and if `watch` cancels it.
-    pub fn apply_while(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+    pub fn apply_while(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         let mut now = self.concerns_now(&edit);
         if let (true, Some(waiting)) = (now, self.run.waiting()) {
             return Err(waiting.why.clone());
@@ -64,7 +64,7 @@ impl Session {
     }
 
     /// Applies an edit at the present step. If an earlier frame is on display, the later frames are replaced.
-    fn apply_now(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn apply_now(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
             return Err(Refusal::Full { time: self.run.simulation().time() });
         }
@@ -75,7 +75,7 @@ impl Session {
             (document.branches, partings) = self.with_left();
             document.end = self.cursor as u64;
             document.script.cut(document.end);
-            remade = Some(document.perform(Some(&self.run), false, watch).map_err(Failed::refusal)?);
+            remade = Some(document.perform(Some(&self.run), false, watch).map_err(ScriptError::refusal)?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// Applies an edit before the first step, so that a setting holds during the whole run.
-    fn amend(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn amend(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);
@@ -144,7 +144,7 @@ impl Session {
     }
 
     /// Applies an edit while time passes, without an undo entry.
-    pub(super) fn append(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
+    pub(super) fn append(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
             return self.restore(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
         }
@@ -159,9 +159,14 @@ impl Session {
     /// Runs a document and shows the same instant as before, if there is a frame. If `patient`, a task that does not
     /// fit its machine waits. The document stays complete, so that the run goes on where it was once the task fits
     /// again.
-    pub(super) fn restore(&mut self, document: Document, patient: bool, watch: Watch<'_>) -> Result<(), Refusal> {
-        let Performed { run, frames, machines } =
-            document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
+    pub(super) fn restore(
+        &mut self,
+        document: Document,
+        patient: bool,
+        watch: ProgressCallback<'_>,
+    ) -> Result<(), Refusal> {
+        let DocumentRun { run, frames, machines } =
+            document.perform(Some(&self.run), patient, watch).map_err(ScriptError::refusal)?;
         self.playing &= run.waiting().is_none();
         self.edits = document.script.to_vec().into_iter().collect();
         (self.document, self.run, self.unedited) = (document, run, None);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::Session;
-use super::change::Change;
-use crate::query::Watch;
+use super::change::HistoryStep;
+use crate::query::ProgressCallback;
 use crate::session::document::Document;
 use crate::session::edit::{Edit, TimedEdit};
 use crate::session::refusal::Refusal;
@@ -24,7 +24,7 @@ impl Session {
             }
             _ => {
                 let title = timed.edit.title();
-                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title, beside: None }));
+                self.undo.push(Arc::new(HistoryStep { before, edit: Some(timed), inverse, title, beside: None }));
             }
         }
         self.gesture = true;
@@ -75,19 +75,19 @@ impl Session {
     ///
     /// # Errors
     /// As [`undo`](Self::undo), and if `watch` cancels it.
-    pub fn undo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
+    pub fn undo_while(&mut self, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         self.go_to(&change, change.inverse.as_ref(), watch)?;
         self.undo.pop();
-        self.redo.push(Arc::new(Change { before: after, ..Change::clone(&change) }));
+        self.redo.push(Arc::new(HistoryStep { before: after, ..HistoryStep::clone(&change) }));
         Ok(())
     }
 
     /// Goes to the document of an undo or redo entry: in motion by `edit` at the present step, paused or at rest by
     /// restoring the document.
-    fn go_to(&mut self, change: &Change, edit: Option<&Edit>, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn go_to(&mut self, change: &HistoryStep, edit: Option<&Edit>, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         match (edit, change.beside) {
             (_, Some(kept)) => {
                 self.document.keep_as(&change.before, kept);
@@ -113,13 +113,13 @@ impl Session {
     ///
     /// # Errors
     /// As [`redo`](Self::redo), and if `watch` cancels it.
-    pub fn redo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
+    pub fn redo_while(&mut self, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         self.go_to(&change, change.edit.as_ref().map(|timed| &timed.edit), watch)?;
         self.redo.pop();
-        self.undo.push(Arc::new(Change { before, ..Change::clone(&change) }));
+        self.undo.push(Arc::new(HistoryStep { before, ..HistoryStep::clone(&change) }));
         Ok(())
     }
 
@@ -145,12 +145,17 @@ impl Session {
 
     /// Restores a document after an edit that could not apply for the reason `why`, unless `watch` has cancelled the
     /// edit.
-    fn restore_unless_stopped(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn restore_unless_stopped(
+        &mut self,
+        why: Refusal,
+        document: &Document,
+        watch: ProgressCallback<'_>,
+    ) -> Result<(), Refusal> {
         if why == Refusal::Stopped { Err(why) } else { self.return_to(document, watch) }
     }
 
     /// Restores a document and pauses.
-    fn return_to(&mut self, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+    fn return_to(&mut self, document: &Document, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         self.restore(document.clone(), true, watch)?;
         self.playing = false;
         if self.is_led() {
@@ -173,7 +178,7 @@ impl Session {
         let title = format!("open {}", next.document.scenario.title);
         next.undo = std::mem::take(&mut self.undo);
         next.partings.0 = self.partings.0;
-        next.undo.push(Arc::new(Change {
+        next.undo.push(Arc::new(HistoryStep {
             before: self.document.clone(),
             edit: None,
             inverse: None,

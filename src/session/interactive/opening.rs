@@ -1,9 +1,9 @@
 //! Opens sessions.
 
 use super::Session;
-use crate::query::Watch;
-use crate::session::changes::{Failed, in_order};
-use crate::session::document::{Document, Performed};
+use crate::query::ProgressCallback;
+use crate::session::changes::{ScriptError, in_order};
+use crate::session::document::{Document, DocumentRun};
 use crate::session::edit::TimedEdit;
 use crate::session::refusal::Refusal;
 use crate::session::run::Run;
@@ -23,7 +23,7 @@ impl Session {
     ///
     /// # Errors
     /// As [`open`](Self::open), and if `watch` cancels it.
-    pub fn open_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
+    pub fn open_while(scenario: Scenario, watch: ProgressCallback<'_>) -> Result<Self, Refusal> {
         // Only a scenario with edits can be a session that was saved while it waited.
         let patient = !scenario.edits.is_empty();
         Self::opened(scenario, patient, watch)
@@ -38,7 +38,7 @@ impl Session {
         Self::opened(scenario, true, &mut |_| true)
     }
 
-    fn opened(mut scenario: Scenario, patient: bool, watch: Watch<'_>) -> Result<Self, Refusal> {
+    fn opened(mut scenario: Scenario, patient: bool, watch: ProgressCallback<'_>) -> Result<Self, Refusal> {
         let edits = std::mem::take(&mut scenario.edits);
         let (bookmarks, branches) = (std::mem::take(&mut scenario.bookmarks), std::mem::take(&mut scenario.branches));
         let opened = Self::replayed(scenario, in_order(&edits), patient, watch);
@@ -47,7 +47,12 @@ impl Session {
         Ok(session)
     }
 
-    fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
+    fn replayed(
+        scenario: Scenario,
+        script: Vec<TimedEdit>,
+        patient: bool,
+        watch: ProgressCallback<'_>,
+    ) -> Result<Self, ScriptError> {
         let known: Script = script.iter().cloned().collect();
         let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
@@ -62,7 +67,7 @@ impl Session {
                 };
                 let end = end.min(MAX_FRAMES as u64 - 1);
                 if let Some(late) = script.iter().position(|e| e.step > end) {
-                    return Err(Failed::at(late, Refusal::Full { time: end as f64 * run.scenario().step }));
+                    return Err(ScriptError::at(late, Refusal::Full { time: end as f64 * run.scenario().step }));
                 }
                 end
             }
@@ -73,8 +78,8 @@ impl Session {
         Ok(session)
     }
 
-    fn of(document: Document, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
-        let Performed { run, frames, machines } = document.perform(None, patient, watch)?;
+    fn of(document: Document, patient: bool, watch: ProgressCallback<'_>) -> Result<Self, ScriptError> {
+        let DocumentRun { run, frames, machines } = document.perform(None, patient, watch)?;
         let cursor = frames.len() - 1;
         Ok(Self {
             edits: document.script.to_vec().into_iter().collect(),

@@ -1,8 +1,8 @@
 //! Playback of a session: how time passes, and which frame is on display.
 
 use super::Session;
-use crate::query::Watch;
-use crate::session::document::WORD;
+use crate::query::ProgressCallback;
+use crate::session::document::REPORT_FRAMES;
 
 impl Session {
     /// Starts playback. At the end of a finished motion it starts over.
@@ -27,11 +27,11 @@ impl Session {
     }
 
     /// Does the same as [`seek`](Self::seek), until `watch` cancels it.
-    pub fn seek_while(&mut self, time: f64, watch: Watch<'_>) {
+    pub fn seek_while(&mut self, time: f64, watch: ProgressCallback<'_>) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         let ahead = self.steps_to(time);
         for i in 1..=ahead {
-            if !self.has_room() || (i.is_multiple_of(WORD) && !watch(i as f64 / ahead as f64)) {
+            if !self.has_room() || (i.is_multiple_of(REPORT_FRAMES) && !watch(i as f64 / ahead as f64)) {
                 break;
             }
             self.advance_run();

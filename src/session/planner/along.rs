@@ -1,27 +1,27 @@
 //! Motions along curves and joint lines: the parts of a path, and their timing.
 
-use super::plan::{Pace, Plan, dynamics_of, keeps_rules};
+use super::plan::{Plan, TimingBottleneck, dynamics_of, keeps_rules};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Motion;
-use crate::planning::curves::path::{Chained, least_rate_curve, minimum_norm_curve};
+use crate::planning::curves::path::{PathChain, least_rate_curve, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path};
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::timing::{Limits, Profile, TimeLaw, Usage, fastest};
+use crate::planning::timing::{DriveLimits, Profile, TimeLaw, Usage, fastest};
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Corners, Scenario, Shape, Task};
+use crate::session::scenario::{Corners, PathShape, Scenario, Task};
 
 /// Paths from rest to rest, each with its length.
-pub(super) type Parts = Vec<(Path, f64)>;
+pub(super) type PathSegments = Vec<(Path, f64)>;
 
 /// Plans a motion through the points of a task; `parts` finds the parts of its path.
 pub(super) fn along_parts(
     scenario: &Scenario,
-    parts: &dyn Fn(&Scenario) -> Result<Parts, Refusal>,
+    parts: &dyn Fn(&Scenario) -> Result<PathSegments, Refusal>,
 ) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    let motion = |scenario: &Scenario| -> Result<(Motion, Option<Pace>), Refusal> {
+    let motion = |scenario: &Scenario| -> Result<(Motion, Option<TimingBottleneck>), Refusal> {
         let (motion, pace) = timed(scenario, parts(scenario)?)?;
         keeps_rules(scenario, &motion)?;
         Ok((motion, pace))
@@ -43,13 +43,16 @@ pub(super) fn along_parts(
 
 /// Times the parts of a path, each from rest to rest. A time law gives each part a share of the time of the task in
 /// proportion to its length. The fastest laws find the least time of each part.
-pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
+pub(super) fn timed(
+    scenario: &Scenario,
+    parts: Vec<(Path, f64)>,
+) -> Result<(Motion, Option<TimingBottleneck>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();
     let (model, around) = dynamics_of(scenario);
-    let limits = Limits::of(&scenario.machine);
+    let limits = DriveLimits::of(&scenario.machine);
     let mut timings = Vec::with_capacity(parts.len());
-    let mut pace: Option<Pace> = None;
+    let mut pace: Option<TimingBottleneck> = None;
     for (path, length) in &parts {
         let profile = if task.law.is_fastest() {
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
@@ -57,7 +60,7 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
             let time = profile.duration();
             // A part without motion has no gap: its least time is 0.
             let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
-            let pace = pace.get_or_insert(Pace { unlimited: Some(0.0), ..Pace::default() });
+            let pace = pace.get_or_insert(TimingBottleneck { unlimited: Some(0.0), ..TimingBottleneck::default() });
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
             pace.taken += time;
             if pace.leading.is_none() {
@@ -74,7 +77,7 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
         1 => Motion { path: parts.remove(0).0, profile: timings.remove(0).0 },
         _ => {
             let nowhere = || Refusal::Task("want at least two points that are apart".into());
-            let path = Path::Chain(Chained::new(parts).ok_or_else(nowhere)?);
+            let path = Path::Chain(PathChain::new(parts).ok_or_else(nowhere)?);
             Motion { path, profile: Profile::sequence(timings) }
         }
     };
@@ -82,11 +85,11 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
 }
 
 /// Stretches a motion in time until it keeps the limits of the drives. Fails if no speed does.
-pub(super) fn slowed(
+pub(super) fn slow_to_limits(
     motion: Motion,
     model: &Inertia,
     around: &Surroundings,
-    limits: &Limits,
+    limits: &DriveLimits,
 ) -> Result<Motion, Refusal> {
     const SAMPLES: usize = 2000;
     motion.slowed(model, around, limits).ok_or_else(|| {
@@ -103,8 +106,8 @@ pub(super) fn slowed(
 pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
     let blend = if task.corners == Corners::Blend { task.blend } else { 0.0 };
     Ok(match task.shape() {
-        Shape::JointLine | Shape::Line => Curve::polyline(points, task.closed, blend)?,
-        Shape::Arc => match points {
+        PathShape::JointLine | PathShape::Line => Curve::polyline(points, task.closed, blend)?,
+        PathShape::Arc => match points {
             [a, b, c] => vec![Curve::arc([*a, *b, *c], task.closed)?],
             _ => {
                 let have = points.len();
@@ -113,8 +116,8 @@ pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
                 )));
             }
         },
-        Shape::Spline => vec![Curve::spline(points, task.closed)?],
-        Shape::Freehand => vec![Curve::freehand(points, task.closed)?],
+        PathShape::Spline => vec![Curve::spline(points, task.closed)?],
+        PathShape::Freehand => vec![Curve::freehand(points, task.closed)?],
     })
 }
 
@@ -124,7 +127,7 @@ pub(super) fn by_least_rates(
     start: DriveAngles,
     curves: &[Curve],
     held: Option<&PoseSpace>,
-) -> Result<Parts, Refusal> {
+) -> Result<PathSegments, Refusal> {
     let tip = scenario.machine.end_effector();
     let mut q = start;
     let mut parts = Vec::with_capacity(curves.len());
@@ -144,7 +147,7 @@ pub(super) fn by_least_rates(
 pub(super) fn in_rounds(
     scenario: &Scenario,
     start: DriveAngles,
-    round: &dyn Fn(DriveAngles, usize) -> Result<(Parts, DriveAngles), Refusal>,
+    round: &dyn Fn(DriveAngles, usize) -> Result<(PathSegments, DriveAngles), Refusal>,
 ) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     if task.cycles > 1 && !task.closed {
@@ -164,7 +167,7 @@ pub(super) fn in_rounds(
         1 => legs.remove(0),
         _ => {
             let profile = Profile::sequence(legs.iter().map(|m| (m.profile.clone(), 1.0)).collect());
-            let path = Chained::new(legs.into_iter().map(|m| (m.path, 1.0)).collect());
+            let path = PathChain::new(legs.into_iter().map(|m| (m.path, 1.0)).collect());
             Motion { path: Path::Chain(path.ok_or_else(|| Refusal::Task("want a path".into()))?), profile }
         }
     };

@@ -1,22 +1,22 @@
 //! Motions from A at one b to B at another, along a straight line in joint space or with a bang-bang b̈.
 
-use super::along::{slowed, timed};
-use super::plan::{Plan, Space, dynamics_of, keeps_rules};
-use super::poses::{off, refusal, serve};
+use super::along::{slow_to_limits, timed};
+use super::plan::{Plan, PlannerSpace, dynamics_of, keeps_rules};
+use super::poses::{no_b_refusal, poses_at_b, refusal};
 use crate::mechanics::planar::Vector;
-use crate::planning::common::why_not;
+use crate::planning::common::unreachable_reason;
 use crate::planning::curves::Path;
 use crate::planning::off_plane::Price;
-use crate::planning::off_plane::price::{INWARDS, bang_bang_in_b, joint_line, nearest_planes};
+use crate::planning::off_plane::price::{INWARD_SHARES, bang_bang_in_b, joint_line, nearest_planes};
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::posed::{Posed, nearest_poses};
-use crate::planning::timing::{Limits, Profile, TimeLaw};
+use crate::planning::posed::{PoseAngles, nearest_poses};
+use crate::planning::timing::{DriveLimits, Profile, TimeLaw};
 use crate::planning::{Forecast, Motion};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
 
 /// Plans a motion from A at the b of the task to B at another b; a limit on |n_B| bounds the time from below.
-pub(super) fn change_b(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub(super) fn change_b(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     goes_straight(&scenario.task)?;
     let space = match space {
         Err(NoPoseSpace::Free) => {
@@ -38,21 +38,21 @@ fn goes_straight(task: &Task) -> Result<(), Refusal> {
 }
 
 /// Moves along the joint line between two poses. The fastest law with a limit on |n_B| uses a bang-bang b̈ instead.
-fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[Posed; 2]) -> Result<Plan, Refusal> {
+fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[PoseAngles; 2]) -> Result<Plan, Refusal> {
     let (task, line) = (&scenario.task, joint_line(ends));
     let (model, around) = dynamics_of(scenario);
     let price = Price::of(&model, ends[1].b - ends[0].b)?;
     // Only if b changes: at T² = `square` · (peak |s̈| for T = 1 s) the peak of |n_B| equals its limit.
     let moves = price.delta_b().abs() > 1e-9;
     let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
-    let limits = Limits::of(&scenario.machine);
+    let limits = DriveLimits::of(&scenario.machine);
     let motion = match (task.law, square) {
         (TimeLaw::Fastest, Some(square)) => {
             let table = bang_bang_in_b(space, ends);
             let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
             let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
             // The time that a small change of b takes may be too short for the joints.
-            slowed(motion, &model, &around, &limits)?
+            slow_to_limits(motion, &model, &around, &limits)?
         }
         (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (law.peak() * square).sqrt().max(task.time)),
         (_, square) => {
@@ -71,17 +71,17 @@ fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[Posed; 2]) -> Result<
 }
 
 /// Returns poses of A and B, each at its b.
-fn ends(task: &Task, space: &PoseSpace) -> Result<[Posed; 2], Refusal> {
+fn ends(task: &Task, space: &PoseSpace) -> Result<[PoseAngles; 2], Refusal> {
     let points = task.points();
     let last = points.len() - 1;
     let (a, b) = (points[0], points[last]);
     let nearest = |b_of: [f64; 2]| nearest_poses(space, [a, b], b_of);
-    let unreached = |i: usize, b: f64| refusal(task, i, why_not(space, &points[i..=i], 0, b));
+    let unreached = |i: usize, b: f64| refusal(task, i, unreachable_reason(space, &points[i..=i], 0, b));
     if let Some(b_to) = task.b_to {
-        serve(task, space, &points[..1])?;
+        poses_at_b(task, space, &points[..1])?;
         return nearest([task.b, b_to]).ok_or_else(|| unreached(last, b_to));
     }
-    let b_set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
+    let b_set = |i: usize, p: Vector| space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason));
     let own = b_set(0, a)?;
     let a_reached = space.reaches(a, task.b);
     // If each point has a single b and the task leaves b out, stored as 0, the b of A is used.
@@ -96,7 +96,7 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[Posed; 2], Refusal> {
         true => [from, other.inwards(to, share)],
         false => [own.inwards(from, share), other.inwards(to, share)],
     };
-    pair.and_then(|pair| INWARDS.into_iter().find_map(|share| nearest(inwards(pair, share)))).ok_or_else(|| {
+    pair.and_then(|pair| INWARD_SHARES.into_iter().find_map(|share| nearest(inwards(pair, share)))).ok_or_else(|| {
         Refusal::NoWay("no poses of A and B were found to go straight between: want other points".into())
     })
 }

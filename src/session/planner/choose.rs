@@ -6,20 +6,20 @@ use super::given::given;
 use super::held::held;
 use super::least_reaction::least_reaction;
 use super::momentum::zero_momentum;
-use super::plan::{Plan, Space};
-use super::proposals::tried;
+use super::plan::{Plan, PlannerSpace};
+use super::proposals::tried_refusal;
 use super::rates::{minimum_norm, same_tip};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 
-use crate::session::refusal::{Refusal, allowed};
+use crate::session::refusal::{Refusal, check_time};
 use crate::session::scenario::{Scenario, Task, TaskKind};
 
 /// Plans the task of a scenario.
 ///
 /// # Errors
 /// Which point, part of the path or setting is infeasible, and what would be feasible.
-pub fn plan(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
@@ -38,11 +38,11 @@ pub fn plan(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
             scenario.step
         )));
     }
-    allowed(time).map(|()| plan)
+    check_time(time).map(|()| plan)
 }
 
 /// Plans the task of a scenario, without the proposals of [`elsewhere`].
-fn directly(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     match scenario.task.kind {
         _ if scenario.task.samples.is_some() => given(scenario, space),
         TaskKind::Given => given(scenario, space),
@@ -61,5 +61,5 @@ fn elsewhere(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusa
     // The path does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
-    tried(space, refusal, |b, _| directly(&at(b), Ok(space)).map(|_| ()))
+    tried_refusal(space, refusal, |b, _| directly(&at(b), Ok(space)).map(|_| ()))
 }

@@ -2,7 +2,7 @@
 //! resolved.
 
 use super::held::along_curves;
-use super::plan::{Effort, Plan, Space, dynamics_of, keeps_rules};
+use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::start;
 use crate::planning::Motion;
 use crate::planning::curves::path::minimum_norm_curve;
@@ -10,7 +10,7 @@ use crate::planning::curves::{Curve, Path, PathTable};
 use crate::planning::following::{Rule, trace};
 use crate::planning::forecast::Forecast;
 use crate::planning::pose_space::NoPoseSpace;
-use crate::planning::timing::{Limits, Profile};
+use crate::planning::timing::{DriveLimits, Profile};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
 
@@ -25,7 +25,7 @@ const MAX_INSTANTS: usize = 100_000;
 ///
 /// # Errors
 /// If there are no samples, or they do not fit the machine or the kind of the task, or cannot be followed.
-pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let (task, drives) = (&scenario.task, scenario.machine.drives());
     let refuse = |why: String| Err(Refusal::Task(why));
     let Some(samples) = &task.samples else {
@@ -70,7 +70,7 @@ pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refus
     keeps_rules(scenario, &motion)?;
     let (model, around) = dynamics_of(scenario);
     let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
-    let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
+    let forecast = Forecast::at(&motion, &model, &around, &DriveLimits::of(&scenario.machine), instants);
     Ok(Plan::foreseen(motion, forecast))
 }
 
@@ -78,7 +78,7 @@ pub(super) fn given(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refus
 ///
 /// # Errors
 /// If the curve cannot be followed.
-fn sampled(scenario: &Scenario, space: Space<'_>, curve: &Curve) -> Result<PathTable, Refusal> {
+fn sampled(scenario: &Scenario, space: PlannerSpace<'_>, curve: &Curve) -> Result<PathTable, Refusal> {
     let points = scenario.task.points();
     let space = match space {
         Err(NoPoseSpace::Free) => {
@@ -92,7 +92,7 @@ fn sampled(scenario: &Scenario, space: Space<'_>, curve: &Curve) -> Result<PathT
     };
     let other = |why| Refusal::Task(format!("{why}: want minimum-norm, or samples of the drive angles"));
     space.follows_curves().map_err(other)?;
-    match along_curves(scenario, space, std::slice::from_ref(curve), None, Effort::Whole)?.pop() {
+    match along_curves(scenario, space, std::slice::from_ref(curve), None, PlanningEffort::Whole)?.pop() {
         Some((Path::Table(table), _)) => Ok(table),
         _ => Err(Refusal::Task("the samples give no path".into())),
     }

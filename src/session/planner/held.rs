@@ -1,24 +1,24 @@
 //! Paths with the b of their task held, so that nothing reaches the base.
 
-use super::along::{Parts, along_parts, by_least_rates, curves};
-use super::plan::{Effort, Plan, Space};
-use super::poses::{faced, posed, reached, refusal, serve};
+use super::along::{PathSegments, along_parts, by_least_rates, curves};
+use super::plan::{Plan, PlannerSpace, PlanningEffort};
+use super::poses::{posed, poses_at_b, poses_facing, reached, refusal};
 use super::posture;
-use super::proposals::proved;
+use super::proposals::proved_refusal;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::common::unreached;
 use crate::planning::curves::{Curve, Path};
 use crate::planning::following::{Rule, trace};
 use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
-use crate::planning::posed::Posed;
+use crate::planning::posed::PoseAngles;
 use crate::planning::timing::TimeLaw;
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Corners, Scenario, Shape, Task};
+use crate::session::scenario::{Corners, PathShape, Scenario, Task};
 
 /// Plans a motion with b held. A refusal proposes only what has been tried.
-pub(super) fn held(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub(super) fn held(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    along_parts(scenario, &|scenario| reactionless(scenario, space, Effort::Whole)).map_err(|refusal| {
+    along_parts(scenario, &|scenario| reactionless(scenario, space, PlanningEffort::Whole)).map_err(|refusal| {
         let Ok(known) = space else { return refusal };
         // The path does not depend on the time law.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
@@ -27,12 +27,16 @@ pub(super) fn held(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusa
             Ok(_) => reactionless(&own(task), space, effort).map(|_| ()),
             Err(_) => along_parts(&own(task), &|scenario| reactionless(scenario, space, effort)).map(|_| ()),
         };
-        proved(task, known, &try_path, refusal)
+        proved_refusal(task, known, &try_path, refusal)
     })
 }
 
 /// Finds the parts of a path with b held.
-pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort) -> Result<Parts, Refusal> {
+pub(super) fn reactionless(
+    scenario: &Scenario,
+    space: PlannerSpace<'_>,
+    effort: PlanningEffort,
+) -> Result<PathSegments, Refusal> {
     let (task, points) = (&scenario.task, scenario.task.points());
     let space = match space {
         Err(NoPoseSpace::Free) => return free(scenario, &PoseSpace::nominal(&scenario.machine)?, &points),
@@ -40,7 +44,7 @@ pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort
     };
     if let Ok(planes) = space.planes() {
         return match task.shape() {
-            Shape::JointLine => joint_lines(scenario, space, serve(task, space, &points)?),
+            PathShape::JointLine => joint_lines(scenario, space, poses_at_b(task, space, &points)?),
             _ => on_plane(task, (space, planes), &points),
         };
     }
@@ -48,7 +52,7 @@ pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort
         return Err(refusal(task, i, why));
     }
     match task.shape() {
-        Shape::JointLine => {
+        PathShape::JointLine => {
             cornered(task, space, points.len())?;
             joint_lines(scenario, space, one_by_one(scenario, space, &points)?)
         }
@@ -60,14 +64,14 @@ pub(super) fn reactionless(scenario: &Scenario, space: Space<'_>, effort: Effort
 }
 
 /// Follows curves of the end effector with b held, for a machine without planes; `law` as in
-/// [`Asked`](crate::planning::posture::Asked).
+/// [`PostureRequest`](crate::planning::posture::PostureRequest).
 pub(super) fn along_curves(
     scenario: &Scenario,
     space: &PoseSpace,
     curves: &[Curve],
     law: Option<TimeLaw>,
-    effort: Effort,
-) -> Result<Parts, Refusal> {
+    effort: PlanningEffort,
+) -> Result<PathSegments, Refusal> {
     let lengths = curves.iter().map(Curve::length);
     if space.leaves_freedoms() {
         let tables = posture::tables(scenario, space, curves, law, effort)?;
@@ -79,14 +83,14 @@ pub(super) fn along_curves(
 }
 
 /// Finds the path of a machine that turns its base in no motion; b is not held.
-fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Parts, Refusal> {
+fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<PathSegments, Refusal> {
     let task = &scenario.task;
-    if task.shape() != Shape::JointLine {
+    if task.shape() != PathShape::JointLine {
         let start = reached(task, space, 0, points[0])?;
         return by_least_rates(scenario, start, &curves(task, points)?, None);
     }
     cornered(task, space, points.len())?;
-    let pose = |(i, p): (usize, &Vector)| Ok(Posed::of(space, reached(task, space, i, *p)?));
+    let pose = |(i, p): (usize, &Vector)| Ok(PoseAngles::of(space, reached(task, space, i, *p)?));
     joint_lines(scenario, space, points.iter().enumerate().map(pose).collect::<Result<_, Refusal>>()?)
 }
 
@@ -104,21 +108,21 @@ fn cornered(task: &Task, space: &PoseSpace, points: usize) -> Result<(), Refusal
 
 /// Returns a pose of each point, near that of the point before, with the orientation of the last link that the task
 /// sets.
-fn one_by_one(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
+fn one_by_one(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<Vec<PoseAngles>, Refusal> {
     let machine = &scenario.machine;
     let end_drive = machine.resolved_links()[machine.end_link()].drive;
     let mut near = space.middle();
-    let mut poses: Vec<Posed> = Vec::with_capacity(points.len() + 1);
+    let mut poses: Vec<PoseAngles> = Vec::with_capacity(points.len() + 1);
     for i in 0..points.len() {
         let kept = poses.first().map(|pose| pose.q[end_drive]);
-        poses.push(Posed::of(space, faced(scenario, space, (points, i), (&near, kept))?));
+        poses.push(PoseAngles::of(space, poses_facing(scenario, space, (points, i), (&near, kept))?));
         near = poses[i].a;
     }
     Ok(poses)
 }
 
 /// Joins poses by straight lines in joint space, with stops or blends at the corners.
-fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) -> Result<Parts, Refusal> {
+fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<PoseAngles>) -> Result<PathSegments, Refusal> {
     let task = &scenario.task;
     if let Ok(planes) = space.planes() {
         if task.keep_off_change_points {
@@ -144,7 +148,7 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<Posed>) ->
 }
 
 /// Refuses poses between which two drives would become parallel.
-fn same_side(task: &Task, poses: &[Posed]) -> Result<(), Refusal> {
+fn same_side(task: &Task, poses: &[PoseAngles]) -> Result<(), Refusal> {
     for (i, w) in poses.windows(2).enumerate() {
         let [from, to] = [w[0].q, w[1].q];
         for [k, l] in [[0, 1], [0, 2], [1, 2]] {
@@ -167,13 +171,13 @@ fn same_side(task: &Task, poses: &[Posed]) -> Result<(), Refusal> {
 }
 
 /// Follows the curves of the end effector on the plane of the task.
-fn on_plane(task: &Task, (space, planes): (&PoseSpace, &Planes), points: &[Vector]) -> Result<Parts, Refusal> {
+fn on_plane(task: &Task, (space, planes): (&PoseSpace, &Planes), points: &[Vector]) -> Result<PathSegments, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
     // Points are checked first, because an unreachable point is the clearer reason.
     let prefer = match task.shape() {
-        Shape::Freehand => None,
-        _ => serve(task, space, points)?.first().map(|pose| [pose.a[0], pose.a[1]]),
+        PathShape::Freehand => None,
+        _ => poses_at_b(task, space, points)?.first().map(|pose| [pose.a[0], pose.a[1]]),
     };
     let tables = trace::follow(planes.map(), &curves, task.b, prefer, rule)?;
     Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())

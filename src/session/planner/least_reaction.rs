@@ -2,27 +2,27 @@
 
 use super::along::{along_parts, curves, timed};
 use super::held::reactionless;
-use super::plan::{Effort, Plan, Space, dynamics_of, keeps_rules};
-use super::poses::serve;
+use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
+use super::poses::poses_at_b;
 use super::rates::minimum_norm;
 use crate::planning::curves::{Curve, CurvePoint, Path};
 use crate::planning::following::trace;
 use crate::planning::off_plane::LeastReaction;
-use crate::planning::off_plane::b_course::Reaction;
-use crate::planning::off_plane::least_reaction::{FixedB, Goal, MinimumNorm, Verdicts};
+use crate::planning::off_plane::b_course::BaseReaction;
+use crate::planning::off_plane::least_reaction::{FixedB, MinimumNorm, ReactionNorm, Verdicts};
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::{PlaneError, Planes, PoseSpace};
 use crate::planning::reactionless::BSet;
-use crate::planning::timing::{Limits, Profile, TimeLaw};
+use crate::planning::timing::{DriveLimits, Profile, TimeLaw};
 use crate::planning::{Forecast, Motion};
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Least, Scenario, Task, TaskKind};
+use crate::session::scenario::{ReactionObjective, Scenario, Task, TaskKind};
 use crate::settings::number::nine_digits;
 use crate::settings::word::Choice;
 
 /// Plans the motion with the least reaction. On planes, b changes as little as its feasible corridor allows; on other
 /// machines b is held, if that is feasible.
-pub(super) fn least_reaction(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub(super) fn least_reaction(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     if !scenario.machine.is_redundant() {
         let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
                    only motion along it, or reactionless in the shape joint-line";
@@ -73,8 +73,8 @@ fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law:
     let curves = curves(task, &task.points())?;
     let curve = whole(&curves, law);
     let goal = match task.least {
-        Least::MeanSquare => Goal::Rms,
-        Least::Peak => Goal::Peak,
+        ReactionObjective::MeanSquare => ReactionNorm::Rms,
+        ReactionObjective::Peak => ReactionNorm::Peak,
     };
     let (model, _) = dynamics_of(scenario);
     let mut refused = None;
@@ -92,7 +92,7 @@ fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law:
     match refused {
         Some(why) => Err(Refusal::LeastReaction(why)),
         None => {
-            let refusal = serve(task, space, &task.points()[..1]).err();
+            let refusal = poses_at_b(task, space, &task.points()[..1]).err();
             Err(refusal.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
         }
     }
@@ -112,7 +112,7 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
         let own = Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), b, b_to: None, ..task.clone() };
         along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario, Ok(space), effort))
     };
-    let why = match holding(task.b, Effort::Whole) {
+    let why = match holding(task.b, PlanningEffort::Whole) {
         Ok(plan) => return Ok(Plan { verdicts: Some(verdicts_of_held_b(scenario, space)?), ..plan }),
         Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
         Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
@@ -124,7 +124,8 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
     let common = BSet::overlap(&sets.unwrap_or_default());
     let candidates =
         common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
-    let feasible = candidates.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), Effort::Trial).is_ok());
+    let feasible =
+        candidates.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), PlanningEffort::Trial).is_ok());
     let proposal = match feasible {
         Some(b) => format!("at b = {b} rad it can: want that"),
         None => "want minimum-norm, or change-b from point to point".into(),
@@ -147,12 +148,12 @@ fn verdicts_of_held_b(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts
     let minimum_norm = match usual {
         Ok(motion) => {
             let (model, around) = dynamics_of(scenario);
-            let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
-            let reaction = Reaction { peak: forecast.moment, rms: forecast.moment_rms };
+            let forecast = Forecast::of(&motion, &model, &around, &DriveLimits::of(&scenario.machine));
+            let reaction = BaseReaction { peak: forecast.moment, rms: forecast.moment_rms };
             Ok(MinimumNorm { reaction, end_b: forecast.b_end, keeps_limits: keeps_rules(scenario, &motion).is_ok() })
         }
         Err(Refusal::Path(why)) => Err(why),
         Err(why) => return Err(why),
     };
-    Ok(Verdicts { fixed: FixedB::Serves, minimum_norm, least: Reaction { peak: 0.0, rms: 0.0 } })
+    Ok(Verdicts { fixed: FixedB::Serves, minimum_norm, least: BaseReaction { peak: 0.0, rms: 0.0 } })
 }

@@ -4,8 +4,8 @@
 use std::f64::consts::TAU;
 
 use super::along::{curves, in_rounds};
-use super::plan::{Plan, Space, dynamics_of};
-use super::poses::{off, reached, start};
+use super::plan::{Plan, PlannerSpace, dynamics_of};
+use super::poses::{no_b_refusal, reached, start};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::Path;
 use crate::planning::off_plane::b_integral::BIntegral;
@@ -13,7 +13,7 @@ use crate::planning::off_plane::drift::zero_momentum_curve;
 use crate::planning::off_plane::null_space::MomentumFreedom;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Scenario, Shape, Task};
+use crate::session::scenario::{PathShape, Scenario, Task};
 use crate::settings::number::fixed;
 
 /// A point lies on the curve of two drives if its distance is at most this fraction of the reach. Nine printed digits
@@ -23,7 +23,7 @@ const CURVE_TOLERANCE: f64 = 1e-6;
 const CURVE_INTERVALS: usize = 720;
 
 /// Plans a motion at zero angular momentum.
-pub(super) fn zero_momentum(scenario: &Scenario, space: Space<'_>) -> Result<Plan, Refusal> {
+pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let (model, _) = dynamics_of(scenario);
     match MomentumFreedom::of(&model) {
@@ -31,7 +31,7 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: Space<'_>) -> Result<Pla
             "one drive has momentum as soon as it turns: want minimum-norm, and a machine of more drives".into(),
         )),
         MomentumFreedom::OneCurve => {
-            if task.shape.is_some_and(|shape| shape != Shape::JointLine) {
+            if task.shape.is_some_and(|shape| shape != PathShape::JointLine) {
                 return Err(Refusal::Task(
                     "at zero momentum the end effector of two drives has its own way: want the shape joint-line".into(),
                 ));
@@ -102,7 +102,7 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
 
 /// Returns every pose of a point; poses that differ by whole turns of all drives count once.
 fn elbows(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<Vec<DriveAngles>, Refusal> {
-    let set = space.reach(p).map_err(|reason| off(task, i, p, reason))?.near(task.b);
+    let set = space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?.near(task.b);
     let poses: Vec<DriveAngles> = set.intervals.iter().flat_map(|[b, _]| space.poses(p, *b, &space.middle())).collect();
     if poses.is_empty() { reached(task, space, i, p).map(|q| vec![q]) } else { Ok(poses) }
 }

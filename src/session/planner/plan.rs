@@ -10,17 +10,17 @@ use crate::planning::off_plane::Price;
 use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::timing::limits::DriveLimit;
-use crate::planning::timing::{Limits, TimeLaw};
+use crate::planning::timing::{DriveLimits, TimeLaw};
 use crate::planning::{Forecast, Motion};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 
 /// The pose space of a machine, or why its b cannot be held.
-pub(super) type Space<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
+pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
 
 /// Effort spent on the search for a path and for proposals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Effort {
+pub(super) enum PlanningEffort {
     /// Quick search without proposals, for a task that is itself a proposal on trial.
     Trial,
     /// Full search, with proposals if it fails.
@@ -35,7 +35,7 @@ pub struct Plan {
     /// Forecast torques, speeds and reactions of the motion.
     pub forecast: Forecast,
     /// For the fastest laws: duration, its lower bound, and the limit that holds the motion back.
-    pub pace: Option<Pace>,
+    pub pace: Option<TimingBottleneck>,
     /// For a change of b: the reaction that it costs.
     pub price: Option<Price>,
     /// For the least reaction: comparison with a fixed b and with the minimum norm.
@@ -52,7 +52,7 @@ const CLOSURE_TOLERANCE_RAD: f64 = 1e-6;
 
 /// Duration of the fastest motion, and what holds it back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pace {
+pub struct TimingBottleneck {
     /// Duration T, s.
     pub taken: f64,
     /// Least time T* without limits on jerk, s, if the law has such limits and T* is known.
@@ -61,7 +61,7 @@ pub struct Pace {
     pub leading: Option<DriveLimit>,
 }
 
-impl Pace {
+impl TimingBottleneck {
     /// Returns T/T* − 1, with T* the least time without limits on jerk. Returns `None` without such limits, and if they
     /// alone limit the motion.
     pub fn gap(&self) -> Option<f64> {
@@ -91,7 +91,7 @@ impl Plan {
 
     pub(super) fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
-        let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
+        let forecast = Forecast::of(&motion, &model, &around, &DriveLimits::of(&scenario.machine));
         let ends = [0.0, motion.duration()].map(|t| motion.at(t).q);
         let mut plan = Self::foreseen(motion, forecast);
         let is_closed = scenario.task.closed && scenario.idle("task.posture").is_none();

@@ -2,34 +2,34 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::plan::Space;
+use super::plan::PlannerSpace;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::why_not;
+use crate::planning::common::unreachable_reason;
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::{self, Posed};
+use crate::planning::posed::{self, PoseAngles};
 use crate::planning::reactionless::NoReach;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
-use crate::settings::number::{Short, fixed, nine_digits};
+use crate::settings::number::{ShortNumber, fixed, nine_digits};
 
 /// Returns a pose of each point at the b of the task.
-pub(super) fn serve(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<Posed>, Refusal> {
-    posed::serve(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<PoseAngles>, Refusal> {
+    posed::poses_of_points(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
 /// Returns a pose of the first point. If points are reached by ranges of b, the pose is at the b of the task; with
 /// planes it is on one sheet with the other points, if possible. Otherwise it is at the nearest b that reaches the
 /// point.
-pub(super) fn start(scenario: &Scenario, space: Space<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
+pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
     match space {
         Ok(space) if space.reaches_area() => {
             let all = match space.planes() {
-                Ok(_) if points.len() > 1 => posed::serve(space, points, task.b).ok(),
+                Ok(_) if points.len() > 1 => posed::poses_of_points(space, points, task.b).ok(),
                 _ => None,
             };
-            let served = all.map_or_else(|| serve(task, space, &points[..1]), Ok)?;
+            let served = all.map_or_else(|| poses_at_b(task, space, &points[..1]), Ok)?;
             served.first().map(|pose| pose.q).ok_or_else(|| Refusal::NoWay("A has no pose".into()))
         }
         _ => reached(task, &PoseSpace::nominal(&scenario.machine)?, 0, points[0]),
@@ -51,13 +51,13 @@ pub(super) fn posed(
     (points, i): (&[Vector], usize),
     near: &[f64],
 ) -> Result<DriveAngles, Refusal> {
-    let none = || refusal(task, i, why_not(space, points, i, task.b));
+    let none = || refusal(task, i, unreachable_reason(space, points, i, task.b));
     space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
 
 /// Does the same as [`posed()`], with the orientation of the last link, if the task sets one. `kept` is the angle of
 /// its drive at the first point, rad, which the drive has to keep.
-pub(super) fn faced(
+pub(super) fn poses_facing(
     scenario: &Scenario,
     space: &PoseSpace,
     (points, i): (&[Vector], usize),
@@ -92,7 +92,7 @@ pub(super) fn faced(
         "at {} no pose of b = {} rad has the last link point to {} rad: want {proposal}",
         task.name_of(i),
         nine_digits(task.b),
-        Short(angle)
+        ShortNumber(angle)
     )))
 }
 
@@ -104,14 +104,14 @@ pub(super) fn hand_of(scenario: &Scenario) -> (usize, f64) {
 }
 
 /// Returns the refusal of a point that no b reaches.
-pub(super) fn off(task: &Task, i: usize, p: Vector, reason: NoReach) -> Refusal {
+pub(super) fn no_b_refusal(task: &Task, i: usize, p: Vector, reason: NoReach) -> Refusal {
     Refusal::Unreachable { point: task.name_of(i), unreachable: Unreachable::Anywhere { x: p.re, y: p.im, reason } }
 }
 
 /// Returns a pose of a point at the b nearest to that of the task. Used for machines without a b to hold, or with a
 /// single b for each point.
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
-    space.reach(p).map_err(|reason| off(task, i, p, reason))?;
+    space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
     space.near(p, task.b).ok_or_else(none)
 }

@@ -1,14 +1,14 @@
 //! Paths of four drives and more with b held; the posture of the task resolves the remaining freedoms.
 
-use super::plan::Effort;
-use super::poses::{faced, hand_of, posed};
-use super::proposals::inner;
+use super::plan::PlanningEffort;
+use super::poses::{hand_of, posed, poses_facing};
+use super::proposals::inner_values;
 use crate::mechanics::planar::Vector;
-use crate::planning::common::common;
+use crate::planning::common::common_b_set;
 use crate::planning::curves::path::least_rate_curve;
 use crate::planning::curves::{Curve, PathPoint, PathTable};
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posture::{Asked, Posture};
+use crate::planning::posture::{Posture, PostureRequest};
 use crate::planning::timing::TimeLaw;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
@@ -21,7 +21,7 @@ const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 /// Amounts by which limits are widened at either end, rad, in the order of the trials.
 const WIDENINGS_RAD: [f64; 3] = [0.1, 0.4, 1.0];
 
-/// Returns a path along each curve; `law` as [`Asked::law`].
+/// Returns a path along each curve; `law` as [`PostureRequest::law`].
 ///
 /// # Errors
 /// How far the path can be followed, and with [`Effort::Whole`] a proposal.
@@ -30,16 +30,16 @@ pub(super) fn tables(
     space: &PoseSpace,
     curves: &[Curve],
     law: Option<TimeLaw>,
-    effort: Effort,
+    effort: PlanningEffort,
 ) -> Result<Vec<PathTable>, Refusal> {
     let task = &scenario.task;
     let link = hand_of(scenario);
     let angle = task.orientation.filter(|_| scenario.idle("task.orientation").is_none());
     if angle.is_some() {
-        faced(scenario, space, (&task.points(), 0), (&space.middle(), None))?;
+        poses_facing(scenario, space, (&task.points(), 0), (&space.middle(), None))?;
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
-    let asked = Asked { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
+    let asked = PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
     // Least rates from the pose nearest to the middle mostly keep the limits; the search is needed if they do not.
     let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));
     let is_local = task.posture == Posture::LeastRates && !task.closed;
@@ -47,8 +47,8 @@ pub(super) fn tables(
         return Ok(tables);
     }
     let search = match effort {
-        Effort::Trial => asked.quick_path(task.posture),
-        Effort::Whole => asked.path(task.posture),
+        PlanningEffort::Trial => asked.quick_path(task.posture),
+        PlanningEffort::Whole => asked.path(task.posture),
     };
     let why = match search {
         Ok(found) => return Ok(found.tables),
@@ -57,7 +57,7 @@ pub(super) fn tables(
     if let Some(tables) = (task.posture != Posture::Orientation && !is_local).then(local).flatten() {
         return Ok(tables);
     }
-    let tried = (effort == Effort::Whole).then(|| proposal(&asked, task)).flatten();
+    let tried = (effort == PlanningEffort::Whole).then(|| proposal(&asked, task)).flatten();
     let proposed = tried.unwrap_or_else(|| "another path, or wider limits".into());
     Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
@@ -86,14 +86,14 @@ fn keep_limits(space: &PoseSpace, tables: &[PathTable]) -> bool {
 }
 
 /// Whether a quick search finds the whole path.
-fn is_feasible(asked: &Asked<'_>, posture: Posture) -> bool {
+fn is_feasible(asked: &PostureRequest<'_>, posture: Posture) -> bool {
     asked.quick_path(posture).is_ok()
 }
 
 /// Finds a posture, a b or a limit with which the whole path is feasible.
-fn proposal(asked: &Asked<'_>, task: &Task) -> Option<String> {
+fn proposal(asked: &PostureRequest<'_>, task: &Task) -> Option<String> {
     if task.posture == Posture::Orientation {
-        let free = Asked { hand: (asked.hand.0, None), ..*asked };
+        let free = PostureRequest { hand: (asked.hand.0, None), ..*asked };
         if asked.hand.1.is_some() && is_feasible(&free, Posture::Orientation) {
             return Some("no orientation, so that it keeps the one that serves".into());
         }
@@ -105,23 +105,23 @@ fn proposal(asked: &Asked<'_>, task: &Task) -> Option<String> {
         (0..=INTERVALS_PER_CURVE).map(|i| curve.at(i as f64 / INTERVALS_PER_CURVE as f64).p).collect::<Vec<_>>()
     };
     let points: Vec<Vector> = asked.curves.iter().flat_map(at).collect();
-    let another = common(asked.space, &points).and_then(|serving| {
+    let another = common_b_set(asked.space, &points).and_then(|serving| {
         let near = serving.nearest(asked.b)?;
-        let serves = |b: f64| b != asked.b && is_feasible(&Asked { b, ..*asked }, task.posture);
-        inner(&serving, near).find(|b| serves(b.value()))
+        let serves = |b: f64| b != asked.b && is_feasible(&PostureRequest { b, ..*asked }, task.posture);
+        inner_values(&serving, near).find(|b| serves(b.value()))
     });
     another.map(|b| format!("b = {b} rad")).or_else(|| wider(asked, task.posture))
 }
 
 /// Finds the least widening of the limits of one angle with which the path is feasible at the same b.
-fn wider(asked: &Asked<'_>, posture: Posture) -> Option<String> {
+fn wider(asked: &PostureRequest<'_>, posture: Posture) -> Option<String> {
     WIDENINGS_RAD.into_iter().find_map(|by| {
         asked.machine.angles().iter().enumerate().find_map(|(i, angle)| {
             let key = format!("limits.a{}", i + 1);
             let value = format!("{:.2},{:.2}", angle.limits.start() - by, angle.limits.end() + by);
             let machine = asked.machine.set(&key, &value).ok()?;
             let space = PoseSpace::of(&machine).ok()?;
-            let wide = Asked { machine: &machine, space: &space, ..*asked };
+            let wide = PostureRequest { machine: &machine, space: &space, ..*asked };
             is_feasible(&wide, posture).then(|| format!("{key} = {value} rad at this b"))
         })
     })

@@ -1,13 +1,13 @@
 //! Refusals that propose only what has been tried.
 
-use super::plan::Effort;
+use super::plan::PlanningEffort;
 use crate::mechanics::planar::Vector;
-use crate::planning::common::common;
-use crate::planning::pose_constant::{Mend, Unreachable};
+use crate::planning::common::common_b_set;
+use crate::planning::pose_constant::{PointCorrection, Unreachable};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Shape, Task};
+use crate::session::scenario::{PathShape, Task};
 
 /// Depths inside an interval of b at which values are tried, as fractions of half its width.
 const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
@@ -16,10 +16,10 @@ const DECIMALS: usize = 4;
 
 /// Returns the refusal with only those proposals that `try_path` finds feasible. Points that share a b may still have
 /// no path between them on its plane.
-pub(super) fn proved(
+pub(super) fn proved_refusal(
     task: &Task,
     space: &PoseSpace,
-    try_path: &dyn Fn(&Task, Effort) -> Result<(), Refusal>,
+    try_path: &dyn Fn(&Task, PlanningEffort) -> Result<(), Refusal>,
     refusal: Refusal,
 ) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
@@ -32,27 +32,27 @@ pub(super) fn proved(
         Refusal::NoCommonPlane { mut why, .. } => {
             if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
                 let moved = task.moved(mend.point, shown.point());
-                let result = moved.as_ref().map(|moved| try_path(&at(moved, shown.b.value()), Effort::Trial));
+                let result = moved.as_ref().map(|moved| try_path(&at(moved, shown.b.value()), PlanningEffort::Trial));
                 shown.does = match result {
                     Some(Ok(_)) => true,
                     Some(Err(stopped)) => {
                         let other = another(&stopped).map(|(_, other)| other).or_else(|| {
                             let moved = moved.as_ref()?;
-                            let serving = common(space, &moved.points())?;
-                            inner(&serving, shown.b.value())
-                                .find(|b| try_path(&at(moved, b.value()), Effort::Trial).is_ok())
+                            let serving = common_b_set(space, &moved.points())?;
+                            inner_values(&serving, shown.b.value())
+                                .find(|b| try_path(&at(moved, b.value()), PlanningEffort::Trial).is_ok())
                         });
                         shown.b = other.unwrap_or(shown.b);
                         other.is_some()
                     }
                     None => false,
                 };
-                why.mend = Some(Mend { shown: Some(shown), ..mend });
+                why.mend = Some(PointCorrection { shown: Some(shown), ..mend });
             }
             Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
         }
-        Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
-            tried(space, refusal, |b, effort| try_path(&at(task, b), effort))
+        Refusal::Unreachable { .. } if task.shape() != PathShape::JointLine || task.keep_off_change_points => {
+            tried_refusal(space, refusal, |b, effort| try_path(&at(task, b), effort))
         }
         other => other,
     }
@@ -60,10 +60,10 @@ pub(super) fn proved(
 
 /// Completes the refusal of a b that does not reach a point. Proposes the nearest b at which the whole path is
 /// feasible, or states what stops the path.
-pub(super) fn tried(
+pub(super) fn tried_refusal(
     space: &PoseSpace,
     refusal: Refusal,
-    try_path: impl Fn(f64, Effort) -> Result<(), Refusal>,
+    try_path: impl Fn(f64, PlanningEffort) -> Result<(), Refusal>,
 ) -> Refusal {
     let Refusal::Unreachable {
         point,
@@ -76,9 +76,9 @@ pub(super) fn tried(
         let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
-    let stopped = match try_path(shown.value(), Effort::Whole) {
+    let stopped = match try_path(shown.value(), PlanningEffort::Whole) {
         Ok(()) => {
-            let exact = if try_path(*nearest, Effort::Trial).is_ok() { *nearest } else { shown.value() };
+            let exact = if try_path(*nearest, PlanningEffort::Trial).is_ok() { *nearest } else { shown.value() };
             return made(format!("b = {shown} rad"), Some(exact), Some(*shown));
         }
         Err(stopped) => stopped,
@@ -90,7 +90,8 @@ pub(super) fn tried(
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
     let own = space.reach(Vector::new(*x, *y)).ok();
-    if let Some(shown) = own.and_then(|set| inner(&set, *nearest).find(|b| try_path(b.value(), Effort::Trial).is_ok()))
+    if let Some(shown) =
+        own.and_then(|set| inner_values(&set, *nearest).find(|b| try_path(b.value(), PlanningEffort::Trial).is_ok()))
     {
         return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
     }
@@ -100,6 +101,6 @@ pub(super) fn tried(
 }
 
 /// Yields values of b farther and farther inside a set, rad, from the end nearest to `near` towards the other end.
-pub(super) fn inner(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
+pub(super) fn inner_values(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
     TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
 }

@@ -1,17 +1,17 @@
 //! Motions of the end effector that do not hold b: with least joint rates, and with drive 1 on a course of its own.
 
-use super::along::{Parts, by_least_rates, curves};
-use super::plan::Space;
-use super::poses::{posed, reached, serve, start};
+use super::along::{PathSegments, by_least_rates, curves};
+use super::plan::PlannerSpace;
+use super::poses::{posed, poses_at_b, reached, start};
 use crate::planning::curves::Path;
 use crate::planning::curves::path::{SameTip, same_tip_path};
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::Posed;
+use crate::planning::posed::PoseAngles;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::Scenario;
 
 /// Follows the curves of the end effector with least joint rates, from a pose of A.
-pub(super) fn minimum_norm(scenario: &Scenario, space: Space<'_>) -> Result<Parts, Refusal> {
+pub(super) fn minimum_norm(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, points) = (&scenario.task, scenario.task.points());
     let start = start(scenario, space, &[points[0], points[points.len() - 1]])?;
     by_least_rates(scenario, start, &curves(task, &points)?, None)
@@ -19,7 +19,7 @@ pub(super) fn minimum_norm(scenario: &Scenario, space: Space<'_>) -> Result<Part
 
 /// Moves the end effector as on the joint line from A to B, with drive 1 on a course of its own; the other drives
 /// follow.
-pub(super) fn same_tip(scenario: &Scenario, space: Space<'_>) -> Result<Parts, Refusal> {
+pub(super) fn same_tip(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
     if !machine.is_redundant() {
         return Err(Refusal::Task(
@@ -35,11 +35,11 @@ pub(super) fn same_tip(scenario: &Scenario, space: Space<'_>) -> Result<Parts, R
     let points = task.points();
     let last = points.len() - 1;
     let tip = machine.end_effector();
-    let first_to = |from: &Posed| task.first_drive_to.unwrap_or(from.q[0]);
+    let first_to = |from: &PoseAngles| task.first_drive_to.unwrap_or(from.q[0]);
     if let Ok(space) = space
         && space.planes().is_ok()
     {
-        let [from, to] = serve(task, space, &[points[0], points[last]])?[..] else {
+        let [from, to] = poses_at_b(task, space, &[points[0], points[last]])?[..] else {
             return Err(Refusal::Task("same-tip: want two points".into()));
         };
         return Ok(vec![(Path::SameTip(SameTip::new(tip, from.q, to.q, first_to(&from))?), 1.0)]);
@@ -57,7 +57,7 @@ pub(super) fn same_tip(scenario: &Scenario, space: Space<'_>) -> Result<Parts, R
             true => posed(task, known, (&points, i), near)?,
             false => reached(task, known, i, points[i])?,
         };
-        Ok::<Posed, Refusal>(Posed::of(known, q))
+        Ok::<PoseAngles, Refusal>(PoseAngles::of(known, q))
     };
     let from = pose(0, &known.middle())?;
     let to = pose(last, &from.a)?;

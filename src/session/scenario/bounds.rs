@@ -9,10 +9,10 @@ pub const MAX_TIME: f64 = 3600.0;
 pub const MAX_STEPS: u64 = 4_000_000;
 
 /// Range of the step size.
-pub const STEP: Range = Range::new(1e-5, 0.01, "s");
+pub const STEP_RANGE: Range = Range::new(1e-5, 0.01, "s");
 
 /// Range of the duration of a run.
-pub(super) const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
+pub(super) const DURATION_RANGE: Range = Range::new(0.0, MAX_TIME, "s");
 
 /// Range of the bound on |b̈|.
 pub(super) const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");

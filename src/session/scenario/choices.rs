@@ -23,7 +23,7 @@ words! {
 
 words! {
     /// Shape of the path between the points of a task.
-    pub enum Shape {
+    pub enum PathShape {
         JointLine = "joint-line", "Joint lines", "Straight in joint space";
         Line = "line", "Straight lines", "The end effector on straight lines";
         Arc = "arc", "Arc", "One arc through three points";
@@ -42,7 +42,7 @@ words! {
 
 words! {
     /// Quantity that a redundant motion minimises.
-    pub enum Least {
+    pub enum ReactionObjective {
         /// The root of the mean square of n_B.
         MeanSquare = "mean-square", "Least mean square", "∫ n_B² dt as small as can be";
         Peak = "peak", "Least peak", "The greatest |n_B| as small as can be";

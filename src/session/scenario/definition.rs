@@ -1,13 +1,13 @@
 //! [`Scenario`]: machine, task and all settings from which a run starts.
 
-use super::design::Brief;
+use super::design::DesignBrief;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, Branch};
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{Machine, MachineError};
 use crate::session::TimedEdit;
-use crate::settings::range::Check;
+use crate::settings::range::RangeCheck;
 use crate::simulation::Setup;
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences};
@@ -40,7 +40,7 @@ pub struct Scenario {
     /// Tolerances of machines as built.
     pub tolerance: Tolerance,
     /// Requirements on the machine in the design view.
-    pub design: Brief,
+    pub design: DesignBrief,
     /// Edits by the user.
     pub edits: Vec<TimedEdit>,
     /// Bookmarks; no motion depends on them.
@@ -55,7 +55,7 @@ impl Scenario {
     /// # Errors
     /// The first number that is out of range, or why the machine that moves is not valid.
     pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
-        if let Some(Check { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
+        if let Some(RangeCheck { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
             return Err(ScenarioError::OutOfRange { file: file.into(), line: None, key: key.into(), value, want });
         }
         let named = self.plant.machine(&self.machine).map(|_| ());

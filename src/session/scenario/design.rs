@@ -1,4 +1,4 @@
-//! [`Brief`]: requirements on a machine whose masses and lengths are changed in the design view, as `[design]` states
+//! [`DesignBrief`]: requirements on a machine whose masses and lengths are changed in the design view, as `[design]` states
 //! them.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,13 +7,13 @@ use std::ops::Deref;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::mechanics::balance::{Hold, Preset};
-use crate::mechanics::counterweights::{DENSITY, Disc, THICKNESS};
+use crate::mechanics::balance::{ParameterBounds, Preset};
+use crate::mechanics::counterweights::{DENSITY_RANGE, Disc, THICKNESS_RANGE};
 use crate::mechanics::machine::{Drive, Machine, ranges};
 use crate::settings::change;
-use crate::settings::key::{self, BOUNDS, Holds, Key};
-use crate::settings::keyed::{Holding, keyed};
-use crate::settings::range::{Check, Range, clipped};
+use crate::settings::key::{self, HOLD_WORDS, Key, KeyType};
+use crate::settings::keyed::{HasKeyType, keyed};
+use crate::settings::range::{Range, RangeCheck, quote_clipped};
 
 const LINK: &str = "a link of this name";
 const SOUGHT: &str = "a length that is sought";
@@ -30,7 +30,7 @@ keyed! {
     /// hold.link.5 = { mass = [0.4, 0.8] }     # kg
     /// ```
     #[derive(Clone, Debug, PartialEq)]
-    pub struct Brief at "design" {
+    pub struct DesignBrief at "design" {
         /// Whether, whatever is changed in the design view, what is free follows so that (7) and (8) hold, each as little
         /// as it can; a fixed link stays.
         keep_balanced: bool = "false";
@@ -38,9 +38,9 @@ keyed! {
         penalties: Preset = "minimum-norm", when: "nine links and no counterweights";
         // Those of `Disc::STEEL`.
         /// Density of what counterweights are made of, discs of one plate.
-        density: f64 = "7850", range: DENSITY;
+        density: f64 = "7850", range: DENSITY_RANGE;
         /// Thickness of the plate that the discs are cut from.
-        thickness: f64 = "0.03", range: THICKNESS;
+        thickness: f64 = "0.03", range: THICKNESS_RANGE;
         /// How far behind the root of its link a counterweight may sit.
         behind_root: Option<f64> = Key::NONE, range: Range::new(0.0, 100.0, "m"),
             instead: "as far as the link is long";
@@ -64,15 +64,15 @@ keyed! {
         ratio: BTreeMap<String, [f64; 2]> = Key::NONE, range: ranges::RATIO, instead: "it stays",
             when: "a drive of this name whose rotor has inertia";
         /// Whether a link stays as it is: neither what keeps the balance nor new counterweights change it.
-        fixed: Names = "false", when: LINK;
+        fixed: NameSet = "false", when: LINK;
         tables:
         /// Holds of single numbers by key, such as `link.5.mass`: fixed, free, or within bounds. They override `fixed`.
-        hold: Held;
+        hold: BoundsByKey;
     }
 }
 
 /// Keys of the numbers that can be held.
-pub const HELD: [Key; 5] = [
+pub const BOUND_KEYS: [Key; 5] = [
     held("design.hold.link.*.mass", ranges::LOAD, "How a link's mass is held while the balance is kept.").when(LINK),
     held("design.hold.link.*.com", ranges::PLACE, "How a link's centre of mass along it is held.").when(LINK),
     held("design.hold.link.*.com_normal", ranges::PLACE, "How a link's centre of mass across it is held.").when(LINK),
@@ -83,7 +83,7 @@ pub const HELD: [Key; 5] = [
 ];
 
 const fn held(path: &'static str, range: Range, words: &'static str) -> Key {
-    Key::new(path, Holds::Bounds(range), Key::NONE, words).instead("it follows if its kind does")
+    Key::new(path, KeyType::Bounds(range), Key::NONE, words).instead("it follows if its kind does")
 }
 
 /// Returns the key of a held number without its prefix `design.hold.`.
@@ -91,7 +91,7 @@ fn bare(key: &Key) -> &'static str {
     key.path.trim_start_matches("design.hold.")
 }
 
-impl Brief {
+impl DesignBrief {
     /// Returns density and thickness of counterweights.
     pub fn disc(&self) -> Disc {
         Disc { density: self.density, thickness: self.thickness }
@@ -123,17 +123,17 @@ impl Brief {
     }
 
     /// Checks that no lower bound is above its upper bound.
-    pub(super) fn fits(&self) -> Vec<Check> {
+    pub(super) fn fits(&self) -> Vec<RangeCheck> {
         let holds = self.hold.iter().filter_map(|(key, hold)| match hold {
-            Hold::Within(ends) => Some((format!("design.hold.{key}"), *ends)),
-            Hold::Fixed | Hold::Free => None,
+            ParameterBounds::Within(ends) => Some((format!("design.hold.{key}"), *ends)),
+            ParameterBounds::Fixed | ParameterBounds::Free => None,
         });
         let ratios = self.ratio.iter().map(|(drive, ends)| (format!("design.ratio.{drive}"), *ends));
         let lengths = self.length.iter().map(|(name, ends)| (format!("design.length.{name}"), *ends));
         let payload = self.payload.map(|ends| ("design.payload".to_owned(), ends));
         let want = "the least value first, then the greatest";
         let all = holds.chain(ratios).chain(lengths).chain(payload);
-        all.map(|(key, [low, high])| Check::words(key, low, low <= high, want)).collect()
+        all.map(|(key, [low, high])| RangeCheck::words(key, low, low <= high, want)).collect()
     }
 }
 
@@ -141,7 +141,7 @@ impl Brief {
 fn body_of(key: &str) -> Option<(&str, &str)> {
     let (kind, rest) = key.split_once('.')?;
     let (name, what) = rest.rsplit_once('.')?;
-    let known = HELD.iter().any(|held| bare(held).split_once(".*.") == Some((kind, what)));
+    let known = BOUND_KEYS.iter().any(|held| bare(held).split_once(".*.") == Some((kind, what)));
     known.then_some((kind, name))
 }
 
@@ -153,27 +153,27 @@ pub(super) fn is_default<T: Default + PartialEq>(part: &T) -> bool {
 /// A set of names; a file has a switch for each.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<String, bool>", into = "BTreeMap<String, bool>")]
-pub struct Names(pub BTreeSet<String>);
+pub struct NameSet(pub BTreeSet<String>);
 
-impl Holding for Names {
-    const HOLDS: Holds = bool::HOLDS;
+impl HasKeyType for NameSet {
+    const HOLDS: KeyType = bool::HOLDS;
 }
 
-impl Deref for Names {
+impl Deref for NameSet {
     type Target = BTreeSet<String>;
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
-impl From<BTreeMap<String, bool>> for Names {
+impl From<BTreeMap<String, bool>> for NameSet {
     fn from(switches: BTreeMap<String, bool>) -> Self {
         Self(switches.into_iter().filter_map(|(name, is_in)| is_in.then_some(name)).collect())
     }
 }
 
-impl From<Names> for BTreeMap<String, bool> {
-    fn from(Names(names): Names) -> Self {
+impl From<NameSet> for BTreeMap<String, bool> {
+    fn from(NameSet(names): NameSet) -> Self {
         names.into_iter().map(|name| (name, true)).collect()
     }
 }
@@ -181,37 +181,37 @@ impl From<Names> for BTreeMap<String, bool> {
 /// Holds of numbers by key; nested tables in a file, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Table", into = "Table")]
-pub struct Held(pub BTreeMap<String, Hold>);
+pub struct BoundsByKey(pub BTreeMap<String, ParameterBounds>);
 
-impl Deref for Held {
-    type Target = BTreeMap<String, Hold>;
+impl Deref for BoundsByKey {
+    type Target = BTreeMap<String, ParameterBounds>;
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
-impl From<Held> for Table {
-    fn from(Held(holds): Held) -> Self {
-        let one = |(key, hold): (&String, &Hold)| change::one(key, to_value(*hold));
+impl From<BoundsByKey> for Table {
+    fn from(BoundsByKey(holds): BoundsByKey) -> Self {
+        let one = |(key, hold): (&String, &ParameterBounds)| change::single_change(key, to_value(*hold));
         holds.iter().map(one).fold(Self::new(), |all, one| change::join(all, &one))
     }
 }
 
-impl TryFrom<Table> for Held {
+impl TryFrom<Table> for BoundsByKey {
     type Error = String;
 
     fn try_from(table: Table) -> Result<Self, String> {
         let read = |(key, value): (String, &Value)| match (body_of(&key), of_value(value)) {
             (None, _) => {
-                let known = key::in_words(HELD.iter().map(bare)).join(" or ");
-                Err(format!("design.hold.{}: want {known}", clipped(&key)))
+                let known = key::in_words(BOUND_KEYS.iter().map(bare)).join(" or ");
+                Err(format!("design.hold.{}: want {known}", quote_clipped(&key)))
             }
             (Some(_), Some(hold)) => Ok((key, hold)),
             (Some(_), None) => Err(format!(
                 "design.hold.{} is {}: want {}, or the least and the greatest value",
-                clipped(&key),
-                clipped(&change::typed(value)),
-                BOUNDS.join(", ")
+                quote_clipped(&key),
+                quote_clipped(&change::typed(value)),
+                HOLD_WORDS.join(", ")
             )),
         };
         change::leaves(&table).into_iter().map(read).collect::<Result<_, _>>().map(Self)
@@ -219,20 +219,20 @@ impl TryFrom<Table> for Held {
 }
 
 /// Returns a hold as a file states it.
-pub fn to_value(hold: Hold) -> Value {
+pub fn to_value(hold: ParameterBounds) -> Value {
     match hold {
-        Hold::Fixed => BOUNDS[0].into(),
-        Hold::Free => BOUNDS[1].into(),
-        Hold::Within(ends) => ends.to_vec().into(),
+        ParameterBounds::Fixed => HOLD_WORDS[0].into(),
+        ParameterBounds::Free => HOLD_WORDS[1].into(),
+        ParameterBounds::Within(ends) => ends.to_vec().into(),
     }
 }
 
-fn of_value(value: &Value) -> Option<Hold> {
+fn of_value(value: &Value) -> Option<ParameterBounds> {
     match value {
-        Value::String(word) if word == BOUNDS[0] => Some(Hold::Fixed),
-        Value::String(word) if word == BOUNDS[1] => Some(Hold::Free),
+        Value::String(word) if word == HOLD_WORDS[0] => Some(ParameterBounds::Fixed),
+        Value::String(word) if word == HOLD_WORDS[1] => Some(ParameterBounds::Free),
         Value::Array(ends) => match ends.iter().map(change::number).collect::<Option<Vec<_>>>()?[..] {
-            [low, high] => Some(Hold::Within([low, high])),
+            [low, high] => Some(ParameterBounds::Within([low, high])),
             _ => None,
         },
         _ => None,

@@ -4,14 +4,14 @@ use thiserror::Error;
 
 use super::bounds::ordinal;
 use crate::mechanics::machine::{FileError, MachineError};
-use crate::settings::range::{Want, refused};
-use crate::settings::text::MOST_BYTES;
+use crate::settings::range::{Requirement, range_error};
+use crate::settings::text::MAX_TEXT_BYTES;
 
 /// Why a file is not a scenario.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
-    #[error("{file}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes")]
+    #[error("{file}: {source}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes")]
     Unreadable {
         /// The file.
         file: String,
@@ -29,7 +29,7 @@ pub enum ScenarioError {
         message: String,
     },
     /// A number out of range.
-    #[error("{file}{}: {}", at(*line), refused(key, *value, want))]
+    #[error("{file}{}: {}", at(*line), range_error(key, *value, want))]
     OutOfRange {
         /// The file.
         file: String,
@@ -40,7 +40,7 @@ pub enum ScenarioError {
         /// The value.
         value: f64,
         /// Allowed values.
-        want: Want,
+        want: Requirement,
     },
     /// Its machine is not valid.
     #[error("{file}{}: machine: {error}", at(*line))]

@@ -5,17 +5,17 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::definition::Scenario;
-use super::design::{Brief, is_default};
+use super::design::{DesignBrief, is_default};
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
-use super::own::Own;
+use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
+use crate::mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineSpec};
 use crate::session::{TimedEdit, check_edits};
 use crate::settings::change;
-use crate::settings::range::{clipped, shortened};
-use crate::settings::text::{plain, steering};
+use crate::settings::range::{quote_clipped, shortened};
+use crate::settings::text::{control_character, plain};
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences};
 
@@ -45,7 +45,7 @@ struct File {
     #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
     tolerance: Tolerance,
     #[serde(default, skip_serializing_if = "is_default")]
-    design: Brief,
+    design: DesignBrief,
     /// Edits as unparsed tables, so that an error can name the wrong one.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<toml::Table>,
@@ -56,11 +56,11 @@ struct File {
 }
 
 fn usual_step() -> f64 {
-    Own::default().step
+    ScenarioSettings::default().step
 }
 
 fn usual_pose_acceleration() -> f64 {
-    Own::default().pose_acceleration
+    ScenarioSettings::default().pose_acceleration
 }
 
 #[derive(Serialize, Deserialize)]
@@ -78,7 +78,7 @@ const MAX_MESSAGE_CHARS: usize = 300;
 
 /// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Content {
+pub enum FileContent {
     /// A machine.
     Machine,
     /// A scenario, with its machine.
@@ -87,12 +87,12 @@ pub enum Content {
 
 /// Returns whether a file is meant as machine or as scenario, by tables that only one of them has. Returns `None` if it
 /// has tables of neither or of both.
-pub fn content(text: &str) -> Option<Content> {
+pub fn content(text: &str) -> Option<FileContent> {
     let table: toml::Table = text.parse().ok()?;
     let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));
     match (has(["link", "drive"]), has(["task", "machine"])) {
-        (true, false) => Some(Content::Machine),
-        (false, true) => Some(Content::Scenario),
+        (true, false) => Some(FileContent::Machine),
+        (false, true) => Some(FileContent::Scenario),
         _ => None,
     }
 }
@@ -111,15 +111,15 @@ impl Scenario {
             line: e.span().map(|s| machine::line_of(text, s.start)),
             message: shortened(e.message(), MAX_MESSAGE_CHARS),
         })?;
-        let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
+        let line_of = |key: &str| machine::line_of_place(text, &KeyPath::of_key(key));
         let stated: toml::Table = text.parse().unwrap_or_default();
         // Missing keys of the task are derived from given ones, which have to be finite.
         if let Some(key) = change::not_finite(&stated).filter(|key| key.starts_with("task")) {
-            let message = format!("{} is not a finite number: want one", clipped(&key));
+            let message = format!("{} is not a finite number: want one", quote_clipped(&key));
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
         for (key, text) in [("name", file.name.as_deref().unwrap_or_default()), ("title", &file.title)] {
-            if let Some(c) = steering(text) {
+            if let Some(c) = control_character(text) {
                 let message = format!("{key} holds the control character U+{:04X}: {PRINTABLE}", u32::from(c));
                 return Err(ScenarioError::Syntax { file: label.into(), line: line_of(key), message });
             }
@@ -135,7 +135,7 @@ impl Scenario {
         let mut settings = Vec::with_capacity(file.set.len());
         for setting in &file.set {
             let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
-            settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", clipped(setting))))?);
+            settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", quote_clipped(setting))))?);
         }
         let machine = match settings.is_empty() {
             true => machine,
@@ -154,7 +154,7 @@ impl Scenario {
         })?;
         let mut edits = Vec::with_capacity(file.edits.len());
         let wrong_edit = |(i, message): (usize, String)| {
-            let place = Place::new(&[&"edit", &i]);
+            let place = KeyPath::new(&[&"edit", &i]);
             let (file, line) = (label.into(), machine::line_of_place(text, &place));
             ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MAX_MESSAGE_CHARS) }
         };
@@ -182,7 +182,7 @@ impl Scenario {
         scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
         check_edits(&scenario).map_err(wrong_edit)?;
         let wrong_entry = |of: &str, (i, message): (usize, String)| {
-            let line = machine::line_of_place(text, &Place::new(&[&of, &i]));
+            let line = machine::line_of_place(text, &KeyPath::new(&[&of, &i]));
             let message = format!("{of} {}: {}", i + 1, shortened(&message, MAX_MESSAGE_CHARS));
             ScenarioError::Syntax { file: label.into(), line, message }
         };
@@ -195,24 +195,24 @@ impl Scenario {
 
     /// Adds the line of its key in a text to an error of [`check`](Self::check).
     fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
-        let line_of = |place: Place| machine::line_of_place(text, &place);
+        let line_of = |place: KeyPath| machine::line_of_place(text, &place);
         match error {
             ScenarioError::OutOfRange { file, key, value, want, .. } => {
-                let line = line_of(Place::of_key(&key));
+                let line = line_of(KeyPath::of_key(&key));
                 ScenarioError::OutOfRange { file, line, key, value, want }
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
                 // Keys of the plant name links and lengths; they do not use their indices in the machine.
-                let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
-                    [link, PlaceStep::Named(_, name), rest @ ..] => {
-                        let named = [link.clone(), PlaceStep::Key(name.clone())];
-                        Place(named.into_iter().chain(rest.iter().cloned()).collect())
+                let place = error.place().map_or_else(KeyPath::default, |place| match place.0.as_slice() {
+                    [link, KeyStep::Named(_, name), rest @ ..] => {
+                        let named = [link.clone(), KeyStep::Key(name.clone())];
+                        KeyPath(named.into_iter().chain(rest.iter().cloned()).collect())
                     }
-                    [PlaceStep::Key(word), rest @ ..] if word == "lengths" => {
-                        Place(std::iter::once(PlaceStep::Key("length".into())).chain(rest.iter().cloned()).collect())
+                    [KeyStep::Key(word), rest @ ..] if word == "lengths" => {
+                        KeyPath(std::iter::once(KeyStep::Key("length".into())).chain(rest.iter().cloned()).collect())
                     }
-                    [PlaceStep::Key(key)] => Place::of_key(key),
+                    [KeyStep::Key(key)] => KeyPath::of_key(key),
                     _ => place.clone(),
                 });
                 ScenarioError::Machine { file, line: line_of(place.under("plant")), error }

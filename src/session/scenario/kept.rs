@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::bounds::MAX_TIME;
 use crate::session::TimedEdit;
-use crate::settings::number::Short;
-use crate::settings::text::steering;
+use crate::settings::number::ShortNumber;
+use crate::settings::text::control_character;
 
 /// A named instant of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,12 +55,12 @@ impl Bookmark {
         let count = self.name.chars().count();
         match self {
             _ if !(0.0..=MAX_TIME).contains(&self.time) => {
-                Err(format!("time is {}: want a number from 0 to {MAX_TIME} s", Short(self.time)))
+                Err(format!("time is {}: want a number from 0 to {MAX_TIME} s", ShortNumber(self.time)))
             }
             _ if self.name.trim().is_empty() || count > MAX_NAME => {
                 Err(format!("name has {count} characters: want 1 to {MAX_NAME}, not all of them spaces"))
             }
-            _ => steering(&self.name).map_or(Ok(()), |c| {
+            _ => control_character(&self.name).map_or(Ok(()), |c| {
                 Err(format!("name holds the control character U+{:04X}: want printable characters", u32::from(c)))
             }),
         }
@@ -93,7 +93,7 @@ pub(super) fn branches(
     let read = |(i, branch): (usize, StatedBranch)| {
         let StatedBranch { duration, edits } = branch;
         if !(0.0..=MAX_TIME).contains(&duration) {
-            return Err((i, format!("duration is {}: want a number from 0 to {MAX_TIME} s", Short(duration))));
+            return Err((i, format!("duration is {}: want a number from 0 to {MAX_TIME} s", ShortNumber(duration))));
         }
         let of_edit = |(entry, why): (usize, String)| (i, format!("edit {}: {why}", entry + 1));
         let edits: Result<Vec<TimedEdit>, (usize, String)> =

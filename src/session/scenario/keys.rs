@@ -2,8 +2,8 @@
 
 use toml::{Table, Value};
 
-use super::design::{self, Brief};
-use super::own::Own;
+use super::design::{self, DesignBrief};
+use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance;
 use crate::mechanics::machine;
@@ -17,12 +17,12 @@ const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS
 const BASE: [Key; Base::KEYS.len()] = Key::all_reaching(Effect::Plan, Base::KEYS);
 const WHEEL: [Key; Wheel::KEYS.len()] = Key::all_reaching(Effect::Plan, Wheel::KEYS);
 const TOLERANCE: [Key; tolerance::KEYS.len()] = Key::all_reaching(Effect::Aside, &tolerance::KEYS);
-const DESIGN: [Key; Brief::KEYS.len()] = Key::all_reaching(Effect::Aside, Brief::KEYS);
-const HELD: [Key; design::HELD.len()] = Key::all_reaching(Effect::Aside, &design::HELD);
+const DESIGN: [Key; DesignBrief::KEYS.len()] = Key::all_reaching(Effect::Aside, DesignBrief::KEYS);
+const HELD: [Key; design::BOUND_KEYS.len()] = Key::all_reaching(Effect::Aside, &design::BOUND_KEYS);
 
 /// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance, design.
 pub const KEYS: [(&str, &[&[Key]]); 9] = [
-    ("The scenario itself", &[Own::KEYS]),
+    ("The scenario itself", &[ScenarioSettings::KEYS]),
     ("Task", &[&TASK]),
     ("Control", &[Control::KEYS]),
     (
@@ -53,7 +53,7 @@ pub fn key_of(path: &str) -> Option<&'static Key> {
 }
 
 /// The parts of a scenario that are tables of their own.
-pub(super) const TABLES: [&str; 6] = ["task", "control", "plant", "base", "tolerance", "design"];
+pub(super) const SCENARIO_TABLES: [&str; 6] = ["task", "control", "plant", "base", "tolerance", "design"];
 
 /// Returns the effect of a change of settings: the largest effect of its keys.
 pub fn effect_of(change: &Table) -> Effect {
@@ -68,7 +68,7 @@ pub fn effect_in(part: &str, value: &Value) -> Effect {
     if of_part().all(|effect| effect == most) {
         return most;
     }
-    let whole = change::one(part, value.clone());
+    let whole = change::single_change(part, value.clone());
     let effects = change::leaves(&whole).into_iter().map(|(path, _)| key_of(&path).map_or(most, |key| key.effect));
     effects.max().unwrap_or(most)
 }

@@ -1,23 +1,23 @@
-//! [`Own`]: the keys of a scenario that belong to no part.
+//! [`ScenarioSettings`]: the keys of a scenario that belong to no part.
 
-use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
-use super::task::POSE_CONSTANT;
+use super::bounds::{DURATION_RANGE, POSE_ACCELERATION, STEP_RANGE};
+use super::task::POSE_CONSTANT_RANGE;
 use crate::settings::key::{Effect, Key};
 use crate::settings::keyed::keyed;
 
 keyed! {
     /// Keys of a scenario that belong to no part.
     #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Own {
+    pub struct ScenarioSettings {
         /// Fixed step of the simulation.
-        step: f64 = "0.001", range: STEP, reaching: Effect::Plan, saved: always;
+        step: f64 = "0.001", range: STEP_RANGE, reaching: Effect::Plan, saved: always;
         /// Time that a recording and every command that runs to the end covers.
-        duration: Option<f64> = Key::NONE, range: DURATION, instead: "that of the planned motion",
+        duration: Option<f64> = Key::NONE, range: DURATION_RANGE, instead: "that of the planned motion",
             reaching: Effect::Aside;
         /// Bound on |b̈| while b is slid by hand.
         pose_acceleration: f64 = "2", range: POSE_ACCELERATION, saved: always;
         /// Pose constant of a second workspace to compare with.
-        compare_b: Option<f64> = Key::NONE, range: POSE_CONSTANT, instead: "there is no second one",
+        compare_b: Option<f64> = Key::NONE, range: POSE_CONSTANT_RANGE, instead: "there is no second one",
             reaching: Effect::Picture;
     }
 }

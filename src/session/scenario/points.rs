@@ -1,6 +1,6 @@
 //! The points of a task: A, those between, B; and the changes that move, add, remove and reorder them.
 
-use super::task::{Change, Task};
+use super::task::{Task, TaskChange};
 use crate::mechanics::planar::Vector;
 
 impl Task {
@@ -20,7 +20,7 @@ impl Task {
     }
 
     /// Returns the change that sets these points, m; `None` for fewer than two.
-    pub fn visiting(points: &[Vector]) -> Option<Change> {
+    pub fn visiting(points: &[Vector]) -> Option<TaskChange> {
         let [from, via @ .., to] = points else { return None };
         let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
         let via = via.iter().map(pair).collect();
@@ -45,14 +45,14 @@ impl Task {
 
     /// Returns the change that moves a point to `to`, m. This change and those below are `None` if the task follows
     /// samples.
-    pub fn moving(&self, point: usize, to: Vector) -> Option<Change> {
+    pub fn moving(&self, point: usize, to: Vector) -> Option<TaskChange> {
         let mut points = self.movable()?;
         *points.get_mut(point)? = to;
         Self::visiting(&points)
     }
 
     /// Returns the change that adds a point, m, where it lengthens the polyline through all points least.
-    pub fn adding(&self, p: Vector) -> Option<Change> {
+    pub fn adding(&self, p: Vector) -> Option<TaskChange> {
         let mut points = self.movable()?;
         let detour = |i: &usize| {
             let (a, b) = (points[*i], points[i + 1]);
@@ -64,7 +64,7 @@ impl Task {
     }
 
     /// Returns the change that removes a point; `None` if there are only two.
-    pub fn removing(&self, point: usize) -> Option<Change> {
+    pub fn removing(&self, point: usize) -> Option<TaskChange> {
         let mut points = self.movable()?;
         if points.len() <= 2 || point >= points.len() {
             return None;
@@ -74,7 +74,7 @@ impl Task {
     }
 
     /// Returns the change that visits a point one place earlier.
-    pub fn advancing(&self, point: usize) -> Option<Change> {
+    pub fn advancing(&self, point: usize) -> Option<TaskChange> {
         let mut points = self.movable()?;
         if point == 0 || point >= points.len() {
             return None;
@@ -84,7 +84,7 @@ impl Task {
     }
 
     /// Returns the change that sets the points of a curve drawn with the pointer, m.
-    pub fn drawing(points: &[Vector]) -> Option<Change> {
+    pub fn drawing(points: &[Vector]) -> Option<TaskChange> {
         // Few enough points for a file, and enough to keep the shape of the drawn curve.
         let every = points.len().div_ceil(400).max(1);
         let mut thin: Vec<Vector> = points.iter().step_by(every).copied().collect();

@@ -4,18 +4,18 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::bounds::STEP;
+use super::bounds::STEP_RANGE;
 use super::choices::TaskKind;
 use super::definition::Scenario;
-use super::keys::{TABLES, key_of, keys};
-use super::own::Own;
+use super::keys::{SCENARIO_TABLES, key_of, keys};
+use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{self, PARTS, is_of_machine};
+use crate::mechanics::machine::{self, MACHINE_TABLES, is_of_machine};
 use crate::planning::curves::Samples;
-use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{self, Effect, Holds, Key};
-use crate::settings::range::{Check, clipped};
+use crate::settings::change::{self, DEFAULT_WORD};
+use crate::settings::key::{self, Effect, Key, KeyType};
+use crate::settings::range::{RangeCheck, quote_clipped};
 
 /// Why settings cannot be applied to a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -45,7 +45,7 @@ pub enum SettingError {
     #[error(transparent)]
     Machine(#[from] machine::MachineError),
     /// There is no such key.
-    #[error("there is no setting {key}: want one of {}, {}", Own::KEYS.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
+    #[error("there is no setting {key}: want one of {}, {}", ScenarioSettings::KEYS.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), SCENARIO_TABLES.iter().chain(&MACHINE_TABLES).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
     Unknown {
         /// The key.
         key: String,
@@ -83,7 +83,7 @@ impl Scenario {
             };
             match (part.as_str(), value) {
                 ("task", Value::Table(change)) => self.task = self.task.with(change, &self.machine).map_err(wrong)?,
-                ("task", Value::String(word)) if word == DEFAULT => {
+                ("task", Value::String(word)) if word == DEFAULT_WORD => {
                     let why = "a task as a whole has no usual value: want that of a key, such as task.time=default";
                     return Err(SettingError::Part { part: part.clone(), why: why.into() });
                 }
@@ -92,13 +92,13 @@ impl Scenario {
                 ("plant", _) => self.plant = laid(&self.plant, value).map_err(wrong)?,
                 ("base", _) => self.base = laid(&self.base, value).map_err(wrong)?,
                 ("tolerance", Value::Table(change)) => {
-                    self.tolerance = change::with(&self.tolerance, &Tolerance::flat(change)).map_err(wrong)?;
+                    self.tolerance = change::with_changes(&self.tolerance, &Tolerance::flat(change)).map_err(wrong)?;
                 }
                 ("design", _) => self.design = laid(&self.design, value).map_err(wrong)?,
                 ("tolerance", _) => self.tolerance = laid(&self.tolerance, value).map_err(wrong)?,
                 _ => {
-                    let unknown = || SettingError::Unknown { key: clipped(part) };
-                    let key = Own::KEYS.iter().find(|key| key.path == part).ok_or_else(unknown)?;
+                    let unknown = || SettingError::Unknown { key: quote_clipped(part) };
+                    let key = ScenarioSettings::KEYS.iter().find(|key| key.path == part).ok_or_else(unknown)?;
                     let given = number(value, key).map_err(wrong)?;
                     self.lay_own(part, given).map_err(wrong)?;
                 }
@@ -108,9 +108,9 @@ impl Scenario {
     }
 
     /// Returns the keys that belong to no part.
-    fn own(&self) -> Own {
+    fn own(&self) -> ScenarioSettings {
         let Self { step, duration, pose_acceleration, compare_b, .. } = *self;
-        Own { step, duration, pose_acceleration, compare_b }
+        ScenarioSettings { step, duration, pose_acceleration, compare_b }
     }
 
     /// Sets one of these keys to a number, or to its default if none is given.
@@ -120,7 +120,7 @@ impl Scenario {
             Some(x) => drop(stated.insert(part.to_owned(), x.into())),
             None => drop(stated.remove(part)),
         }
-        let Own { step, duration, pose_acceleration, compare_b } = change::read(&stated)?;
+        let ScenarioSettings { step, duration, pose_acceleration, compare_b } = change::read(&stated)?;
         if part == "step" {
             self.step_by(step);
         }
@@ -144,7 +144,9 @@ impl Scenario {
     /// one of the keys does not exist.
     pub fn only(&self, change: &Table) -> Option<Table> {
         let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
-        let known = |part: &String| TABLES.contains(&part.as_str()) || Own::KEYS.iter().any(|key| key.path == part);
+        let known = |part: &String| {
+            SCENARIO_TABLES.contains(&part.as_str()) || ScenarioSettings::KEYS.iter().any(|key| key.path == part)
+        };
         if !own.keys().all(known) {
             return None;
         }
@@ -156,9 +158,9 @@ impl Scenario {
         if change::leaves(&own).iter().any(|(path, _)| path == "task.samples") {
             stated.insert("task".into(), Table::try_from(&self.task).ok()?.into());
         }
-        let mut now = change::only(&stated, &own);
+        let mut now = change::present_values(&stated, &own);
         for (path, _) in change::leaves(&of_machine) {
-            now = change::join(now, &change::one(&path, self.machine.value(&path)?));
+            now = change::join(now, &change::single_change(&path, self.machine.value(&path)?));
         }
         Some(now)
     }
@@ -206,7 +208,7 @@ impl Scenario {
         };
         Some(match found {
             Some(value) => value.clone(),
-            None if [Key::NONE, Key::REQUIRED].contains(&key.default) => DEFAULT.into(),
+            None if [Key::NONE, Key::REQUIRED].contains(&key.default) => DEFAULT_WORD.into(),
             None => change::value(key.default),
         })
     }
@@ -279,12 +281,12 @@ impl Scenario {
     }
 
     /// Checks every number against its range and the others.
-    pub(super) fn checks(&self) -> Vec<Check> {
+    pub(super) fn checks(&self) -> Vec<RangeCheck> {
         let n = self.machine.drives();
         let stated = self.stated();
         // A valid step size bounds some numbers more narrowly than their ranges do.
-        let mut list = vec![STEP.check("step", self.step)];
-        if STEP.contains(self.step) {
+        let mut list = vec![STEP_RANGE.check("step", self.step)];
+        if STEP_RANGE.contains(self.step) {
             list.extend(self.task.fits(self.step));
             list.extend(self.control.fits(n, self.step));
         }
@@ -300,7 +302,7 @@ impl Scenario {
     /// If these settings cannot be applied.
     pub(crate) fn with_asides_of(&self, other: &Self) -> Result<Self, SettingError> {
         let asides = || keys().filter(|key| key.effect == Effect::Aside).map(|key| key.part().to_owned());
-        let none: Table = asides().map(|part| (part, DEFAULT.into())).collect();
+        let none: Table = asides().map(|part| (part, DEFAULT_WORD.into())).collect();
         let mut stated = other.stated();
         stated.retain(|part, _| asides().any(|aside| aside == *part));
         self.with(&none)?.with(&stated)
@@ -310,9 +312,12 @@ impl Scenario {
 /// Returns a part with settings changed; the word `default` removes all of its keys.
 fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Result<T, String> {
     match value {
-        Value::Table(change) => change::with(now, change),
-        Value::String(word) if word == DEFAULT => Ok(T::default()),
-        _ => Err(format!("it is {}: want its keys with their values, or {DEFAULT}", clipped(&value.to_string()))),
+        Value::Table(change) => change::with_changes(now, change),
+        Value::String(word) if word == DEFAULT_WORD => Ok(T::default()),
+        _ => Err(format!(
+            "it is {}: want its keys with their values, or {DEFAULT_WORD}",
+            quote_clipped(&value.to_string())
+        )),
     }
 }
 
@@ -323,7 +328,7 @@ fn freed(at: &str, change: &Table) -> Table {
         let none = || key_of(&path).is_some_and(|key| key.default == Key::NONE);
         let value = match value {
             Value::Table(inner) => Value::Table(self::freed(&path, inner)),
-            Value::String(word) if word == Key::NONE && none() => DEFAULT.into(),
+            Value::String(word) if word == Key::NONE && none() => DEFAULT_WORD.into(),
             value => value.clone(),
         };
         (key.clone(), value)
@@ -333,15 +338,17 @@ fn freed(at: &str, change: &Table) -> Table {
 
 /// Returns the error of the first value in a part that its key does not take.
 fn blame(part: &str, value: &Value) -> Option<SettingError> {
-    let whole = change::one(part, value.clone());
+    let whole = change::single_change(part, value.clone());
     change::leaves(&whole).into_iter().find_map(|(path, value)| {
         let said = |want: String| {
-            let value = clipped(&change::typed(value));
-            Some(SettingError::Value { path: clipped(&path), value, want })
+            let value = quote_clipped(&change::typed(value));
+            Some(SettingError::Value { path: quote_clipped(&path), value, want })
         };
         match key_of(&path) {
             Some(key) if key.holds.takes(value) => None,
-            Some(key) if key.unit().is_empty() || matches!(key.holds, Holds::Spread(_)) => said(key.holds.to_string()),
+            Some(key) if key.unit().is_empty() || matches!(key.holds, KeyType::Spread(_)) => {
+                said(key.holds.to_string())
+            }
             Some(key) => said(format!("{} (a number without its unit)", key.holds)),
             None => {
                 let below = |key: &&Key| key.path.starts_with(&format!("{path}."));
@@ -355,9 +362,9 @@ fn blame(part: &str, value: &Value) -> Option<SettingError> {
 /// Reads a number of a key that belongs to no part; `None` for the word `default`.
 fn number(value: &Value, key: &Key) -> Result<Option<f64>, String> {
     match value {
-        Value::String(word) if word == DEFAULT => Ok(None),
+        Value::String(word) if word == DEFAULT_WORD => Ok(None),
         _ => change::number(value)
             .map(Some)
-            .ok_or_else(|| format!("it is {}: want a number, {}", clipped(&change::typed(value)), key.holds)),
+            .ok_or_else(|| format!("it is {}: want a number, {}", quote_clipped(&change::typed(value)), key.holds)),
     }
 }

@@ -3,22 +3,22 @@
 use toml::Table;
 
 use super::bounds::MAX_TIME;
-use super::choices::{Corners, Least, Shape, TaskKind};
+use super::choices::{Corners, PathShape, ReactionObjective, TaskKind};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::curves::Samples;
 use crate::planning::posture::Posture;
 use crate::planning::timing::TimeLaw;
-use crate::settings::change::{self, DEFAULT};
+use crate::settings::change::{self, DEFAULT_WORD};
 use crate::settings::key::Key;
 use crate::settings::keyed::keyed;
-use crate::settings::number::{Short, counted};
-use crate::settings::range::{Check, Range};
+use crate::settings::number::{ShortNumber, counted};
+use crate::settings::range::{Range, RangeCheck};
 use crate::settings::word::Choice;
 
 /// Some keys of a task, as a file states them.
-pub type Change = Table;
+pub type TaskChange = Table;
 
 /// Value of a key of a task.
 pub type Value = toml::Value;
@@ -27,11 +27,11 @@ pub type Value = toml::Value;
 pub const MAX_POINTS: usize = 2000;
 
 /// Range of either coordinate of a point.
-pub const PLACE: Range = Range::either_way(1e6, "m");
+pub const POINT_RANGE: Range = Range::either_way(1e6, "m");
 /// Range of a pose constant, more than a hundred turns either way.
-pub const POSE_CONSTANT: Range = Range::either_way(1e3, "rad");
+pub const POSE_CONSTANT_RANGE: Range = Range::either_way(1e3, "rad");
 /// Range of the duration of a motion, whether it is given or found.
-pub const TIME: Range = Range::new(1e-5, MAX_TIME, "s");
+pub const MOTION_TIME_RANGE: Range = Range::new(1e-5, MAX_TIME, "s");
 
 const ANGLE: Range = Range::either_way(1e3, "rad");
 
@@ -51,7 +51,7 @@ keyed! {
         /// What becomes of the redundancy of three drives over two coordinates of the end effector.
         kind: TaskKind = Key::REQUIRED, saved: always;
         /// What joins the points.
-        shape: Option<Shape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
+        shape: Option<PathShape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
             when: CURVED => Task::is_curved;
         // All drive angles for `given`; x and y for `given`, `reactionless` and `minimum-norm`. With two drives,
         // `given` takes two values as drive angles. Points, shape and law have no effect then.
@@ -60,11 +60,11 @@ keyed! {
         /// By how much samples of drive angles are turned as a whole.
         turn: f64 = "0", range: ANGLE, when: "samples of drive angles" => |task| task.columns().is_some_and(|n| n != 2);
         /// The point A; by default where samples begin.
-        from: [f64; 2] = Key::REQUIRED, range: PLACE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
+        from: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
         /// Points between A and B, in order, at most 2000.
-        via: Vec<[f64; 2]> = "[]", range: PLACE;
+        via: Vec<[f64; 2]> = "[]", range: POINT_RANGE;
         /// The point B; by default where samples end.
-        to: [f64; 2] = Key::REQUIRED, range: PLACE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
+        to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
         /// Whether the path returns from B to A.
         closed: bool = "false";
         /// Whether the motion rests at corners or rounds them off.
@@ -75,12 +75,12 @@ keyed! {
         /// Keeps to one side of every change point, where two drives are parallel and pin forces grow without bound.
         keep_off_change_points: bool = "false";
         /// Pose constant b at A: which reactionless plane.
-        b: f64 = Key::REQUIRED, range: POSE_CONSTANT,
+        b: f64 = Key::REQUIRED, range: POSE_CONSTANT_RANGE,
             when: "no samples of drive angles, which have their own b: task.turn turns them"
                 => |task| task.columns().is_none_or(|n| n == 2),
             saved: always;
         /// Pose constant b at B.
-        b_to: Option<f64> = Key::NONE, range: POSE_CONSTANT,
+        b_to: Option<f64> = Key::NONE, range: POSE_CONSTANT_RANGE,
             instead: "for change-b the one that B allows with the least change, for least-reaction free",
             when: "the kind change-b or least-reaction"
                 => |task| matches!(task.kind, TaskKind::ChangeB | TaskKind::LeastReaction);
@@ -91,7 +91,7 @@ keyed! {
         cycles: u32 = "1", range: Range::new(1.0, 100.0, ""),
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
         /// What to keep small: the root of the mean square of n_B, or its peak.
-        least: Least = "mean-square", when: "the kind least-reaction" => |task| task.kind == TaskKind::LeastReaction;
+        least: ReactionObjective = "mean-square", when: "the kind least-reaction" => |task| task.kind == TaskKind::LeastReaction;
         /// How four drives and more use the freedoms that a point leaves while b is held: they turn least, the last link
         /// keeps its orientation, the motors need the least torques, or joints stay near the middle of their ranges.
         posture: Posture = "least-rates", when: FREE => Task::has_freedoms;
@@ -102,7 +102,7 @@ keyed! {
         first_drive_to: Option<f64> = Key::NONE, range: ANGLE, instead: "where it began",
             when: "the kind same-tip" => |task| task.kind == TaskKind::SameTip;
         /// Duration T from A to B; by default 1 s, or as long as samples take, and another T stretches them.
-        time: f64 = "1", range: TIME,
+        time: f64 = "1", range: MOTION_TIME_RANGE,
             when: "another law: the fastest ones find the time" => |task| !task.law.is_fastest(), saved: always;
         /// Time law: how the motion goes from A to B.
         law: TimeLaw = "quintic",
@@ -188,19 +188,19 @@ impl Task {
     }
 
     /// Checks the time against the step size, s, and the number of points.
-    pub(super) fn fits(&self, step: f64) -> Vec<Check> {
+    pub(super) fn fits(&self, step: f64) -> Vec<RangeCheck> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
-        let want = || format!("one step or more, {} to {} s", Short(step), Short(TIME.high()));
-        let time = Check::said("task.time", self.time, self.time >= step, want);
-        let many = || Check::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
+        let want = || format!("one step or more, {} to {} s", ShortNumber(step), ShortNumber(MOTION_TIME_RANGE.high()));
+        let time = RangeCheck::said("task.time", self.time, self.time >= step, want);
+        let many = || RangeCheck::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
         std::iter::once(time).chain((!enough).then(many)).collect()
     }
 
     /// Returns all keys, as a change that turns any other task into this one.
-    pub fn whole(&self) -> Change {
+    pub fn whole(&self) -> TaskChange {
         let absent = Self::KEYS.iter().filter_map(|key| key.path.strip_prefix("task."));
-        let absent = absent.map(|key| (key.to_owned(), Value::from(DEFAULT)));
-        absent.chain(Change::try_from(self).unwrap_or_default()).collect()
+        let absent = absent.map(|key| (key.to_owned(), Value::from(DEFAULT_WORD)));
+        absent.chain(TaskChange::try_from(self).unwrap_or_default()).collect()
     }
 
     /// Returns the number of values in each of its samples.
@@ -214,28 +214,30 @@ impl Task {
     }
 
     fn has_corners(&self) -> bool {
-        let is_straight = matches!(self.shape(), Shape::JointLine | Shape::Line);
+        let is_straight = matches!(self.shape(), PathShape::JointLine | PathShape::Line);
         self.is_curved() && is_straight && (self.closed || !self.via.is_empty())
     }
 
     /// Whether more than three drives would have freedoms left.
     fn has_freedoms(&self) -> bool {
         match self.columns() {
-            None => self.kind == TaskKind::Reactionless && self.shape() != Shape::JointLine,
+            None => self.kind == TaskKind::Reactionless && self.shape() != PathShape::JointLine,
             Some(columns) => matches!(self.kind, TaskKind::Reactionless | TaskKind::Given) && columns == 2,
         }
     }
 
     fn keeps_orientation(&self) -> bool {
-        let is_asked = self.posture == Posture::Orientation || self.shape() == Shape::JointLine;
+        let is_asked = self.posture == Posture::Orientation || self.shape() == PathShape::JointLine;
         self.kind == TaskKind::Reactionless && self.samples.is_none() && is_asked
     }
 
     /// Returns the shape of the path between the points.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> PathShape {
         self.shape.unwrap_or(match self.kind {
-            TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => Shape::JointLine,
-            TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => Shape::Line,
+            TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => PathShape::JointLine,
+            TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => {
+                PathShape::Line
+            }
         })
     }
 
@@ -254,11 +256,11 @@ impl Task {
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
-    pub fn with(&self, change: &Change, machine: &Machine) -> Result<Self, String> {
+    pub fn with(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
         // There may be many samples, so they are serialised only if the change is of them.
         let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
         let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
-        let stated = change::laid(plain, change)?;
+        let stated = change::merged_keys(plain, change)?;
         let mut task: Self = change::read(&stated)?;
         task.samples = kept.or(task.samples);
         let completed = task.completed(|key| stated.contains_key(key), machine);
@@ -266,7 +268,7 @@ impl Task {
     }
 
     /// Returns the present values of these keys, with which [`with`](Self::with) undoes a change.
-    pub fn only(&self, change: &Change) -> Change {
-        change::only(self, change)
+    pub fn only(&self, change: &TaskChange) -> TaskChange {
+        change::present_values(self, change)
     }
 }

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::mechanics::machine::{Machine, MachineSpec};
 use crate::settings::change;
-use crate::settings::key::{Holds, Key};
-use crate::settings::keyed::ANY;
-use crate::settings::range::{Range, clipped};
+use crate::settings::key::{Key, KeyType};
+use crate::settings::keyed::ANY_NUMBER;
+use crate::settings::range::{Range, quote_clipped};
 
 /// Maximum number of samples of one study.
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
@@ -38,7 +38,7 @@ pub struct Tolerance {
     pub moment_limit: Option<f64>,
     /// Upper limit on the dynamic |f_B| for the yield, N.
     pub force_limit: Option<f64>,
-    /// Spreads by key; see `Parameter` of the studies.
+    /// Spreads by key; see `UncertainParameter` of the studies.
     pub spreads: BTreeMap<String, Spread>,
 }
 
@@ -64,11 +64,11 @@ macro_rules! at {
 /// All keys of numbers of the study.
 const ROWS: [Row; 4] = [
     Row {
-        key: Key::new("tolerance.seed", Holds::Whole(SEED), Key::NONE, "Which random machines.").instead("1"),
+        key: Key::new("tolerance.seed", KeyType::Whole(SEED), Key::NONE, "Which random machines.").instead("1"),
         at: at!(Whole, seed),
     },
     Row {
-        key: Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines.")
+        key: Key::new("tolerance.samples", KeyType::Whole(SAMPLES), Key::NONE, "How many random machines.")
             .instead("100000, or 1000 that are simulated"),
         at: at!(Whole, samples),
     },
@@ -151,7 +151,7 @@ pub(super) const KEYS: [Key; ROWS.len() + SPREADS.len()] = {
 };
 
 const fn spread(path: &'static str, unit: &'static str, words: &'static str) -> Key {
-    Key::new(path, Holds::Spread(unit), Key::NONE, words)
+    Key::new(path, KeyType::Spread(unit), Key::NONE, words)
 }
 
 const SEED: Range = Range::new(0.0, i64::MAX as f64, "");
@@ -316,7 +316,11 @@ impl TryFrom<Section> for Tolerance {
                 None => {
                     let spread = in_words(&value).and_then(|text| text.parse().ok()).ok_or_else(|| {
                         let known = ROWS.map(|row| row.key.path.trim_start_matches(PREFIX)).join(", ");
-                        format!("tolerance.{} is {}: {SECTION} {known}", clipped(&key), clipped(&change::typed(&value)))
+                        format!(
+                            "tolerance.{} is {}: {SECTION} {known}",
+                            quote_clipped(&key),
+                            quote_clipped(&change::typed(&value))
+                        )
                     })?;
                     tolerance.spreads.insert(key, spread);
                 }
@@ -347,21 +351,23 @@ fn in_words(value: &toml::Value) -> Option<String> {
 
 /// Reads a whole number in the range of its key.
 fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
-    let range = key.range().unwrap_or(ANY);
+    let range = key.range().unwrap_or(ANY_NUMBER);
     let whole = value.as_integer().and_then(|x| u64::try_from(x).ok()).filter(|x| range.contains(*x as f64));
     let ends = || match range.high() < i64::MAX as f64 {
         true => format!(" from {} to {}", range.low(), range.high()),
         false => format!(", {} or more", range.low()),
     };
-    whole.ok_or_else(|| format!("{} is {}: want a whole number{}", key.path, clipped(&change::typed(value)), ends()))
+    whole.ok_or_else(|| {
+        format!("{} is {}: want a whole number{}", key.path, quote_clipped(&change::typed(value)), ends())
+    })
 }
 
 /// Reads a number in the range of its key.
 fn number(key: &Key, value: &toml::Value) -> Result<f64, String> {
-    let range = key.range().unwrap_or(ANY);
+    let range = key.range().unwrap_or(ANY_NUMBER);
     change::number(value)
         .filter(|x| range.contains(*x))
-        .ok_or_else(|| format!("{} is {}: want a number, {range}", key.path, clipped(&change::typed(value))))
+        .ok_or_else(|| format!("{} is {}: want a number, {range}", key.path, quote_clipped(&change::typed(value))))
 }
 
 impl From<Tolerance> for Section {

@@ -24,7 +24,7 @@ const B_TOLERANCE: f64 = 1e-6;
 /// Outcome of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Lamp {
+pub enum StatusLight {
     /// The condition for a base that feels nothing is met.
     Good,
     /// The condition is not met.
@@ -33,7 +33,7 @@ pub enum Lamp {
     Open,
 }
 
-impl Lamp {
+impl StatusLight {
     /// Returns the outcome as a word, to be shown with a colour.
     pub fn name(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl Lamp {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Statement {
     /// Outcome.
-    pub lamp: Lamp,
+    pub lamp: StatusLight,
     /// Outcome in a few words that follow the name of the subject: `holds b`.
     pub words: String,
     /// Reason, in a sentence.
@@ -56,7 +56,7 @@ pub struct Statement {
 }
 
 impl Statement {
-    fn new(lamp: Lamp, words: impl Into<String>, why: impl Into<String>) -> Self {
+    fn new(lamp: StatusLight, words: impl Into<String>, why: impl Into<String>) -> Self {
         Self { lamp, words: words.into(), why: why.into() }
     }
 
@@ -65,17 +65,19 @@ impl Statement {
         let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
         let figures = format!("largest |g_k| {force:.1e} kg m, largest |C_kl| {coupling:.1e} kg m²");
         match (inertia.is_force_balanced(), inertia.is_invariant()) {
-            (true, true) => {
-                Self::new(Lamp::Good, "balanced", format!("force-balanced and invariant, (7) and (8): {figures}"))
-            }
+            (true, true) => Self::new(
+                StatusLight::Good,
+                "balanced",
+                format!("force-balanced and invariant, (7) and (8): {figures}"),
+            ),
             (false, _) => {
                 let words = format!("off balance by {} kg m", significant(force));
-                Self::new(Lamp::Bad, words, format!("its centre of mass moves, (7) does not hold: {figures}"))
+                Self::new(StatusLight::Bad, words, format!("its centre of mass moves, (7) does not hold: {figures}"))
             }
             (true, false) => {
                 let words = format!("drives coupled by {} kg m²", significant(coupling));
                 Self::new(
-                    Lamp::Bad,
+                    StatusLight::Bad,
                     words,
                     format!("its mass matrix depends on the pose, (8) does not hold: {figures}"),
                 )
@@ -86,24 +88,28 @@ impl Statement {
     /// States whether the planned or dragged motion of a run holds b.
     fn of_plan(run: &Run, inertia: &Inertia) -> Self {
         if run.waiting().is_some() {
-            return Self::new(Lamp::Open, "none, the run waits", "the task does not fit the machine");
+            return Self::new(StatusLight::Open, "none, the run waits", "the task does not fit the machine");
         }
         if !inertia.is_invariant() {
             let why = "the angular momentum of this machine depends on its pose: it has no pose constant";
-            return Self::new(Lamp::Open, "no b to hold", why);
+            return Self::new(StatusLight::Open, "no b to hold", why);
         }
         if inertia.pose_inertia() == 0.0 {
-            return Self::new(Lamp::Good, "needs no b", "no drive of this machine turns its base: any path will do");
+            return Self::new(
+                StatusLight::Good,
+                "needs no b",
+                "no drive of this machine turns its base: any path will do",
+            );
         }
         match run.simulation().guide() {
             Guide::Follow(follower) if (follower.b_aim() - follower.b()).abs() > B_TOLERANCE => {
                 let change = significant(follower.b_aim() - follower.b());
                 let why = format!("a hand turns b by {change} rad: the base feels −D₁ b̈");
-                Self::new(Lamp::Bad, format!("turns b by {change} rad"), why)
+                Self::new(StatusLight::Bad, format!("turns b by {change} rad"), why)
             }
             Guide::Follow(follower) => {
                 let why = format!("a hand leads the machine on the plane b = {:.3} rad", follower.b());
-                Self::new(Lamp::Good, "led by hand, holds b", why)
+                Self::new(StatusLight::Good, "led by hand, holds b", why)
             }
             Guide::Motion { .. } => {
                 let forecast = &run.plan().forecast;
@@ -111,7 +117,7 @@ impl Statement {
                 let change = greatest - least;
                 if change <= B_TOLERANCE {
                     let why = format!("the whole path lies on the plane b = {:.3} rad", forecast.b_start);
-                    return Self::new(Lamp::Good, "holds b", why);
+                    return Self::new(StatusLight::Good, "holds b", why);
                 }
                 let why = format!(
                     "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
@@ -120,7 +126,7 @@ impl Statement {
                     forecast.b_end,
                     significant(forecast.moment)
                 );
-                Self::new(Lamp::Bad, format!("changes b by {} rad", significant(change)), why)
+                Self::new(StatusLight::Bad, format!("changes b by {} rad", significant(change)), why)
             }
         }
     }
@@ -129,15 +135,15 @@ impl Statement {
     fn of_run(run: &Run, frame: &Frame, [machine, plan]: [&Self; 2]) -> Self {
         let (verdict, peaks) = (Verdict::of(run.scenario(), frame), &frame.peaks);
         if let Some(figure) = &verdict.fault {
-            return Self::new(Lamp::Bad, "cannot be trusted", format!("an audit has failed: {figure}"));
+            return Self::new(StatusLight::Bad, "cannot be trusted", format!("an audit has failed: {figure}"));
         }
         if run.waiting().is_some() {
-            return Self::new(Lamp::Open, "waits", "nothing moves until the task fits the machine");
+            return Self::new(StatusLight::Open, "waits", "nothing moves until the task fits the machine");
         }
         if !verdict.moved {
             let words = if frame.step == 0 { "none yet" } else { "nothing moved" };
             return Self::new(
-                Lamp::Open,
+                StatusLight::Open,
                 words,
                 "the arm has not moved, so there is nothing to say of what it transmits",
             );
@@ -145,12 +151,12 @@ impl Statement {
         let figures =
             format!("peak |n_B| {} N m, peak |f_B| {} N", significant(verdict.arm_moment), significant(verdict.force));
         if verdict.reactionless {
-            return Self::new(Lamp::Good, "transmitted nothing", figures);
+            return Self::new(StatusLight::Good, "transmitted nothing", figures);
         }
         if let Some(past_wheel) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
             let why = format!("{figures}; the wheel leaves the base {} N m", significant(past_wheel));
-            return Self::new(Lamp::Good, words, why);
+            return Self::new(StatusLight::Good, words, why);
         }
         let parts = [
             peaks.transmits_moment().then(|| format!("|n_B| {} N m", significant(verdict.arm_moment))),
@@ -158,14 +164,14 @@ impl Statement {
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
         let cause = match (machine.lamp, plan.lamp) {
-            (Lamp::Bad, _) => "the machine does this: it is not balanced",
-            (_, Lamp::Bad) => "the path does this, not the machine: b changes on it",
+            (StatusLight::Bad, _) => "the machine does this: it is not balanced",
+            (_, StatusLight::Bad) => "the path does this, not the machine: b changes on it",
             _ => {
                 "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
                  gains, or a hand that turned b"
             }
         };
-        Self::new(Lamp::Bad, words, format!("{figures}; {cause}"))
+        Self::new(StatusLight::Bad, words, format!("{figures}; {cause}"))
     }
 }
 

@@ -8,8 +8,8 @@ use crate::mechanics::machine::ranges::{INERTIA, LENGTH, MASS, PLACE};
 use crate::mechanics::machine::{Machine, MachineError};
 use crate::settings::key::Key;
 use crate::settings::keyed::keyed;
-use crate::settings::number::Short;
-use crate::settings::range::{Check, Range};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::{Range, RangeCheck};
 
 const AS_MODEL: &str = "as the model has it";
 
@@ -74,13 +74,13 @@ impl PlantDifferences {
     }
 
     /// Returns the checks that depend on several settings or on the number `n` of drives.
-    pub(crate) fn fits(&self, n: usize) -> Vec<Check> {
+    pub(crate) fn fits(&self, n: usize) -> Vec<RangeCheck> {
         let (load, friction) = (&self.payload, &self.friction);
         let later = |until| {
-            let from = || format!("more than plant.payload.from, {} s", Short(load.from));
-            Check::said("plant.payload.until", until, until > load.from, from)
+            let from = || format!("more than plant.payload.from, {} s", ShortNumber(load.from));
+            RangeCheck::said("plant.payload.until", until, until > load.from, from)
         };
-        let mut list: Vec<Check> = load.until.map(later).into_iter().collect();
+        let mut list: Vec<RangeCheck> = load.until.map(later).into_iter().collect();
         list.extend(friction.viscous.misfit(n, "plant.friction.viscous"));
         list.extend(friction.coulomb.misfit(n, "plant.friction.coulomb"));
         list

@@ -1,39 +1,39 @@
-//! [`Each`]: one number for all drives, or one for each.
+//! [`DriveValues`]: one number for all drives, or one for each.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::planar::PerDrive;
-use crate::settings::key::Holds;
-use crate::settings::keyed::{ANY, Held, Holding};
-use crate::settings::range::Check;
+use crate::settings::key::KeyType;
+use crate::settings::keyed::{ANY_NUMBER, DefaultFromText, HasKeyType};
+use crate::settings::range::RangeCheck;
 
 /// One number for all drives, or one for each.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want one number for all drives, or a list with one for each")]
-pub enum Each {
+pub enum DriveValues {
     /// One number for all drives.
     All(f64),
     /// One number for each drive, in order.
     Own(PerDrive),
 }
 
-impl Default for Each {
+impl Default for DriveValues {
     fn default() -> Self {
         Self::All(0.0)
     }
 }
 
-impl Holding for Each {
-    const HOLDS: Holds = Holds::PerDrive(ANY);
+impl HasKeyType for DriveValues {
+    const HOLDS: KeyType = KeyType::PerDrive(ANY_NUMBER);
 }
 
-impl Held for Each {
+impl DefaultFromText for DriveValues {
     fn typed(default: &str) -> Self {
         Self::All(f64::typed(default))
     }
 }
 
-impl Each {
+impl DriveValues {
     /// Returns the values of `n` drives; a list that is too short is extended with its last value.
     pub fn of(&self, n: usize) -> PerDrive {
         PerDrive::from_fn(n, |k| match self {
@@ -51,10 +51,10 @@ impl Each {
     }
 
     /// Returns a failed check if this is a list of another length than `n`.
-    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<Check> {
+    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<RangeCheck> {
         let count = self.values().len();
         let fits = matches!(self, Self::All(_)) || count == n;
-        (!fits).then(|| Check::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
+        (!fits).then(|| RangeCheck::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
     }
 
     /// Returns a copy with the value of drive `k` of `n` changed.

@@ -10,7 +10,7 @@
 //! slides in one direction or is stuck. A stuck contact transmits exactly the torque that keeps it stuck
 //! ([`Contacts::hold`]). So there is no creep or chatter at rest, independently of the step size.
 
-use super::each::Each;
+use super::each::DriveValues;
 use super::load::MAX_PAYLOAD;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
@@ -26,9 +26,9 @@ keyed! {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Friction at "plant.friction" {
         /// Viscous friction in the bearings of the drives: a torque against the rate relative to the base.
-        viscous: Each = "0", range: VISCOUS_RANGE;
+        viscous: DriveValues = "0", range: VISCOUS_RANGE;
         /// Coulomb friction in the bearings of the drives; a drive at rest sticks until more than this pulls.
-        coulomb: Each = "0", range: TORQUE_RANGE;
+        coulomb: DriveValues = "0", range: TORQUE_RANGE;
         /// Viscous friction in every pin, against the rate between its two links.
         pin_viscous: f64 = "0", range: VISCOUS_RANGE;
         /// Coulomb friction in every pin; a pin at rest sticks.
@@ -66,14 +66,14 @@ pub struct Contacts {
 
 impl Contacts {
     /// A contact with a sliding rate below this does not slide, rad/s.
-    pub(crate) const STILL: f64 = 1e-12;
+    pub(crate) const STICTION_SPEED: f64 = 1e-12;
 
     /// Returns the slip directions of all contacts for given rates, rad/s.
     pub(crate) fn slips(&self, qd: &[f64]) -> SlipDirections {
         let mut slip = [0; MAX_CONTACTS];
         for i in (0..self.len()).filter(|i| self.sticks(*i)) {
             let v = self.sliding(i, qd);
-            slip[i] = if v.abs() < Self::STILL { 0 } else { v.signum() as i8 };
+            slip[i] = if v.abs() < Self::STICTION_SPEED { 0 } else { v.signum() as i8 };
         }
         slip
     }

@@ -15,10 +15,10 @@ mod wheel;
 
 pub use base::{Base, BaseKind};
 pub use differences::{LENGTH_KEYS, LinkDifference, PlantDifferences};
-pub use each::Each;
+pub use each::DriveValues;
 pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
 pub use load::{Load, MAX_PAYLOAD};
 pub use moving_body::MovingBody;
-pub(crate) use stage::{Command, Point, Rates, Stage};
+pub(crate) use stage::{Actuation, ReducedState, RungeKuttaStage, StateRates};
 pub use state::{Slope, State};
 pub use wheel::{Wheel, WheelState};

@@ -18,9 +18,9 @@
 //! Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
-use crate::mechanics::dynamics::{BaseWrench, Surroundings, assemble, times};
+use crate::mechanics::dynamics::{BaseWrench, Surroundings, assemble, matrix_times};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, UnitVectors, Vector, cross, dot};
 
 const I: Vector = Vector::new(0.0, 1.0);
 
@@ -189,7 +189,7 @@ impl MovingBody {
 
     /// Returns the position of a chain's point, m, and its velocity, m/s.
     #[inline(always)]
-    fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive) -> (Vector, Vector) {
+    fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive) -> (Vector, Vector) {
         (0..self.whole.drives).fold(Default::default(), |(p, v), k| {
             let arm = chain[k] * e[k];
             (p + arm, v + I * arm * qd[k])
@@ -277,8 +277,8 @@ impl MovingBody {
         // Torques between drives and base cancel, so the sum of all equations gives the acceleration of the base.
         let sum = |x: &[f64; N]| x.iter().sum::<f64>();
         let all: f64 = (0..N).map(|k| (0..N).map(|l| h[l][k]).sum::<f64>()).sum();
-        let turn = (sum(&outer) - sum(&times(&h, commanded)) - sum(&v)) / all;
-        let inertial = times(&h, &commanded.map(|a| a + turn));
+        let turn = (sum(&outer) - sum(&matrix_times(&h, commanded)) - sum(&v)) / all;
+        let inertial = matrix_times(&h, &commanded.map(|a| a + turn));
         let mut torque = std::array::from_fn(|k| inertial[k] + v[k] - outer[k]);
         torque[N - 1] = 0.0;
         torque

@@ -1,16 +1,18 @@
-//! [`Stage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration steps
+//! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration steps
 //! consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
 //! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. Whether
 //! the base moves is a compile-time parameter.
 
 use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
-use crate::mechanics::dynamics::{BaseWrench, Factors, angular_rate, assemble, by_drives, first, times, wrench_with};
+use crate::mechanics::dynamics::{
+    BaseWrench, Factors, angular_rate, assemble, by_drives, leading_entries, matrix_times, wrench_with,
+};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
 
 /// The part of a [`State`] on which the equations of motion depend.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Point<const N: usize> {
+pub(crate) struct ReducedState<const N: usize> {
     pub q: [f64; N],
     pub momenta: [f64; N],
     pub place: Vector,
@@ -20,7 +22,7 @@ pub(crate) struct Point<const N: usize> {
 
 /// The rate of each part of a [`State`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rates<const N: usize> {
+pub(crate) struct StateRates<const N: usize> {
     /// q̇, rad/s.
     pub q: [f64; N],
     pub momenta: [f64; N],
@@ -36,7 +38,7 @@ pub(crate) struct Rates<const N: usize> {
 }
 
 /// Commands of motors and wheel.
-pub(crate) struct Command<const N: usize> {
+pub(crate) struct Actuation<const N: usize> {
     /// Motor torques, zero beyond the drives, N m.
     pub torque: [f64; N],
     /// State of the wheel.
@@ -46,7 +48,7 @@ pub(crate) struct Command<const N: usize> {
 }
 
 /// The quantities of a [`Slope`], with arrays of size `N`.
-pub(crate) struct Stage<const N: usize> {
+pub(crate) struct RungeKuttaStage<const N: usize> {
     pub e: [Vector; N],
     pub acceleration: [f64; N],
     pub torque: [f64; N],
@@ -57,10 +59,10 @@ pub(crate) struct Stage<const N: usize> {
     pub base_acceleration: Vector,
     pub wrench: BaseWrench,
     pub kinetic: f64,
-    pub rates: Rates<N>,
+    pub rates: StateRates<N>,
 }
 
-impl<const N: usize> Point<N> {
+impl<const N: usize> ReducedState<N> {
     #[inline(always)]
     pub fn of(state: &State) -> Self {
         let State { place, momentum, wheel, .. } = *state;
@@ -69,7 +71,7 @@ impl<const N: usize> Point<N> {
 
     /// Returns the point at `h` seconds after a state along given rates, on a base that `MOVES` or not.
     #[inline(always)]
-    pub fn along<const MOVES: bool>(from: &State, x: &Rates<N>, h: f64) -> Self {
+    pub fn along<const MOVES: bool>(from: &State, x: &StateRates<N>, h: f64) -> Self {
         let (q, momenta) = (from.q.array::<N>(), from.momenta.array::<N>());
         Self {
             q: std::array::from_fn(|k| q[k] + h * x.q[k]),
@@ -81,7 +83,7 @@ impl<const N: usize> Point<N> {
     }
 }
 
-impl<const N: usize> Rates<N> {
+impl<const N: usize> StateRates<N> {
     #[inline(always)]
     pub fn of(x: &Slope) -> Self {
         Self {
@@ -168,13 +170,13 @@ impl<const N: usize> Default for Afloat<N> {
     }
 }
 
-impl<const N: usize> Stage<N> {
+impl<const N: usize> RungeKuttaStage<N> {
     /// Returns the stage as a slope, padded to the maximum size.
     #[inline(always)]
     pub fn slope(&self, drives: usize) -> Slope {
         let mut e = [Vector::default(); MAX_DRIVES];
         e[..N].copy_from_slice(&self.e);
-        let Rates { q, momenta, place, momentum, wheel, work, lost, .. } = self.rates;
+        let StateRates { q, momenta, place, momentum, wheel, work, lost, .. } = self.rates;
         Slope {
             e,
             qd: PerDrive::from(q),
@@ -208,11 +210,11 @@ impl MovingBody {
     #[inline]
     pub(crate) fn stage<const N: usize, const MOVES: bool>(
         &self,
-        at: &Point<N>,
+        at: &ReducedState<N>,
         slip: &SlipDirections,
         stuck_torque: &mut [f64; MAX_CONTACTS],
-        control: impl FnOnce(&[Vector; N], &[f64; N], Pose2, Vector) -> Command<N>,
-    ) -> Stage<N> {
+        control: impl FnOnce(&[Vector; N], &[f64; N], Pose2, Vector) -> Actuation<N>,
+    ) -> RungeKuttaStage<N> {
         let n = if MOVES { N - 1 } else { N };
         let mut e = [Vector::default(); N];
         e.iter_mut().zip(at.q).for_each(|(e, q)| *e = unit(q));
@@ -228,7 +230,7 @@ impl MovingBody {
             true => self.afloat(at, &e, &rate),
             false => Afloat::default(),
         };
-        let Command { torque, spin, rotor } = control(&e, &rate, base, velocity);
+        let Actuation { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
         // Generalised forces: outer forces, whose sum changes L, and torques between the drives and the base.
         let tip = |k: usize| if MOVES { self.tip[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
@@ -281,7 +283,7 @@ impl MovingBody {
         let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
             + 0.5 * dot(at.momentum, drift)
             + 0.5 * rotor * spin.rate * spin.rate;
-        Stage {
+        RungeKuttaStage {
             e,
             acceleration,
             torque,
@@ -292,7 +294,7 @@ impl MovingBody {
             base_acceleration,
             wrench,
             kinetic,
-            rates: Rates {
+            rates: StateRates {
                 q: rate,
                 momenta: momenta_rate,
                 place: drift,
@@ -324,7 +326,7 @@ impl MovingBody {
 
     /// Returns the motion of a moving base.
     #[inline(always)]
-    fn afloat<const N: usize>(&self, at: &Point<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
+    fn afloat<const N: usize>(&self, at: &ReducedState<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
         let drift = at.momentum / self.mass;
         let anchor: [Vector; N] = std::array::from_fn(|k| self.anchor[k] * e[k]);
         let lever: Vector = anchor.iter().sum();
@@ -347,7 +349,7 @@ impl MovingBody {
         rate: &[f64; N],
         acceleration: &[f64; N],
     ) -> BaseWrench {
-        let inertial = times(h, acceleration);
+        let inertial = matrix_times(h, acceleration);
         let change = angular_rate(&self.arm, &inertial, v, acceleration);
         wrench_with(&self.arm, e, rate, acceleration, &self.around, change)
     }
@@ -393,7 +395,7 @@ impl MovingBody {
         let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
         let solve = |x: &[f64; MAX_DRIVES]| {
             let mut padded = [0.0; MAX_DRIVES];
-            padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
+            padded[..N].copy_from_slice(&factors.solve(*leading_entries::<N, _>(x)));
             padded
         };
         loss + self.contacts.hold(slip, (rate, &free), solve, force, friction, stuck_torque)
@@ -403,6 +405,6 @@ impl MovingBody {
 #[inline(never)]
 fn still_of<const N: usize, const MOVES: bool>(body: &MovingBody, state: &State) -> Slope {
     let mut stuck_torque = [0.0; MAX_CONTACTS];
-    let none = |_: &_, _: &_, _, _| Command { torque: [0.0; N], spin: WheelState::default(), rotor: 0.0 };
-    body.stage::<N, MOVES>(&Point::of(state), &[0; MAX_CONTACTS], &mut stuck_torque, none).slope(body.arm.drives)
+    let none = |_: &_, _: &_, _, _| Actuation { torque: [0.0; N], spin: WheelState::default(), rotor: 0.0 };
+    body.stage::<N, MOVES>(&ReducedState::of(state), &[0; MAX_CONTACTS], &mut stuck_torque, none).slope(body.arm.drives)
 }

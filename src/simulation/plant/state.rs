@@ -2,7 +2,7 @@
 
 use super::WheelState;
 use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
 
 /// Positions and momenta of all moving parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct State {
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
     /// Unit vectors e(q_k); that of a moving base is last.
-    pub e: Units,
+    pub e: UnitVectors,
     /// q̇, rad/s.
     pub qd: PerDrive,
     /// q̈, rad/s².

@@ -18,7 +18,7 @@ use std::collections::VecDeque;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
-use crate::simulation::plant::{Command, Point, Wheel, WheelState};
+use crate::simulation::plant::{Actuation, ReducedState, Wheel, WheelState};
 
 /// Control during a run.
 #[derive(Clone, Debug)]
@@ -164,11 +164,11 @@ impl ControlLoop {
     pub(super) fn command<const N: usize, const MOVES: bool>(
         &self,
         reference: &Reference,
-        at: &Point<N>,
+        at: &ReducedState<N>,
         motion: (&[Vector; N], &[f64; N]),
         base: (Pose2, Vector),
         loaded: bool,
-    ) -> Command<N> {
+    ) -> Actuation<N> {
         let mut torque = match &self.sampling {
             Some(Sampling { held: Some(held), .. }) => *held.array(),
             _ => {
@@ -191,7 +191,7 @@ impl ControlLoop {
             }
             None => WheelState::default(),
         };
-        Command { torque, spin, rotor: self.rotor() }
+        Actuation { torque, spin, rotor: self.rotor() }
     }
 
     /// Returns the moment that the base exerts on the motors' stators, N m, including gears at the reference

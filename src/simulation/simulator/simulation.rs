@@ -1,7 +1,7 @@
 //! [`Simulation`]: a run in progress and its present instant.
 
 use crate::mechanics::dynamics::{self, Surroundings, by_drives};
-use crate::mechanics::joint_forces::{Inside, PinLoads};
+use crate::mechanics::joint_forces::{InternalLoads, PinLoads};
 use crate::mechanics::kinematics::{end_effector, least_transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
@@ -10,7 +10,9 @@ use crate::planning::pose_space::plane_map;
 use crate::planning::reactionless::PlaneMap;
 use crate::simulation::control::{Controller, Reading};
 use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
-use crate::simulation::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, Point, SlipDirections, Slope, State};
+use crate::simulation::plant::{
+    Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState, SlipDirections, Slope, State,
+};
 
 use super::control_loop::ControlLoop;
 use super::guide::{Guide, Setup};
@@ -370,7 +372,7 @@ impl Simulation {
     }
 
     /// Returns the present pin forces; the acceleration of a moving base acts as gravity.
-    fn inside(&self) -> Inside {
+    fn inside(&self) -> InternalLoads {
         let (x, n) = (&self.now, self.drives);
         let around = self.field();
         let contacts = self.body().contacts();
@@ -440,7 +442,7 @@ impl Simulation {
 fn evaluate_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
     let Simulation { bodies, control_loop, reference, state, slip, stuck_torque, loaded, step, .. } = simulation;
     let body = &bodies[usize::from(*loaded)];
-    let (at, n) = (Point::<N>::of(state), reference.q.len());
+    let (at, n) = (ReducedState::<N>::of(state), reference.q.len());
     let stage = body.stage::<N, MOVES>(&at, slip, stuck_torque, |e, rate, base, velocity| {
         let mut units = [Vector::default(); MAX_DRIVES];
         units[..N].copy_from_slice(e);

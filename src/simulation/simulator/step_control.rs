@@ -36,7 +36,7 @@ pub(super) struct Mismatch(pub(super) [f64; 4]);
 
 impl Mismatch {
     /// Larger than any tolerance.
-    pub const BEYOND: Self = Self([f64::INFINITY; 4]);
+    pub const INFINITE: Self = Self([f64::INFINITY; 4]);
 
     /// Returns the larger entries of both; NaN counts as larger.
     #[inline]

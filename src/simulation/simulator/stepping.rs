@@ -22,7 +22,9 @@ use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::planar::{DriveAngles, Vector, length};
 use crate::planning::{Motion, Reference};
 use crate::simulation::frame::Peaks;
-use crate::simulation::plant::{MAX_CONTACTS, MovingBody, Point, Rates, SlipDirections, Slope, Stage};
+use crate::simulation::plant::{
+    MAX_CONTACTS, MovingBody, ReducedState, RungeKuttaStage, SlipDirections, Slope, StateRates,
+};
 
 /// Tolerance of the difference between two solutions, as a fraction of the peaks of the displayed quantities.
 const ERROR_TOLERANCE: f64 = 2e-5;
@@ -272,11 +274,11 @@ impl Simulation {
     /// Evaluates a stage at a point with a reference.
     fn stage<const N: usize, const MOVES: bool>(
         &self,
-        at: &Point<N>,
+        at: &ReducedState<N>,
         aim: &Reference,
         slip: &SlipDirections,
         stuck_torque: &mut [f64; MAX_CONTACTS],
-    ) -> Stage<N> {
+    ) -> RungeKuttaStage<N> {
         self.body().stage::<N, MOVES>(at, slip, stuck_torque, |e, rate, base, velocity| {
             self.control_loop.command::<N, MOVES>(aim, at, (e, rate), (base, velocity), self.loaded)
         })
@@ -299,17 +301,22 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     let (state, slip, stuck_torque) = (&from.state, &from.slip, &mut end.stuck_torque);
     *stuck_torque = from.stuck_torque;
     let body = simulation.body();
-    let k1 = Rates::of(&from.slope);
+    let k1 = StateRates::of(&from.slope);
     let aim = simulation.aim(middle, segment);
-    let k2 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
-    let k3 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k2.rates, 0.5 * h), &aim, slip, stuck_torque);
+    let k2 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
+    let k3 = simulation.stage::<N, MOVES>(
+        &ReducedState::along::<MOVES>(state, &k2.rates, 0.5 * h),
+        &aim,
+        slip,
+        stuck_torque,
+    );
     let aim = simulation.aim(to, segment);
-    let k4 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
-    let mut state = Rates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
+    let k4 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
+    let mut state = StateRates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
     if body.contacts().stick() {
         state = body.stuck(state, slip);
     }
-    let last = simulation.stage::<N, MOVES>(&Point::of(&state), &aim, slip, stuck_torque);
+    let last = simulation.stage::<N, MOVES>(&ReducedState::of(&state), &aim, slip, stuck_torque);
     let drives = body.arm().drives();
     if let Some(stages) = stages {
         *stages = [&k2, &k3, &k4].map(|k| k.slope(drives));
@@ -320,10 +327,10 @@ fn stepped_of<const N: usize, const MOVES: bool>(
 
 /// Returns the difference between two stages at one instant.
 #[inline(always)]
-fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mismatch {
-    let felt = |x: &Stage<N>| x.wrench.total().moment - x.spin.torque;
+fn between<const N: usize>(body: &MovingBody, a: &RungeKuttaStage<N>, b: &RungeKuttaStage<N>) -> Mismatch {
+    let felt = |x: &RungeKuttaStage<N>| x.wrench.total().moment - x.spin.torque;
     let arm = &body.arm().end_effector;
-    let tip = |x: &Stage<N>| x.base.at + (0..N).map(|k| x.e[k] * arm[k]).sum::<Vector>();
+    let tip = |x: &RungeKuttaStage<N>| x.base.at + (0..N).map(|k| x.e[k] * arm[k]).sum::<Vector>();
     Mismatch([
         (felt(a) - felt(b)).abs(),
         length(a.wrench.dynamic.force - b.wrench.dynamic.force),
@@ -334,7 +341,7 @@ fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mis
 
 #[inline(never)]
 fn slope_of<const N: usize, const MOVES: bool>(simulation: &Simulation, at: &mut StepState) -> Slope {
-    let stage = simulation.stage::<N, MOVES>(&Point::of(&at.state), &at.aim, &at.slip, &mut at.stuck_torque);
+    let stage = simulation.stage::<N, MOVES>(&ReducedState::of(&at.state), &at.aim, &at.slip, &mut at.stuck_torque);
     stage.slope(simulation.drives)
 }
 

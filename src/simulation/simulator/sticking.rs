@@ -71,7 +71,8 @@ impl Simulation {
 
     /// Returns whether a contact's state has ended by more than contacts that end simultaneously may differ.
     fn is_long_over(&self, i: usize, slip: &SlipDirections, at: &StepState) -> bool {
-        let tolerance = if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
+        let tolerance =
+            if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STICTION_SPEED };
         self.margin(i, slip, at) < tolerance
     }
 
@@ -142,7 +143,7 @@ impl Simulation {
         // Too many events: the infinite estimate forces finer substeps. If these fail too, the audits show the energy
         // that is removed here.
         *reached = self.substep(reached, to, segment).end;
-        Mismatch::BEYOND
+        Mismatch::INFINITE
     }
 
     /// Finds the first instant at which any contact stops or breaks loose in a substep, starting from contact i.
@@ -177,7 +178,7 @@ impl Simulation {
             }
             // Illinois variant of regula falsi; bisection from a start at rest, until the contact has moved.
             let straight = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let halving = low.1 <= Contacts::STILL * scale || n % 8 == 7;
+            let halving = low.1 <= Contacts::STICTION_SPEED * scale || n % 8 == 7;
             let to = if halving { 0.5 * (low.0 + high.0) } else { straight.clamp(low.0, high.0) };
             let there = self.substep(from, to, segment);
             let margin = self.margin(i, &from.slip, &there.end);
@@ -208,7 +209,7 @@ impl Simulation {
             let way = f64::from(reached.slip[i]);
             let (v, a) = (way * contacts.sliding(i, &reached.slope.qd), way * contacts.sliding(i, &reached.slope.qdd));
             let away = a * self.body().resists(i) > 1e-10 * contacts.coulomb(i);
-            if way != 0.0 && v < Contacts::STILL && !away {
+            if way != 0.0 && v < Contacts::STICTION_SPEED && !away {
                 reached.slip[i] = 0;
                 changed = true;
             }

@@ -1,10 +1,10 @@
 //! [`Alternative`]: alternative motions for the same task.
 
 use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::serve;
+use crate::planning::posed::poses_of_points;
 use crate::planning::timing::TimeLaw;
-use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
-use crate::session::settled;
+use crate::session::scenario::{PathShape, Scenario, TaskChange, TaskKind, Value};
+use crate::session::with_start_edits;
 use crate::simulation::plant::Wheel;
 
 /// A method of moving the end effector from A to B.
@@ -25,7 +25,7 @@ pub enum Alternative {
 }
 
 /// Factor on the duration for [`Alternative::Slowly`]; forces and moments fall with its square.
-pub const SLOWER: f64 = 4.0;
+pub const SLOW_FACTOR: f64 = 4.0;
 
 /// Wheel of [`Alternative::Wheel`] if the base has none, of the size that a satellite of a few hundred kilograms
 /// carries.
@@ -74,21 +74,21 @@ impl Alternative {
             return scenario.clone();
         }
         // Edits before the first step belong to the task; later ones would change the run.
-        let start = settled(scenario).map_or_else(|_| scenario.clone(), |(start, _)| start);
+        let start = with_start_edits(scenario).map_or_else(|_| scenario.clone(), |(start, _)| start);
         let scenario = &start;
         let mut other = start.clone();
         other.name = format!("{}-{}", scenario.name, self.name());
         other.title = format!("{} · {}", scenario.title, self.title());
         other.edits.clear();
         let word = |word: &str| Value::from(word);
-        let mut change = Change::new();
+        let mut change = TaskChange::new();
         let mut set = |key: &str, value: Value| change.insert(key.into(), value);
         match self {
             Self::AsGiven => {}
             Self::Reactionless => {
                 set("kind", word("reactionless"));
                 // Otherwise, keep the shape that the scenario states.
-                if matches!(scenario.task.shape(), Shape::Line) && scenario.task.shape.is_none() {
+                if matches!(scenario.task.shape(), PathShape::Line) && scenario.task.shape.is_none() {
                     set("shape", word("joint-line"));
                 }
             }
@@ -100,7 +100,7 @@ impl Alternative {
             }
             Self::StraightLine | Self::Wheel | Self::Slowly => {
                 set("kind", word("minimum-norm"));
-                if scenario.task.shape() == Shape::JointLine {
+                if scenario.task.shape() == PathShape::JointLine {
                     set("shape", word("line"));
                 }
             }
@@ -113,13 +113,13 @@ impl Alternative {
             if scenario.task.law.is_fastest() {
                 set("law", word("quintic"));
             }
-            set("time", (SLOWER * scenario.task.time).into());
+            set("time", (SLOW_FACTOR * scenario.task.time).into());
         }
         if let Ok(task) = scenario.task.with(&change, &scenario.machine) {
             other.task = task;
         }
         if self == Self::Slowly {
-            other.duration = other.duration.map(|duration| SLOWER * duration);
+            other.duration = other.duration.map(|duration| SLOW_FACTOR * duration);
         }
         if self == Self::OtherPose && other.task.first_drive_to.is_none() {
             other.task.first_drive_to = start_of_first_drive(scenario).map(|q| q + OTHER_POSE_OFFSET_RAD);
@@ -145,6 +145,8 @@ fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
         return None;
     }
     let ends = [*points.first()?, *points.last()?];
-    let poses = serve(&space, &ends, scenario.task.b).or_else(|_| serve(&space, &ends[..1], scenario.task.b)).ok()?;
+    let poses = poses_of_points(&space, &ends, scenario.task.b)
+        .or_else(|_| poses_of_points(&space, &ends[..1], scenario.task.b))
+        .ok()?;
     Some(poses.first()?.q[0])
 }

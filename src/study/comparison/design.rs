@@ -1,10 +1,10 @@
-//! [`Design`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another run.
+//! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another run.
 
 use std::sync::Arc;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::summary::{Column, column};
+use super::summary::{SummaryColumn, column};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::planning::Motion;
 use crate::session::Run;
@@ -14,7 +14,7 @@ use crate::study::measures::{Beta, Measures};
 
 /// A machine with its task and motion.
 #[derive(Clone, Debug)]
-pub struct Candidate {
+pub struct DesignCandidate {
     machine: Machine,
     task: Task,
     motion: Arc<Motion>,
@@ -22,7 +22,7 @@ pub struct Candidate {
 
 /// Measures of a machine, and its comparison with another one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Design {
+pub struct DesignMeasures {
     /// kg.
     pub mass: f64,
     /// Σ D_k, kg m².
@@ -37,7 +37,7 @@ pub struct Design {
 }
 
 /// Columns of a table of designs, in order.
-pub const DESIGN: [Column<Design>; 10] = [
+pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     column("mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
     column("inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
     column("force_left", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| Some(d.left[0])),
@@ -77,7 +77,7 @@ pub const DESIGN: [Column<Design>; 10] = [
     }),
 ];
 
-impl Candidate {
+impl DesignCandidate {
     /// Returns the machine, task and motion of a run at its end, after all edits.
     pub fn of(run: &Run) -> Self {
         let scenario = run.scenario();
@@ -85,9 +85,9 @@ impl Candidate {
     }
 
     /// Compares this machine with the first of several.
-    pub fn beside(&self, first: &Self) -> Design {
+    pub fn beside(&self, first: &Self) -> DesignMeasures {
         let inertia = Inertia::of(&self.machine);
-        let mut design = Design {
+        let mut design = DesignMeasures {
             mass: self.machine.mass(),
             inertia: inertia.total_momentum(),
             left: [inertia.force_residual(), inertia.invariance_residual()],
@@ -129,10 +129,10 @@ impl Candidate {
 }
 
 /// Serialised as the available columns, and the reason if others are missing.
-impl Serialize for Design {
+impl Serialize for DesignMeasures {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        for column in DESIGN {
+        for column in DESIGN_COLUMNS {
             if let Some(value) = (column.value)(self) {
                 map.serialize_entry(column.key, &value)?;
             }
@@ -144,7 +144,7 @@ impl Serialize for Design {
     }
 }
 
-impl Design {
+impl DesignMeasures {
     fn beta(&self) -> Option<Beta> {
         self.beside?.beta
     }

@@ -1,18 +1,18 @@
-//! [`Difference`]: values of a signal at two instants, of one run or of two.
+//! [`SignalDifference`]: values of a signal at two instants, of one run or of two.
 
 use crate::simulation::frame::Frame;
 use crate::simulation::signals::Signal;
 
 /// Values of a signal at two instants.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Difference {
+pub struct SignalDifference {
     /// Value at the first instant.
     pub from: f64,
     /// Value at the second instant.
     pub to: f64,
 }
 
-impl Difference {
+impl SignalDifference {
     /// Returns the values of a signal in two frames.
     pub fn of(signal: &Signal, from: &Frame, to: &Frame) -> Self {
         Self { from: signal.value(from), to: signal.value(to) }

@@ -2,33 +2,35 @@
 
 use std::sync::Arc;
 
-use super::{Alternative, Beside, COLUMNS, Compared, DESIGN, Design, alternatives};
-use crate::query::{Portion, Query, Shared, Watch};
+use super::{
+    Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
+};
+use crate::query::{Portion, ProgressCallback, Query, Shared};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 use crate::settings::number::nine_digits;
 
 /// One row of the comparison.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct ComparisonEntry {
     /// Title of the row.
     pub title: String,
     /// The run, or why it failed.
-    pub outcome: Result<Arc<Compared>, String>,
+    pub outcome: Result<Arc<ComparedRun>, String>,
     /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
     /// Whether the user added the row; it then stays when the task changes.
     pub kept: bool,
     /// Comparison of its machine with that of the first run in the table.
-    pub design: Option<Design>,
+    pub design: Option<DesignMeasures>,
 }
 
-impl Entry {
+impl ComparisonEntry {
     /// Returns the value in a column; columns of runs come first, then those of designs.
     pub fn value(&self, column: usize) -> Option<f64> {
-        match column.checked_sub(COLUMNS.len()) {
-            None => (COLUMNS.get(column)?.value)(&self.outcome.as_ref().ok()?.summary),
-            Some(own) => (DESIGN.get(own)?.value)(self.design.as_ref()?),
+        match column.checked_sub(SUMMARY_COLUMNS.len()) {
+            None => (SUMMARY_COLUMNS.get(column)?.value)(&self.outcome.as_ref().ok()?.summary),
+            Some(own) => (DESIGN_COLUMNS.get(own)?.value)(self.design.as_ref()?),
         }
     }
 }
@@ -37,40 +39,40 @@ impl Entry {
 #[derive(Clone, Debug)]
 pub struct Comparison {
     task: Scenario,
-    entries: Vec<Entry>,
+    entries: Vec<ComparisonEntry>,
     sort: Option<(usize, bool)>,
-    beside: Beside,
+    beside: BaselineMachines,
     /// The alternatives that the table shows.
-    ways: Option<Arc<<Ways as Query>::Answer>>,
+    ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
 }
 
 /// Title of an alternative, and its run or why it failed.
-pub type Outcome = (String, Result<Arc<Compared>, String>);
+pub type ComparisonOutcome = (String, Result<Arc<ComparedRun>, String>);
 
 /// Query for the runs of all alternatives for a scenario's task, one in each portion.
 #[derive(Debug)]
-pub struct Ways {
+pub struct AlternativeRuns {
     scenario: Shared<Scenario>,
     ways: Vec<(Alternative, Scenario)>,
-    done: Vec<Outcome>,
+    done: Vec<ComparisonOutcome>,
 }
 
-impl Query for Ways {
+impl Query for AlternativeRuns {
     type Input = Shared<Scenario>;
     /// The scenario, and the outcomes of its alternatives.
-    type Answer = (Shared<Scenario>, Vec<Outcome>);
+    type Answer = (Shared<Scenario>, Vec<ComparisonOutcome>);
 
     fn begin(scenario: Self::Input) -> Self {
         Self { ways: alternatives(&scenario.0), done: Vec::new(), scenario }
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         let (known, count) = (self.done.len(), self.ways.len() as f64);
         let Some((way, scenario)) = self.ways.get(known) else {
             return Portion::Done((self.scenario.clone(), std::mem::take(&mut self.done)));
         };
         let share = |done: f64| (known as f64 + done) / count;
-        let outcome = match Compared::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
+        let outcome = match ComparedRun::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
             Err(Refusal::Stopped) => return Portion::Stopped,
             outcome => outcome.map(Arc::new).map_err(|why| why.to_string()),
         };
@@ -82,12 +84,18 @@ impl Query for Ways {
 impl Comparison {
     /// Returns a table without runs.
     pub fn empty(scenario: &Scenario) -> Self {
-        Self { task: scenario.clone(), entries: Vec::new(), sort: None, beside: Beside::default(), ways: None }
+        Self {
+            task: scenario.clone(),
+            entries: Vec::new(),
+            sort: None,
+            beside: BaselineMachines::default(),
+            ways: None,
+        }
     }
 
     /// Replaces the alternatives by those of another task, unless the table shows them already. Kept rows, overlays and
     /// the sort order stay.
-    pub fn follow(&mut self, found: &Arc<<Ways as Query>::Answer>) {
+    pub fn follow(&mut self, found: &Arc<<AlternativeRuns as Query>::Answer>) {
         if self.ways.as_ref().is_some_and(|ways| Arc::ptr_eq(ways, found)) {
             return;
         }
@@ -95,10 +103,10 @@ impl Comparison {
         let (Shared(scenario), ways) = &**found;
         self.task = Scenario::clone(scenario);
         let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
-        let kept: Vec<Entry> = self.entries.drain(..).filter(|e| e.kept).collect();
+        let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.kept).collect();
         let own = ways.iter().cloned().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
-            Entry { title, outcome, shown, kept: false, design: None }
+            ComparisonEntry { title, outcome, shown, kept: false, design: None }
         });
         self.entries = own.chain(kept).collect();
         self.set_beside();
@@ -114,13 +122,13 @@ impl Comparison {
     /// # Errors
     /// Fails if the scenario cannot be run.
     pub fn keep(&mut self, scenario: Scenario) -> Result<(), Refusal> {
-        let run = Compared::of(scenario)?;
+        let run = ComparedRun::of(scenario)?;
         self.keep_run(run);
         Ok(())
     }
 
     /// Adds a finished run as a row that stays until it is removed.
-    pub fn keep_run(&mut self, mut run: Compared) {
+    pub fn keep_run(&mut self, mut run: ComparedRun) {
         let own = run.scenario.name.clone();
         let taken = |name: &str| self.entries.iter().any(|e| e.title == name);
         let mut title = own.clone();
@@ -132,13 +140,13 @@ impl Comparison {
         }
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
-        self.entries.push(Entry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
+        self.entries.push(ComparisonEntry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
         self.set_beside();
     }
 
     /// Compares every machine with that of the first run.
     fn set_beside(&mut self) {
-        self.beside = Beside::default();
+        self.beside = BaselineMachines::default();
         for entry in &mut self.entries {
             entry.design = entry.outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
         }
@@ -179,7 +187,7 @@ impl Comparison {
     }
 
     /// Returns all rows in the order of insertion.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[ComparisonEntry] {
         &self.entries
     }
 
@@ -197,20 +205,20 @@ impl Comparison {
     }
 
     /// Iterates over the overlaid runs with their indices.
-    pub fn shown(&self) -> impl Iterator<Item = (usize, &Compared)> {
+    pub fn shown(&self) -> impl Iterator<Item = (usize, &ComparedRun)> {
         let all = self.entries.iter().enumerate().filter(|(_, e)| e.shown);
         all.filter_map(|(i, e)| Some((i, e.outcome.as_deref().ok()?)))
     }
 
     /// Returns the table as tab-separated text for a spreadsheet, in the order shown.
     pub fn to_text(&self) -> String {
-        let designs = if self.has_designs() { &DESIGN[..] } else { &[] };
-        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.head, c.unit));
+        let designs = if self.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
+        let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.head, c.unit));
         let heads = heads.chain(designs.iter().map(|c| format!("{} {}", c.head, c.unit)));
         let mut text = ["run".to_owned()].into_iter().chain(heads).collect::<Vec<_>>().join("\t") + "\n";
         for i in self.order() {
             let entry = &self.entries[i];
-            let columns = 0..COLUMNS.len() + designs.len();
+            let columns = 0..SUMMARY_COLUMNS.len() + designs.len();
             let cells = columns.map(|column| entry.value(column).map_or_else(String::new, nine_digits));
             text += &([entry.title.clone()].into_iter().chain(cells).collect::<Vec<_>>().join("\t") + "\n");
         }

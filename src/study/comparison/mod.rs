@@ -7,17 +7,17 @@ mod entries;
 mod row;
 mod summary;
 
-pub use alternative::{Alternative, SLOWER};
-pub use design::{Candidate, DESIGN, Design};
-pub use difference::Difference;
-pub use entries::{Comparison, Entry, Outcome, Ways};
-pub use row::{Beside, Row, Rows};
-pub use summary::{COLUMNS, Column, Summary};
+pub use alternative::{Alternative, SLOW_FACTOR};
+pub use design::{DESIGN_COLUMNS, DesignCandidate, DesignMeasures};
+pub use difference::SignalDifference;
+pub use entries::{AlternativeRuns, Comparison, ComparisonEntry, ComparisonOutcome};
+pub use row::{BaselineMachines, ComparisonRow, ComparisonTable};
+pub use summary::{SUMMARY_COLUMNS, Summary, SummaryColumn};
 
 use crate::mechanics::machine::Machine;
 use crate::query::Sequence;
 use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Watch, replay_while};
+use crate::session::{ProgressCallback, Refusal, replay_while};
 use crate::simulation::frame::Frame;
 
 /// Maximum number of frames stored per run. A longer run keeps every second, fourth, eighth … frame, and its last.
@@ -25,7 +25,7 @@ const MAX_FRAMES: usize = 4000;
 
 /// A run to compare with others.
 #[derive(Clone, Debug)]
-pub struct Compared {
+pub struct ComparedRun {
     /// The scenario.
     pub scenario: Scenario,
     /// Frames in the order of time, evenly spaced except the last.
@@ -33,10 +33,10 @@ pub struct Compared {
     /// Results of the run.
     pub summary: Summary,
     /// Its machine after all edits, its task and its motion.
-    pub candidate: Candidate,
+    pub candidate: DesignCandidate,
 }
 
-impl Compared {
+impl ComparedRun {
     /// Runs a scenario.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl Compared {
     ///
     /// # Errors
     /// As [`of`](Self::of), and if `watch` returns `false`.
-    pub fn of_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
+    pub fn of_while(scenario: Scenario, watch: ProgressCallback<'_>) -> Result<Self, Refusal> {
         let (mut frames, mut every): (Vec<Frame>, u64) = (Vec::new(), 1);
         let run = replay_while(&scenario, |run, frame| {
             let wanted = !frame.step.is_multiple_of(256) || watch(frame.step as f64 / run.last_step().max(1) as f64);
@@ -70,7 +70,7 @@ impl Compared {
         }
         let summary = Summary::of(&scenario, &last);
         let frames = frames.into_iter().collect();
-        Ok(Self { scenario, frames, summary, candidate: Candidate::of(&run) })
+        Ok(Self { scenario, frames, summary, candidate: DesignCandidate::of(&run) })
     }
 
     /// Returns the machine that control assumes.

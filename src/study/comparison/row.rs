@@ -1,13 +1,13 @@
-//! [`Rows`]: results of several runs, without their frames.
+//! [`ComparisonTable`]: results of several runs, without their frames.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::{COLUMNS, Candidate, Compared, Design, Summary};
+use super::{ComparedRun, DesignCandidate, DesignMeasures, SUMMARY_COLUMNS, Summary};
 use crate::session::scenario::Scenario;
 
 /// Results of a run, or why it failed.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct ComparisonRow {
     /// Name of the scenario.
     pub name: String,
     /// Name of the alternative, if alternatives for one task are compared.
@@ -15,26 +15,26 @@ pub struct Row {
     /// Results, or why there are none.
     pub outcome: Result<Summary, String>,
     /// Comparison of its machine with that of the first run.
-    pub design: Option<Design>,
+    pub design: Option<DesignMeasures>,
 }
 
 /// Results of several runs, in order.
 #[derive(Clone, Debug, Default)]
-pub struct Rows {
-    rows: Vec<Row>,
-    beside: Beside,
+pub struct ComparisonTable {
+    rows: Vec<ComparisonRow>,
+    beside: BaselineMachines,
 }
 
 /// Compares machines with the first of them.
 #[derive(Clone, Debug, Default)]
-pub struct Beside {
-    first: Option<Candidate>,
+pub struct BaselineMachines {
+    first: Option<DesignCandidate>,
     differ: bool,
 }
 
-impl Beside {
+impl BaselineMachines {
     /// Compares the next machine with the first; the first is compared with itself.
-    pub fn set(&mut self, next: &Candidate) -> Design {
+    pub fn set(&mut self, next: &DesignCandidate) -> DesignMeasures {
         let first = self.first.get_or_insert_with(|| next.clone());
         self.differ |= !next.is_alike(first);
         next.beside(first)
@@ -46,17 +46,17 @@ impl Beside {
     }
 }
 
-impl Rows {
+impl ComparisonTable {
     /// Runs a scenario to its end and adds it as a row.
     pub fn run(&mut self, way: Option<&'static str>, scenario: &Scenario) {
-        let outcome = Compared::of(scenario.clone()).map_err(|why| why.to_string());
+        let outcome = ComparedRun::of(scenario.clone()).map_err(|why| why.to_string());
         let design = outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
         let outcome = outcome.map(|run| run.summary);
-        self.rows.push(Row { name: scenario.name.clone(), way, outcome, design });
+        self.rows.push(ComparisonRow { name: scenario.name.clone(), way, outcome, design });
     }
 
     /// Returns all rows.
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[ComparisonRow] {
         &self.rows
     }
 
@@ -66,21 +66,21 @@ impl Rows {
     }
 }
 
-impl Row {
+impl ComparisonRow {
     /// Returns the title: the alternative, or else the scenario's name.
     pub fn title(&self) -> &str {
         self.way.unwrap_or(&self.name)
     }
 }
 
-impl Serialize for Rows {
+impl Serialize for ComparisonTable {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.rows.serialize(serializer)
     }
 }
 
 /// Serialised as the columns that have a value.
-impl Serialize for Row {
+impl Serialize for ComparisonRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("scenario", &self.name)?;
@@ -89,7 +89,7 @@ impl Serialize for Row {
         }
         match &self.outcome {
             Ok(summary) => {
-                for column in COLUMNS {
+                for column in SUMMARY_COLUMNS {
                     if let Some(value) = (column.value)(summary) {
                         map.serialize_entry(column.key, &value)?;
                     }

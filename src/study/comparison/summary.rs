@@ -51,7 +51,7 @@ pub struct Summary {
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug)]
-pub struct Column<T = Summary> {
+pub struct SummaryColumn<T = Summary> {
     /// Key in JSON.
     pub key: &'static str,
     /// Header of the column.
@@ -67,7 +67,7 @@ pub struct Column<T = Summary> {
 }
 
 /// Columns of the table, in order.
-pub const COLUMNS: [Column; 15] = [
+pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
     column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
     column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
     column("rms_moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
@@ -87,7 +87,7 @@ pub const COLUMNS: [Column; 15] = [
     }),
 ];
 
-impl Column {
+impl SummaryColumn {
     /// Returns the name in a CSV file, next to the unit; there the angle of the base is called an angle, not a tilt.
     pub fn name(&self) -> &'static str {
         if self.key == "base_tilt" { "base_angle" } else { self.key }
@@ -101,8 +101,8 @@ pub(super) const fn column<T>(
     unit: &'static str,
     decimals: usize,
     value: fn(&T) -> Option<f64>,
-) -> Column<T> {
-    Column { key, head, meaning, unit, decimals, value }
+) -> SummaryColumn<T> {
+    SummaryColumn { key, head, meaning, unit, decimals, value }
 }
 
 impl Summary {

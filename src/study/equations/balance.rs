@@ -3,11 +3,11 @@
 
 use nalgebra::DMatrix;
 
-use super::bodies::{Bodies, Mass};
-use super::equation::{Equation, Line, Origin, Term};
-use super::products::{coupling, first_moment, given};
-use super::reactions::{AXES, Axis, Reactions, total};
-use super::symbol::of;
+use super::bodies::{Bodies, BodyMass};
+use super::equation::{Equality, Equation, Origin, Term};
+use super::products::{coupling, first_moment, fixed_products};
+use super::reactions::{AXES, Reactions, VectorComponent, total};
+use super::symbol::indexed_symbol;
 use crate::mechanics::balance::{Body, Condition, Preset, conditions, design};
 use crate::mechanics::machine::{Inertia, Link, Machine};
 use crate::mechanics::planar::Vector;
@@ -17,13 +17,13 @@ use crate::settings::number::subscript;
 const OFF_AXIS: &str = "Some masses lie off the axes of their links; the terms are what they do along them.";
 
 /// The data of a machine that its balance depends on.
-pub(super) struct Balance<'a> {
+pub(super) struct BalanceEquations<'a> {
     pub machine: &'a Machine,
     pub inertia: &'a Inertia,
     pub bodies: &'a Bodies,
 }
 
-impl Balance<'_> {
+impl BalanceEquations<'_> {
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.machine.spec().counterweights.is_empty() {
@@ -35,13 +35,13 @@ impl Balance<'_> {
         notes
     }
 
-    fn condition(&self, condition: Condition) -> Line {
+    fn condition(&self, condition: Condition) -> Equality {
         let left = match condition {
             Condition::Force(k) => first_moment(self.bodies, k),
             Condition::Coupling(k, l) => coupling(self.bodies, k, l),
         };
         let tolerance = condition.nothing(self.inertia);
-        Line { name: symbol(condition), unit: condition.unit(), left, right: Vec::new(), tolerance }
+        Equality { name: symbol(condition), unit: condition.unit(), left, right: Vec::new(), tolerance }
     }
 
     fn all(&self) -> impl Iterator<Item = Condition> + use<> {
@@ -79,7 +79,7 @@ impl Balance<'_> {
     pub fn linear(&self) -> Equation {
         let (a, _) = conditions(self.machine);
         let line = |(row, condition): (usize, Condition)| {
-            let right: Vec<Term> = given(self.bodies, condition)
+            let right: Vec<Term> = fixed_products(self.bodies, condition)
                 .into_iter()
                 .map(|term| Term {
                     is_negative: !term.is_negative,
@@ -89,7 +89,7 @@ impl Balance<'_> {
                 })
                 .collect();
             let tolerance = condition.nothing(self.inertia);
-            Line { name: symbol(condition), unit: condition.unit(), left: self.row(&a, row), right, tolerance }
+            Equality { name: symbol(condition), unit: condition.unit(), left: self.row(&a, row), right, tolerance }
         };
         let mut notes = Vec::new();
         if !self.machine.spec().counterweights.is_empty() {
@@ -111,10 +111,10 @@ impl Balance<'_> {
         let is_payload = |origin: Origin| matches!(origin, Origin::Body(Body::Payload, _));
         let term = |(j, link): (usize, &Link)| {
             let by = a[(row, j)] / link.mass;
-            let on_it = |mass: &&Mass| mass.origin.link() == Some(j) && !is_payload(mass.origin);
+            let on_it = |mass: &&BodyMass| mass.origin.link() == Some(j) && !is_payload(mass.origin);
             let parts = self.bodies.masses.iter().filter(on_it);
             let parts = parts.map(|mass| (mass.origin, by * mass.kilograms * own(mass)));
-            let symbol = format!("A_{{{},{}}} {}", row + 1, link.name, of("l", format!("c{}", link.name)));
+            let symbol = format!("A_{{{},{}}} {}", row + 1, link.name, indexed_symbol("l", format!("c{}", link.name)));
             Term::plain(symbol, a[(row, j)] * link.com).from(parts.collect())
         };
         links.map(term).collect()
@@ -134,12 +134,13 @@ impl Balance<'_> {
             let [now, best] = objective;
             let best = Term { symbol: "least".into(), ..best };
             let of_link = |(link, least): (&Link, &Link)| {
-                let now = Term::plain(of("l", format!("c{}", link.name)), link.com);
-                let least = Term::plain(of("l", format!("c{}", link.name)) + " least", least.com);
-                Line { name: String::new(), unit: "m", left: vec![now], right: vec![least], tolerance: 1e-9 }
+                let now = Term::plain(indexed_symbol("l", format!("c{}", link.name)), link.com);
+                let least = Term::plain(indexed_symbol("l", format!("c{}", link.name)) + " least", least.com);
+                Equality { name: String::new(), unit: "m", left: vec![now], right: vec![least], tolerance: 1e-9 }
             };
             let each = links.iter().zip(least.links()).map(of_link);
-            let all = Line { name: String::new(), unit: "m²", left: vec![now], right: vec![best], tolerance: 1e-9 };
+            let all =
+                Equality { name: String::new(), unit: "m²", left: vec![now], right: vec![best], tolerance: 1e-9 };
             [all].into_iter().chain(each).collect()
         });
         let mut notes = Vec::new();
@@ -167,13 +168,13 @@ impl Balance<'_> {
     pub fn columns(&self, instant: &Reactions<'_>) -> Equation {
         let name = |k: usize| &self.machine.spec().drives[k].name;
         let each = (0..self.machine.drives()).flat_map(|k| AXES.map(|axis| (k, axis)));
-        let line = |(k, (axis, on)): (usize, Axis)| {
+        let line = |(k, (axis, on)): (usize, VectorComponent)| {
             let parts = self.bodies.each(|mass| mass.kilograms * on(instant.motion.column(mass, k)));
             let scale = total(&self.bodies.each(|mass| mass.kilograms * instant.motion.column(mass, k).norm()));
             let gamma = on(Vector::new(0.0, 1.0) * instant.e[k] * self.inertia.first_moment(k));
             let right = Term::plain(format!("α_{{{}{axis}}} g_{{{}}}", name(k), name(k)), gamma).from(parts.clone());
             let left = Term::sum(format!("γ_{{{}{axis}}}", name(k)), parts);
-            Line::new(format!("drive {} {axis}", name(k)), "kg m", vec![left], vec![right], scale)
+            Equality::new(format!("drive {} {axis}", name(k)), "kg m", vec![left], vec![right], scale)
         };
         Equation {
             number: "A1",
@@ -195,7 +196,7 @@ impl Balance<'_> {
                     let right = Term::plain(format!("{function} q_{{{}}}", name(k)), value);
                     let right = if minus { right.negative() } else { right };
                     let left = vec![Term::plain(format!("α_{{{}{axis}}}", name(k)), closed)];
-                    Line::new(format!("drive {} {axis}", name(k)), "", left, vec![right], 1.0)
+                    Equality::new(format!("drive {} {axis}", name(k)), "", left, vec![right], 1.0)
                 },
             )
         };
@@ -213,7 +214,7 @@ impl Balance<'_> {
         let n = self.machine.drives();
         let name = |k: usize| &self.machine.spec().drives[k].name;
         let line = |k: usize| {
-            let follows = |mass: &&Mass| mass.drive == k && !mass.inertia_symbol.is_empty();
+            let follows = |mass: &&BodyMass| mass.drive == k && !mass.inertia_symbol.is_empty();
             let turning: Vec<_> = self.bodies.masses.iter().filter(follows).collect();
             let symbols: Vec<&str> = turning.iter().map(|mass| mass.inertia_symbol.as_str()).collect();
             let mut right = Vec::new();
@@ -242,7 +243,13 @@ impl Balance<'_> {
             }
             let own = instant.momentum_row(k);
             let scale = self.inertia.diagonal(k);
-            Line::new(format!("drive {}", name(k)), "kg m²", vec![Term::plain(of("d", name(k)), own)], right, scale)
+            Equality::new(
+                format!("drive {}", name(k)),
+                "kg m²",
+                vec![Term::plain(indexed_symbol("d", name(k)), own)],
+                right,
+                scale,
+            )
         };
         Equation {
             number: "A3",
@@ -256,7 +263,7 @@ impl Balance<'_> {
 }
 
 /// Returns the distance of a body's centre of mass from the root of its link, along the link, m.
-fn own(mass: &Mass) -> f64 {
+fn own(mass: &BodyMass) -> f64 {
     mass.arms.iter().filter(|arm| arm.is_own).map(|arm| arm.value).sum()
 }
 

@@ -10,10 +10,10 @@
 //! | r_cj | Σ_k a_jk e(q_k) | m |
 
 use super::equation::Origin;
-use super::state::State;
-use super::symbol::{named, of};
+use super::state::DriveState;
+use super::symbol::{indexed_symbol, symbol_of_name};
 use crate::mechanics::balance::Body;
-use crate::mechanics::machine::{Attach, Length, Machine, PlaceOnLink, Point};
+use crate::mechanics::machine::{Attach, Length, LinkPoint, Machine, PlaceOnLink};
 use crate::mechanics::planar::{MAX_DRIVES, Vector, cross, dot};
 
 /// One step along a link, on the way from the base to a point.
@@ -31,7 +31,7 @@ pub(super) struct Arm {
 
 /// A body with mass: a link, a counterweight or the payload.
 #[derive(Clone, Debug)]
-pub(super) struct Mass {
+pub(super) struct BodyMass {
     pub origin: Origin,
     /// The drive that determines its orientation.
     pub drive: usize,
@@ -50,7 +50,7 @@ pub(super) struct Mass {
 
 /// A rotor: its drive, J in kg m², and its rate per rate of each drive.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rotor {
+pub(super) struct BodyRotor {
     pub drive: usize,
     pub inertia: f64,
     pub rates: [f64; MAX_DRIVES],
@@ -58,8 +58,8 @@ pub(super) struct Rotor {
 
 /// All bodies of a machine.
 pub(super) struct Bodies {
-    pub masses: Vec<Mass>,
-    pub rotors: Vec<Rotor>,
+    pub masses: Vec<BodyMass>,
+    pub rotors: Vec<BodyRotor>,
     /// Steps from the base to the end effector.
     pub tip: Vec<Arm>,
 }
@@ -68,7 +68,11 @@ impl Bodies {
     pub fn of(machine: &Machine) -> Self {
         let (spec, walk) = (machine.spec(), Walk { machine });
         let links = spec.links.iter().enumerate().map(|(j, link)| {
-            let symbols = [of("m", &link.name), of("I", &link.name), of("l", format!("c{}", link.name))];
+            let symbols = [
+                indexed_symbol("m", &link.name),
+                indexed_symbol("I", &link.name),
+                indexed_symbol("l", format!("c{}", link.name)),
+            ];
             let origin = Origin::Body(Body::Link(j), j);
             mass(machine, origin, j, [link.mass, link.inertia, link.com, link.com_normal], symbols, &walk.root(j))
         });
@@ -76,7 +80,8 @@ impl Bodies {
             let j = spec.links.iter().position(|link| link.name == weight.link)?;
             let before = spec.counterweights[..i].iter().filter(|other| other.link == weight.link).count();
             let name = format!("{}{}", weight.link, "′".repeat(before));
-            let symbols = [of("w", &name), of("I", format!("w{name}")), of("x", &name)];
+            let symbols =
+                [indexed_symbol("w", &name), indexed_symbol("I", format!("w{name}")), indexed_symbol("x", &name)];
             let origin = Origin::Body(Body::Counterweight(i), j);
             let figures = [weight.mass, weight.inertia(), weight.at, 0.0];
             Some(mass(machine, origin, j, figures, symbols, &walk.root(j)))
@@ -85,7 +90,7 @@ impl Bodies {
         let tip = spec.end_effector.as_ref().map_or_else(Vec::new, |point| walk.point(point, end));
         let payload = (spec.payload.mass > 0.0).then(|| {
             let held = spec.payload;
-            let symbols = [of("m", "p"), of("I", "p"), of("x", "p")];
+            let symbols = [indexed_symbol("m", "p"), indexed_symbol("I", "p"), indexed_symbol("x", "p")];
             let figures = [held.mass, held.inertia, held.offset[0], held.offset[1]];
             let mut payload = mass(machine, Origin::Body(Body::Payload, end), end, figures, symbols, &tip);
             if held.offset[0] == 0.0 {
@@ -100,18 +105,18 @@ impl Bodies {
             if let Some(on) = drive.on.as_ref().and_then(|on| spec.drives.iter().position(|d| d.name == *on)) {
                 rates[on] += 1.0 - rotor.ratio;
             }
-            Some(Rotor { drive: k, inertia: rotor.inertia, rates })
+            Some(BodyRotor { drive: k, inertia: rotor.inertia, rates })
         });
         Self { masses: links.chain(weights).chain(payload).collect(), rotors: rotors.collect(), tip }
     }
 
     /// Returns a value for each body with mass.
-    pub fn each(&self, value: impl Fn(&Mass) -> f64) -> Vec<(Origin, f64)> {
+    pub fn each(&self, value: impl Fn(&BodyMass) -> f64) -> Vec<(Origin, f64)> {
         self.masses.iter().map(|mass| (mass.origin, value(mass))).collect()
     }
 
     /// Returns J times a value for each rotor.
-    pub fn each_rotor(&self, value: impl Fn(&Rotor) -> f64) -> Vec<(Origin, f64)> {
+    pub fn each_rotor(&self, value: impl Fn(&BodyRotor) -> f64) -> Vec<(Origin, f64)> {
         self.rotors.iter().map(|rotor| (Origin::Rotor(rotor.drive), rotor.inertia * value(rotor))).collect()
     }
 
@@ -128,7 +133,7 @@ fn mass(
     [kilograms, inertia, along, normal]: [f64; 4],
     [mass_symbol, inertia_symbol, own]: [String; 3],
     root: &[Arm],
-) -> Mass {
+) -> BodyMass {
     let part = &machine.resolved_links()[link];
     let mut arms = root.to_vec();
     arms.push(Arm { drive: part.drive, sign: part.sign, symbol: own, value: along, is_own: true });
@@ -138,7 +143,7 @@ fn mass(
     }
     a[part.drive] += Vector::new(0.0, part.sign * normal);
     let inertia_symbol = if inertia == 0.0 { String::new() } else { inertia_symbol };
-    Mass { origin, drive: part.drive, kilograms, inertia, mass_symbol, inertia_symbol, arms, normal, a }
+    BodyMass { origin, drive: part.drive, kilograms, inertia, mass_symbol, inertia_symbol, arms, normal, a }
 }
 
 /// Finds the steps from the base to points on links, with the symbols of the lengths.
@@ -157,22 +162,22 @@ impl Walk<'_> {
     }
 
     /// Returns the steps to a point of a link.
-    fn point(&self, point: &Point, link: usize) -> Vec<Arm> {
+    fn point(&self, point: &LinkPoint, link: usize) -> Vec<Arm> {
         let (spec, part) = (self.machine.spec(), &self.machine.resolved_links()[link]);
         let mut arms = self.root(link);
         let own = &spec.links[link];
         let length = || match &own.length {
-            Length::Named(name) => named(name),
-            Length::Metres(_) => of("l", &own.name),
+            Length::Named(name) => symbol_of_name(name),
+            Length::Metres(_) => indexed_symbol("l", &own.name),
         };
         let (sign, symbol, value) = match &point.at {
             PlaceOnLink::Named(word) if word == "root" => return arms,
             PlaceOnLink::Named(word) if word == "tip" => (1.0, length(), part.length),
             PlaceOnLink::Named(word) => {
                 let (sign, name) = word.strip_prefix('-').map_or((1.0, word.as_str()), |name| (-1.0, name));
-                (sign, named(name), spec.lengths.get(name).copied().unwrap_or_default())
+                (sign, symbol_of_name(name), spec.lengths.get(name).copied().unwrap_or_default())
             }
-            PlaceOnLink::Metres(at) => (1.0, of("s", &own.name), *at),
+            PlaceOnLink::Metres(at) => (1.0, indexed_symbol("s", &own.name), *at),
         };
         arms.push(Arm { drive: part.drive, sign: sign * part.sign, symbol, value, is_own: false });
         arms
@@ -180,7 +185,7 @@ impl Walk<'_> {
 }
 
 /// Kinematics of the bodies at an instant.
-pub(super) struct Motion {
+pub(super) struct BodyMotion {
     n: usize,
     e: [Vector; MAX_DRIVES],
     qd: [f64; MAX_DRIVES],
@@ -189,8 +194,8 @@ pub(super) struct Motion {
 
 const I: Vector = Vector::new(0.0, 1.0);
 
-impl Motion {
-    pub fn of(state: &State) -> Self {
+impl BodyMotion {
+    pub fn of(state: &DriveState) -> Self {
         let mut e = [Vector::default(); MAX_DRIVES];
         // Computed independently of the closed forms' unit vectors, so that the two sides are independent.
         e.iter_mut().zip(state.q.iter()).for_each(|(e, q)| *e = Vector::new(q.cos(), q.sin()));
@@ -207,52 +212,52 @@ impl Motion {
     }
 
     /// Returns the position r_c, m.
-    pub fn place(&self, mass: &Mass) -> Vector {
+    pub fn place(&self, mass: &BodyMass) -> Vector {
         self.sum(|k| mass.a[k] * self.e[k])
     }
 
     /// Returns ∂r_c/∂q_k, m.
-    pub fn column(&self, mass: &Mass, k: usize) -> Vector {
+    pub fn column(&self, mass: &BodyMass, k: usize) -> Vector {
         I * mass.a[k] * self.e[k]
     }
 
     /// Returns the velocity ṙ_c, m/s.
-    pub fn velocity(&self, mass: &Mass) -> Vector {
+    pub fn velocity(&self, mass: &BodyMass) -> Vector {
         self.sum(|k| self.column(mass, k) * self.qd[k])
     }
 
     /// Returns the acceleration r̈_c, m/s².
-    pub fn acceleration(&self, mass: &Mass) -> Vector {
+    pub fn acceleration(&self, mass: &BodyMass) -> Vector {
         self.sum(|k| self.column(mass, k) * self.qdd[k]) + self.turning(mass)
     }
 
     /// Returns the part of r̈_c that depends on rates only, m/s².
-    pub fn turning(&self, mass: &Mass) -> Vector {
+    pub fn turning(&self, mass: &BodyMass) -> Vector {
         -self.sum(|k| mass.a[k] * self.e[k] * self.qd[k] * self.qd[k])
     }
 
     /// Returns the rate of a rotor, rad/s.
-    pub fn rotor_rate(&self, rotor: &Rotor) -> f64 {
+    pub fn rotor_rate(&self, rotor: &BodyRotor) -> f64 {
         (0..self.n).map(|k| rotor.rates[k] * self.qd[k]).sum()
     }
 
     /// Returns the acceleration of a rotor, rad/s².
-    pub fn rotor_acceleration(&self, rotor: &Rotor) -> f64 {
+    pub fn rotor_acceleration(&self, rotor: &BodyRotor) -> f64 {
         (0..self.n).map(|k| rotor.rates[k] * self.qdd[k]).sum()
     }
 
     /// Returns τ_k by virtual work: the work of all bodies when drive k alone turns, N m.
     pub fn torque(&self, bodies: &Bodies, k: usize, gravity: Vector) -> f64 {
-        let body = |mass: &Mass| {
+        let body = |mass: &BodyMass| {
             let turns = if mass.drive == k { mass.inertia * self.qdd[k] } else { 0.0 };
             mass.kilograms * dot(self.acceleration(mass) - gravity, self.column(mass, k)) + turns
         };
-        let rotor = |rotor: &Rotor| rotor.inertia * rotor.rates[k] * self.rotor_acceleration(rotor);
+        let rotor = |rotor: &BodyRotor| rotor.inertia * rotor.rates[k] * self.rotor_acceleration(rotor);
         bodies.masses.iter().map(body).sum::<f64>() + bodies.rotors.iter().map(rotor).sum::<f64>()
     }
 
     /// Returns a body's contribution to D_k, kg m².
-    pub fn momentum(&self, mass: &Mass, k: usize) -> f64 {
+    pub fn momentum(&self, mass: &BodyMass, k: usize) -> f64 {
         let turns = if mass.drive == k { mass.inertia } else { 0.0 };
         mass.kilograms * cross(self.place(mass), self.column(mass, k)) + turns
     }

@@ -79,7 +79,7 @@ impl Term {
 
 /// One equality. Both sides are computed independently, so their agreement is a check.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct Equality {
     /// Axis, drive or pair of drives; empty if the equation has one line.
     pub name: String,
     /// Unit of the values.
@@ -95,7 +95,7 @@ pub struct Line {
 /// Relative rounding tolerance: fraction of the sum of all |terms|.
 const ROUNDING_TOLERANCE: f64 = 1e-12;
 
-impl Line {
+impl Equality {
     /// Returns a line whose sides agree within rounding; `scale` is the sum of the absolute values that were summed in
     /// the terms.
     pub(super) fn new(
@@ -140,13 +140,13 @@ pub struct Equation {
     /// Notes: deviations from the printed equation, omissions.
     pub notes: Vec<String>,
     /// Lines of the equation, or why it does not apply to this machine.
-    pub lines: Result<Vec<Line>, String>,
+    pub lines: Result<Vec<Equality>, String>,
 }
 
 impl Equation {
     /// Returns whether every line holds; `None` if there are no lines.
     pub fn holds(&self) -> Option<bool> {
-        Some(self.lines.as_ref().ok()?.iter().all(Line::holds))
+        Some(self.lines.as_ref().ok()?.iter().all(Equality::holds))
     }
 
     /// Returns whether the equation selects the optimum among many solutions, so that not meeting it is no fault.
@@ -155,8 +155,8 @@ impl Equation {
     }
 
     /// Returns the line with the largest ratio of residual to tolerance.
-    pub fn worst(&self) -> Option<&Line> {
-        let far = |line: &Line| line.off().abs() / line.tolerance.max(f64::MIN_POSITIVE);
+    pub fn worst(&self) -> Option<&Equality> {
+        let far = |line: &Equality| line.off().abs() / line.tolerance.max(f64::MIN_POSITIVE);
         self.lines.as_ref().ok()?.iter().max_by(|a, b| far(a).total_cmp(&far(b)))
     }
 }

@@ -21,28 +21,28 @@ mod written;
 
 use crate::mechanics::balance::Preset;
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::pose_space::held;
-use crate::settings::number::Short;
+use crate::planning::pose_space::constant_inertia;
+use crate::settings::number::ShortNumber;
 
-pub use equation::{Equation, Line, Origin, Term};
-pub use state::{NoInstant, State, When};
-pub use stated::{Stated, StatedEquation, StatedLine, StatedPart, StatedTerm};
+pub use equation::{Equality, Equation, Origin, Term};
+pub use state::{DriveState, InstantKind, NoInstant};
+pub use stated::{StatedEquation, StatedEquations, StatedLine, StatedPart, StatedTerm};
 pub use symbol::{Level, pieces, plain};
-pub use written::{Cell, cells};
+pub use written::{EquationCell, cells};
 
 /// Numbers of all equations, in the order of the paper.
-pub const NUMBERS: [&str; 19] =
+pub const EQUATION_NUMBERS: [&str; 19] =
     ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "A1", "A2", "A3"];
 
-/// Returns all equations for a machine at an instant, in the order of [`NUMBERS`]. The state has as many drives as the
+/// Returns all equations for a machine at an instant, in the order of [`EQUATION_NUMBERS`]. The state has as many drives as the
 /// machine. Penalties are those of (10); if they do not fit the machine, all are 1.
-pub fn equations(machine: &Machine, state: &State, penalties: Preset) -> Vec<Equation> {
+pub fn equations(machine: &Machine, state: &DriveState, penalties: Preset) -> Vec<Equation> {
     let inertia = Inertia::of(machine);
     let bodies = bodies::Bodies::of(machine);
     let instant = reactions::Reactions::of(machine, &inertia, &bodies, state);
-    let balance = balance::Balance { machine, inertia: &inertia, bodies: &bodies };
-    let lambda = held(machine).map(|inertia| inertia.lambda().to_vec()).map_err(|why| why.to_string());
-    let plane = planes::Plane { instant: &instant, lambda };
+    let balance = balance::BalanceEquations { machine, inertia: &inertia, bodies: &bodies };
+    let lambda = constant_inertia(machine).map(|inertia| inertia.lambda().to_vec()).map_err(|why| why.to_string());
+    let plane = planes::PlaneEquations { instant: &instant, lambda };
     vec![
         instant.force(),
         instant.centre(),
@@ -72,7 +72,7 @@ const COUPLING_TOLERANCE: f64 = 1e-3;
 /// Returns why the mass matrix is not constant; `None` if it is.
 fn not_constant(inertia: &Inertia) -> Option<String> {
     (inertia.pose_dependence() > COUPLING_TOLERANCE).then(|| {
-        let left = Short((inertia.invariance_residual() * 1e4).round() * 1e-4);
+        let left = ShortNumber((inertia.invariance_residual() * 1e4).round() * 1e-4);
         format!("the mass matrix of this machine changes with its pose: (8) leaves up to {left} kg m²")
     })
 }

@@ -1,10 +1,10 @@
 //! Section 5: zero angular momentum, its integral b, and the end effector on a plane of joint space, (12)–(16).
 
-use super::bodies::{Arm, Mass};
-use super::equation::{Equation, Line, Origin, Term};
-use super::reactions::{AXES, Axis, Reactions};
-use super::state::When;
-use super::symbol::{named, of};
+use super::bodies::{Arm, BodyMass};
+use super::equation::{Equality, Equation, Origin, Term};
+use super::reactions::{AXES, Reactions, VectorComponent};
+use super::state::InstantKind;
+use super::symbol::{indexed_symbol, symbol_of_name};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Machine, RelativeAngle};
 
@@ -13,7 +13,7 @@ use crate::mechanics::machine::{Machine, RelativeAngle};
 const PLANE_TOLERANCE: f64 = 1e-6;
 
 /// The equations of the plane of a pose constant; λ of the machine, or why it has no b.
-pub(super) struct Plane<'a> {
+pub(super) struct PlaneEquations<'a> {
     pub instant: &'a Reactions<'a>,
     pub lambda: Result<Vec<f64>, String>,
 }
@@ -28,7 +28,7 @@ struct Joint {
     ways: Vec<f64>,
 }
 
-impl Plane<'_> {
+impl PlaneEquations<'_> {
     fn name(&self, k: usize) -> &str {
         &self.machine().spec().drives[k].name
     }
@@ -45,7 +45,7 @@ impl Plane<'_> {
     fn terms(&self, lambda: &[f64], letter: &str, value: impl Fn(usize) -> f64, parts: bool) -> Vec<Term> {
         let first = lambda.iter().position(|lambda| *lambda != 0.0).unwrap_or_default();
         let term = |k: usize| {
-            let own = of(letter, self.name(k));
+            let own = indexed_symbol(letter, self.name(k));
             let symbol = if k == first { own } else { format!("λ_{{{}}} {own}", self.name(k)) };
             let term = Term::plain(symbol, lambda[k] * value(k));
             if parts { term.from(self.shares(k, value(k))) } else { term }
@@ -57,7 +57,7 @@ impl Plane<'_> {
     fn shares(&self, k: usize, by: f64) -> Vec<(Origin, f64)> {
         let instant = self.instant;
         let share = by / instant.inertia.pose_inertia();
-        let own = |mass: &Mass| {
+        let own = |mass: &BodyMass| {
             let turns = if mass.drive == k { mass.inertia } else { 0.0 };
             share * (mass.kilograms * mass.a[k].norm_sqr() + turns)
         };
@@ -76,14 +76,14 @@ impl Plane<'_> {
                     let parts = self.shares(k, 1.0);
                     parts.iter().map(|(_, part)| part).sum::<f64>()
                 };
-                let left = vec![Term::plain(of("λ", self.name(k)), lambda[k])];
+                let left = vec![Term::plain(indexed_symbol("λ", self.name(k)), lambda[k])];
                 let symbol = format!("D_{{{}}}/D_{{{}}}", self.name(k), self.name(first));
                 let right = vec![Term::plain(symbol, own(k) / own(first)).from(self.shares(k, 1.0 / own(first)))];
-                Line { name: String::new(), unit: "", left, right, tolerance: 1e-9 }
+                Equality { name: String::new(), unit: "", left, right, tolerance: 1e-9 }
             });
             let left = self.terms(&lambda, "q\u{307}", |k| state.qd[k], true);
             let tolerance = PLANE_TOLERANCE * left.iter().map(|term| term.value.abs()).sum::<f64>();
-            let law = Line { name: String::new(), unit: "rad/s", left, right: Vec::new(), tolerance };
+            let law = Equality { name: String::new(), unit: "rad/s", left, right: Vec::new(), tolerance };
             [law].into_iter().chain(ratio).collect()
         });
         Equation {
@@ -103,12 +103,12 @@ impl Plane<'_> {
             let sum: f64 = left.iter().map(|term| term.value).sum();
             let scale: f64 = left.iter().map(|term| term.value.abs()).sum();
             let right = vec![Term::plain("b", state.b.unwrap_or(sum))];
-            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
+            vec![Equality { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
         });
         let notes = match state.when {
-            When::Plan(_) => vec!["b is the one that the motion starts with.".to_owned()],
-            When::Run(_) => vec!["b is the one that control aims at.".to_owned()],
-            When::Given => Vec::new(),
+            InstantKind::Plan(_) => vec!["b is the one that the motion starts with.".to_owned()],
+            InstantKind::Run(_) => vec!["b is the one that control aims at.".to_owned()],
+            InstantKind::Given => Vec::new(),
         };
         Equation {
             number: "13",
@@ -123,7 +123,7 @@ impl Plane<'_> {
     pub fn end_effector(&self) -> Equation {
         let instant = self.instant;
         let tip = end_effector(self.machine().end_effector(), &instant.e);
-        let line = |(axis, on): Axis| {
+        let line = |(axis, on): VectorComponent| {
             let function = if axis == "x" { "cos" } else { "sin" };
             let terms = instant.bodies.tip.iter().map(|arm| {
                 let symbol = format!("{} {function} q_{{{}}}", arm.symbol, self.name(arm.drive));
@@ -132,7 +132,7 @@ impl Plane<'_> {
                 if arm.sign < 0.0 { term.negative() } else { term }
             });
             let reach = instant.bodies.tip.iter().map(|arm| arm.value.abs()).sum();
-            Line::new(axis, "m", vec![Term::plain(axis, on(tip))], terms.collect(), reach)
+            Equality::new(axis, "m", vec![Term::plain(axis, on(tip))], terms.collect(), reach)
         };
         Equation {
             number: "14",
@@ -166,7 +166,7 @@ impl Plane<'_> {
         let missing = || "the relative angles of this machine do not tell all its drives apart".to_owned();
         let ways: Vec<Vec<f64>> = ways.into_iter().collect::<Option<_>>().ok_or_else(missing)?;
         let joint = |(i, angle): (usize, &RelativeAngle)| Joint {
-            symbol: named(&spec.angles()[i].name),
+            symbol: symbol_of_name(&spec.angles()[i].name),
             value: q[angle.to] - q[angle.from] + angle.offset,
             offset: angle.offset,
             ways: ways.iter().map(|way| way[i]).collect(),
@@ -187,8 +187,10 @@ impl Plane<'_> {
         let mut terms = vec![Term::plain("b/Σλ", b / sum)];
         for joint in joints {
             let along: f64 = joint.ways.iter().zip(&lambda).map(|(way, lambda)| way * lambda).sum();
-            let behind: Vec<String> =
-                (0..self.drives()).filter(|k| joint.ways[*k] != 0.0).map(|k| of("λ", self.name(k))).collect();
+            let behind: Vec<String> = (0..self.drives())
+                .filter(|k| joint.ways[*k] != 0.0)
+                .map(|k| indexed_symbol("λ", self.name(k)))
+                .collect();
             let share = if behind.len() == 1 { behind[0].clone() } else { format!("({})", behind.join(" + ")) };
             let backwards = joint.ways.iter().any(|way| *way < 0.0);
             let offset = joint.offset;
@@ -210,8 +212,8 @@ impl Plane<'_> {
         let q = self.instant.state.q[0];
         let lines = self.first_angle().map(|right| {
             let scale: f64 = 1.0 + right.iter().map(|term| term.value.abs()).sum::<f64>();
-            let left = vec![Term::plain(of("q", self.name(0)), q)];
-            vec![Line { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
+            let left = vec![Term::plain(indexed_symbol("q", self.name(0)), q)];
+            vec![Equality { name: String::new(), unit: "rad", left, right, tolerance: PLANE_TOLERANCE * scale }]
         });
         Equation {
             number: "15",
@@ -234,7 +236,7 @@ impl Plane<'_> {
         }
     }
 
-    fn turned(&self) -> Result<Vec<Line>, String> {
+    fn turned(&self) -> Result<Vec<Equality>, String> {
         let (turn, joints) = (self.first_angle()?, self.joints()?);
         let instant = self.instant;
         let turn: f64 = turn.iter().map(|term| term.value).sum();
@@ -265,7 +267,7 @@ impl Plane<'_> {
         let (u, v) = (side("cos"), side("sin"));
         let sum = |terms: &[Term]| terms.iter().map(|term| term.value).sum::<f64>();
         let (su, sv) = (sum(&u), sum(&v));
-        let line = |name: &str, left: f64, right: Vec<Term>| Line {
+        let line = |name: &str, left: f64, right: Vec<Term>| Equality {
             name: String::new(),
             unit: "m",
             left: vec![Term::plain(name, left)],

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bodies::{Arm, Bodies, Mass};
+use super::bodies::{Arm, Bodies, BodyMass};
 use super::equation::{Origin, Term};
 use crate::mechanics::balance::{Body, Condition};
 
@@ -24,7 +24,7 @@ pub(super) fn first_moment(bodies: &Bodies, k: usize) -> Vec<Term> {
 }
 
 fn moments(bodies: &Bodies, k: usize) -> impl Iterator<Item = Product> {
-    let of = move |(at, mass): (usize, &Mass)| {
+    let of = move |(at, mass): (usize, &BodyMass)| {
         let product = move |arm: &Arm| product((at, mass), arm.sign * arm.value, arm.sign, &[arm]);
         mass.arms.iter().filter(|arm| arm.drive == k).map(product).collect::<Vec<_>>()
     };
@@ -37,7 +37,7 @@ pub(super) fn coupling(bodies: &Bodies, k: usize, l: usize) -> Vec<Term> {
 }
 
 /// Returns the terms of g_k or C_kl that do not depend on the centres of mass of the links.
-pub(super) fn given(bodies: &Bodies, condition: Condition) -> Vec<Term> {
+pub(super) fn fixed_products(bodies: &Bodies, condition: Condition) -> Vec<Term> {
     let stays = |product: &Product| !product.is_own || matches!(product.part.0, Origin::Body(Body::Payload, _));
     match condition {
         Condition::Force(k) => grouped(moments(bodies, k).filter(stays)),
@@ -46,7 +46,7 @@ pub(super) fn given(bodies: &Bodies, condition: Condition) -> Vec<Term> {
 }
 
 fn couplings(bodies: &Bodies, k: usize, l: usize) -> impl Iterator<Item = Product> {
-    let of = move |(at, mass): (usize, &Mass)| {
+    let of = move |(at, mass): (usize, &BodyMass)| {
         let on = |k: usize| mass.arms.iter().filter(move |arm| arm.drive == k);
         let product = |(a, b): (&Arm, &Arm)| {
             let sign = a.sign * b.sign;
@@ -57,7 +57,7 @@ fn couplings(bodies: &Bodies, k: usize, l: usize) -> impl Iterator<Item = Produc
     bodies.masses.iter().enumerate().flat_map(of)
 }
 
-fn product((at, mass): (usize, &Mass), value: f64, sign: f64, arms: &[&Arm]) -> Product {
+fn product((at, mass): (usize, &BodyMass), value: f64, sign: f64, arms: &[&Arm]) -> Product {
     let mut lengths: Vec<String> = arms.iter().map(|arm| arm.symbol.clone()).collect();
     // The lengths of links come before the l_c, as in the paper.
     lengths.sort_by_key(|symbol| (arms.iter().any(|arm| arm.is_own && arm.symbol == *symbol), symbol.clone()));

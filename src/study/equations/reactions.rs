@@ -1,21 +1,21 @@
 //! Section 2 of the paper: force, moment and torque, (1)–(6), and the equations of motion (11).
 
-use super::bodies::{Bodies, Mass, Motion};
-use super::equation::{Equation, Line, Origin, Term};
-use super::state::State;
-use super::symbol::of;
+use super::bodies::{Bodies, BodyMass, BodyMotion};
+use super::equation::{Equality, Equation, Origin, Term};
+use super::state::DriveState;
+use super::symbol::indexed_symbol;
 use crate::mechanics::dynamics::{self, MassMatrix, Surroundings};
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
+use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
 
 /// A machine at an instant: its bodies, and its closed forms.
 pub(super) struct Reactions<'a> {
     pub machine: &'a Machine,
     pub inertia: &'a Inertia,
     pub bodies: &'a Bodies,
-    pub motion: Motion,
-    pub e: Units,
-    pub state: &'a State,
+    pub motion: BodyMotion,
+    pub e: UnitVectors,
+    pub state: &'a DriveState,
     h: MassMatrix,
     v: PerDrive,
 }
@@ -23,14 +23,14 @@ pub(super) struct Reactions<'a> {
 type Parts = Vec<(Origin, f64)>;
 
 /// The two axes of the base, with the function that picks the component along each.
-pub(super) const AXES: [Axis; 2] = [("x", |v| v.re), ("y", |v| v.im)];
-pub(super) type Axis = (&'static str, fn(Vector) -> f64);
+pub(super) const AXES: [VectorComponent; 2] = [("x", |v| v.re), ("y", |v| v.im)];
+pub(super) type VectorComponent = (&'static str, fn(Vector) -> f64);
 
 impl<'a> Reactions<'a> {
-    pub fn of(machine: &'a Machine, inertia: &'a Inertia, bodies: &'a Bodies, state: &'a State) -> Self {
+    pub fn of(machine: &'a Machine, inertia: &'a Inertia, bodies: &'a Bodies, state: &'a DriveState) -> Self {
         let e = state.q.units();
         let (h, v) = dynamics::mass_matrix(inertia, &e, &state.qd);
-        Self { machine, inertia, bodies, motion: Motion::of(state), e, state, h, v }
+        Self { machine, inertia, bodies, motion: BodyMotion::of(state), e, state, h, v }
     }
 
     fn around(&self) -> Surroundings {
@@ -52,7 +52,7 @@ impl<'a> Reactions<'a> {
     pub fn force(&self) -> Equation {
         let (around, state) = (self.around(), self.state);
         let wrench = dynamics::base_wrench(self.inertia, &self.e, &state.qd, &state.qdd, &around).total();
-        let line = |(axis, on): Axis| {
+        let line = |(axis, on): VectorComponent| {
             let letter = if axis == "x" { "ẍ" } else { "ÿ" };
             let moves = self.bodies.each(|mass| -mass.kilograms * on(self.motion.acceleration(mass)));
             let weighs = self.bodies.each(|mass| mass.kilograms * on(around.gravity));
@@ -61,8 +61,8 @@ impl<'a> Reactions<'a> {
                 Term::sum(format!("M g_{{{axis}}}"), weighs),
             ];
             let pull = self.bodies.each(|mass| mass.kilograms * self.motion.acceleration(mass).norm());
-            let left = vec![Term::plain(of("f", format!("B{axis}")), on(wrench.force))];
-            Line::new(axis, "N", left, right, total(&pull))
+            let left = vec![Term::plain(indexed_symbol("f", format!("B{axis}")), on(wrench.force))];
+            Equality::new(axis, "N", left, right, total(&pull))
         };
         Equation {
             number: "1",
@@ -76,7 +76,7 @@ impl<'a> Reactions<'a> {
 
     pub fn centre(&self) -> Equation {
         let first = dynamics::first_moment(self.inertia, &self.e);
-        let line = |(axis, on): Axis| {
+        let line = |(axis, on): VectorComponent| {
             let right: Vec<Term> = self
                 .bodies
                 .masses
@@ -85,12 +85,12 @@ impl<'a> Reactions<'a> {
                     let index = mass.mass_symbol.split_once("_{").map_or("", |(_, index)| index.trim_end_matches('}'));
                     let index =
                         if mass.mass_symbol.starts_with('w') { format!("w{index}") } else { format!("c{index}") };
-                    let symbol = format!("{} {}", mass.mass_symbol, of(axis, index));
+                    let symbol = format!("{} {}", mass.mass_symbol, indexed_symbol(axis, index));
                     Term::sum(symbol, vec![(mass.origin, mass.kilograms * on(self.motion.place(mass)))])
                 })
                 .collect();
             let reach = self.bodies.each(|mass| mass.kilograms * self.motion.place(mass).norm());
-            Line::new(axis, "kg m", vec![Term::plain(format!("M {axis}_{{CM}}"), on(first))], right, total(&reach))
+            Equality::new(axis, "kg m", vec![Term::plain(format!("M {axis}_{{CM}}"), on(first))], right, total(&reach))
         };
         Equation {
             number: "2",
@@ -104,7 +104,7 @@ impl<'a> Reactions<'a> {
 
     pub fn momentum(&self) -> Equation {
         let momentum = self.bodies.each(|mass| mass.kilograms * self.motion.velocity(mass).norm());
-        let line = |(axis, on): Axis| {
+        let line = |(axis, on): VectorComponent| {
             let letter = if axis == "x" { "ẋ" } else { "ẏ" };
             let own = self.bodies.each(|mass| mass.kilograms * on(self.motion.velocity(mass)));
             let right = (0..self.state.q.len()).map(|k| {
@@ -114,7 +114,7 @@ impl<'a> Reactions<'a> {
                 Term::plain(format!("γ_{{{}{axis}}} q\u{307}_{{{}}}", self.name(k), self.name(k)), gamma).from(parts)
             });
             let left = vec![Term::sum(format!("M {letter}_{{CM}}"), own)];
-            Line::new(axis, "kg m/s", left, right.collect(), total(&momentum))
+            Equality::new(axis, "kg m/s", left, right.collect(), total(&momentum))
         };
         Equation {
             number: "3",
@@ -128,7 +128,7 @@ impl<'a> Reactions<'a> {
 
     /// Returns the contributions of bodies to H_kl q̈_l.
     fn inertial_parts(&self, k: usize, l: usize) -> Parts {
-        let body = |mass: &Mass| {
+        let body = |mass: &BodyMass| {
             let turns = if k == l && mass.drive == k { mass.inertia } else { 0.0 };
             let moves = dot(self.motion.column(mass, k), self.motion.column(mass, l));
             (mass.kilograms * moves + turns) * self.state.qdd[l]
@@ -149,14 +149,15 @@ impl<'a> Reactions<'a> {
                     Term::plain(symbol, self.h.get(k, l) * self.state.qdd[l]).from(self.inertial_parts(k, l))
                 })
                 .collect();
-            let turning = |mass: &Mass| mass.kilograms * dot(self.motion.turning(mass), self.motion.column(mass, k));
-            right.push(Term::plain(of("V", self.name(k)), self.v[k]).from(self.bodies.each(turning)));
-            let weight = |mass: &Mass| -mass.kilograms * dot(gravity, self.motion.column(mass, k));
+            let turning =
+                |mass: &BodyMass| mass.kilograms * dot(self.motion.turning(mass), self.motion.column(mass, k));
+            right.push(Term::plain(indexed_symbol("V", self.name(k)), self.v[k]).from(self.bodies.each(turning)));
+            let weight = |mass: &BodyMass| -mass.kilograms * dot(gravity, self.motion.column(mass, k));
             let held = Term::plain(format!("γ_{{{}}}·g", self.name(k)), holding[k]);
             right.push(held.from(self.bodies.each(weight)).negative());
             let own = self.motion.torque(self.bodies, k, gravity);
             let scale = total(&self.scale_of_torque(k));
-            Line::new(self.drive(k), "N m", vec![Term::plain(of("τ", self.name(k)), own)], right, scale)
+            Equality::new(self.drive(k), "N m", vec![Term::plain(indexed_symbol("τ", self.name(k)), own)], right, scale)
         };
         let mut notes =
             vec!["The paper prints the last term with +; with g the acceleration of (1) it is −.".to_owned()];
@@ -176,7 +177,7 @@ impl<'a> Reactions<'a> {
     /// Returns the absolute values that are summed in (4), as a scale for rounding.
     fn scale_of_torque(&self, k: usize) -> Parts {
         let gravity = self.machine.gravity();
-        let size = |mass: &Mass| {
+        let size = |mass: &BodyMass| {
             let column = self.motion.column(mass, k).norm();
             mass.kilograms * column * (self.motion.acceleration(mass).norm() + gravity.norm())
         };
@@ -192,7 +193,7 @@ impl<'a> Reactions<'a> {
         let weight = bodies.each(|mass| mass.kilograms * cross(self.motion.place(mass), around.gravity));
         let spin = bodies.each(|mass| -mass.inertia * self.state.qdd[mass.drive]);
         let path = bodies.each(|mass| -mass.kilograms * cross(self.motion.place(mass), self.motion.acceleration(mass)));
-        let size = |mass: &Mass| {
+        let size = |mass: &BodyMass| {
             let moves = self.motion.acceleration(mass).norm() + around.gravity.norm();
             mass.kilograms * self.motion.place(mass).norm() * moves
         };
@@ -212,7 +213,7 @@ impl<'a> Reactions<'a> {
             says: "The base is turned by weight that lies off B and by every change of angular momentum.",
             form: "n_{B} = r_{CM} × M g − d/dt Σ (I_{j} ω_{j} + m_{j} r_{cj} × ṙ_{cj})",
             notes: Vec::new(),
-            lines: Ok(vec![Line::new("", "N m", vec![Term::plain("n_{B}", wrench.moment)], right, scale)]),
+            lines: Ok(vec![Equality::new("", "N m", vec![Term::plain("n_{B}", wrench.moment)], right, scale)]),
         }
     }
 
@@ -220,7 +221,8 @@ impl<'a> Reactions<'a> {
         let bodies = self.bodies;
         let spin = bodies.each(|mass| mass.inertia * self.state.qd[mass.drive]);
         let path = bodies.each(|mass| mass.kilograms * cross(self.motion.place(mass), self.motion.velocity(mass)));
-        let size = |mass: &Mass| mass.kilograms * self.motion.place(mass).norm() * self.motion.velocity(mass).norm();
+        let size =
+            |mass: &BodyMass| mass.kilograms * self.motion.place(mass).norm() * self.motion.velocity(mass).norm();
         let scale = total(&bodies.each(size)) + total(&spin);
         let mut left = vec![Term::sum("Σ I_{j} ω_{j}", spin), Term::sum("Σ m_{j} r_{cj} × ṙ_{cj}", path)];
         if !bodies.rotors.is_empty() {
@@ -240,7 +242,7 @@ impl<'a> Reactions<'a> {
             says: "What all bodies have of it about B is D times the rates of the drives.",
             form: "Σ (I_{j} ω_{j} + m_{j} r_{cj} × ṙ_{cj}) = D(q) q\u{307}",
             notes: Vec::new(),
-            lines: Ok(vec![Line::new("", "kg m²/s", left, right.collect(), scale)]),
+            lines: Ok(vec![Equality::new("", "kg m²/s", left, right.collect(), scale)]),
         }
     }
 
@@ -259,8 +261,8 @@ impl<'a> Reactions<'a> {
                 let symbol = format!("h_{{{}{}}} q\u{308}_{{{}}}", self.name(k), self.name(l), self.name(l));
                 Term::plain(symbol, h * self.state.qdd[l]).from(self.inertial_parts(k, l))
             });
-            let left = vec![Term::plain(of("τ", self.name(k)), own)];
-            Line::new(self.drive(k), "N m", left, right.collect(), total(&self.scale_of_torque(k)))
+            let left = vec![Term::plain(indexed_symbol("τ", self.name(k)), own)];
+            Equality::new(self.drive(k), "N m", left, right.collect(), total(&self.scale_of_torque(k)))
         };
         let mut notes = Vec::new();
         if !self.inertia.is_decoupled() && self.several() {

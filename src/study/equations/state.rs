@@ -1,4 +1,4 @@
-//! [`State`]: the instant at which the equations are evaluated.
+//! [`DriveState`]: the instant at which the equations are evaluated.
 
 use thiserror::Error;
 
@@ -12,7 +12,7 @@ use crate::simulation::frame::Frame;
 
 /// Angles, rates and accelerations of the drives relative to the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct DriveState {
     /// Drive angles, rad.
     pub q: DriveAngles,
     /// Drive rates, rad/s.
@@ -22,12 +22,12 @@ pub struct State {
     /// The required b, rad: the control's reference, or that of the start of the motion; `None` if there is none.
     pub b: Option<f64>,
     /// Time of the instant.
-    pub when: When,
+    pub when: InstantKind,
 }
 
 /// Time of an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum When {
+pub enum InstantKind {
     /// Time in the run, s.
     Run(f64),
     /// Time in the planned motion, s; used while the run is at rest, because most terms would be 0.
@@ -55,7 +55,7 @@ const REST_BELOW: f64 = 1e-4;
 /// Fraction of a motion's duration at which it is evaluated instead: rates and accelerations are both large there.
 const PLAN_FRACTION: f64 = 0.25;
 
-impl State {
+impl DriveState {
     /// Returns the state of a pose at rest.
     pub fn at_rest(q: DriveAngles) -> Self {
         Self::given(Reference::at_rest(q))
@@ -63,7 +63,7 @@ impl State {
 
     /// Returns the state with given angles, rates and accelerations.
     pub fn given(Reference { q, qd, qdd }: Reference) -> Self {
-        Self { q, qd, qdd, b: None, when: When::Given }
+        Self { q, qd, qdd, b: None, when: InstantKind::Given }
     }
 
     /// Returns the state of a frame of a run, relative to the base.
@@ -74,7 +74,7 @@ impl State {
             qd: PerDrive::from_fn(n, |k| frame.qd[k] - frame.base_rate),
             qdd: frame.qdd,
             b: held(frame),
-            when: When::Run(frame.time),
+            when: InstantKind::Run(frame.time),
         }
     }
 
@@ -105,7 +105,7 @@ impl State {
                 let time = PLAN_FRACTION * motion.duration();
                 let lambda = Inertia::of(&run.scenario().machine).lambda();
                 let b = Some(lambda.dot(&motion.at(0.0).q));
-                Self { b, when: When::Plan(time), ..Self::given(motion.at(time)) }
+                Self { b, when: InstantKind::Plan(time), ..Self::given(motion.at(time)) }
             }
             None => Self::now(frame),
         }

@@ -1,15 +1,15 @@
-//! [`Stated`]: equations with their values as plain data for JSON, with symbols as plain text.
+//! [`StatedEquations`]: equations with their values as plain data for JSON, with symbols as plain text.
 
 use serde::Serialize;
 
-use super::equation::{Equation, Line, Origin, Term};
-use super::state::{State, When};
+use super::equation::{Equality, Equation, Origin, Term};
+use super::state::{DriveState, InstantKind};
 use super::symbol::plain;
 use crate::mechanics::machine::Machine;
 
 /// Equations of a machine at an instant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Stated {
+pub struct StatedEquations {
     /// Name of the machine.
     pub machine: String,
     /// Instant of the run, s.
@@ -93,13 +93,13 @@ pub struct StatedPart {
     pub value: f64,
 }
 
-impl Stated {
+impl StatedEquations {
     /// Converts equations of a machine in a state.
-    pub fn of<'a>(machine: &Machine, state: &State, equations: impl IntoIterator<Item = &'a Equation>) -> Self {
+    pub fn of<'a>(machine: &Machine, state: &DriveState, equations: impl IntoIterator<Item = &'a Equation>) -> Self {
         let (time, planned_time) = match state.when {
-            When::Run(time) => (Some(time), None),
-            When::Plan(time) => (None, Some(time)),
-            When::Given => (None, None),
+            InstantKind::Run(time) => (Some(time), None),
+            InstantKind::Plan(time) => (None, Some(time)),
+            InstantKind::Given => (None, None),
         };
         Self {
             machine: machine.name().into(),
@@ -131,7 +131,7 @@ impl StatedEquation {
 }
 
 impl StatedLine {
-    fn of(machine: &Machine, line: &Line) -> Self {
+    fn of(machine: &Machine, line: &Equality) -> Self {
         let [left, right] = line.sides();
         let terms = |terms: &[Term]| terms.iter().map(|term| StatedTerm::of(machine, term)).collect();
         Self {

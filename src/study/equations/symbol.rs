@@ -36,7 +36,7 @@ pub fn plain(symbol: &str) -> String {
 }
 
 /// Converts a name of a machine file to a symbol: `l12` is l with the index 12.
-pub(super) fn named(name: &str) -> String {
+pub(super) fn symbol_of_name(name: &str) -> String {
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
     match letters.len() < name.len() && !letters.is_empty() {
         true => format!("{letters}_{{{}}}", &name[letters.len()..]),
@@ -45,6 +45,6 @@ pub(super) fn named(name: &str) -> String {
 }
 
 /// Returns a letter with an index.
-pub(super) fn of(letter: &str, index: impl std::fmt::Display) -> String {
+pub(super) fn indexed_symbol(letter: &str, index: impl std::fmt::Display) -> String {
     format!("{letter}_{{{index}}}")
 }

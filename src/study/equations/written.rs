@@ -1,11 +1,11 @@
-//! [`Cell`]: layout of an equation's line, with each value below its symbol.
+//! [`EquationCell`]: layout of an equation's line, with each value below its symbol.
 
-use super::equation::{Line, Term};
+use super::equation::{Equality, Term};
 use crate::settings::number::fixed;
 
 /// A term, or the sign between the sides.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cell<'a> {
+pub struct EquationCell<'a> {
     /// Sign before the symbol: `+`, `−`, `=` or empty.
     pub sign: &'static str,
     /// Symbol in the notation of [`pieces`](super::pieces).
@@ -20,23 +20,23 @@ pub struct Cell<'a> {
 
 /// Lays out a line with a number of decimals: terms of the left side, `=`, terms of the right side. If the right side
 /// is 0, the value of the left side is written below it.
-pub fn cells(line: &Line, decimals: usize) -> Vec<Cell<'_>> {
+pub fn cells(line: &Equality, decimals: usize) -> Vec<EquationCell<'_>> {
     let left = line.left.iter().enumerate().map(|(i, term)| of_term(term, i == 0, decimals));
-    let mut all: Vec<Cell<'_>> = left.collect();
-    all.push(Cell { sign: "=", symbol: "", number_sign: "=", number: String::new(), term: None });
+    let mut all: Vec<EquationCell<'_>> = left.collect();
+    all.push(EquationCell { sign: "=", symbol: "", number_sign: "=", number: String::new(), term: None });
     all.extend(line.right.iter().enumerate().map(|(i, term)| of_term(term, i == 0, decimals)));
     if line.right.is_empty() {
         let [left, _] = line.sides();
         let (number_sign, number) = signed(left, true, decimals);
-        all.push(Cell { sign: "", symbol: "0", number_sign, number, term: None });
+        all.push(EquationCell { sign: "", symbol: "0", number_sign, number, term: None });
     }
     all
 }
 
-fn of_term(term: &Term, is_first: bool, decimals: usize) -> Cell<'_> {
+fn of_term(term: &Term, is_first: bool, decimals: usize) -> EquationCell<'_> {
     let sign = sign(term.is_negative, is_first);
     let (number_sign, number) = signed(term.value, is_first, decimals);
-    Cell { sign, symbol: &term.symbol, number_sign, number, term: Some(term) }
+    EquationCell { sign, symbol: &term.symbol, number_sign, number, term: Some(term) }
 }
 
 fn sign(is_negative: bool, is_first: bool) -> &'static str {

@@ -1,13 +1,13 @@
 //! A motion given by drive angles: moved onto a plane with the same motion of the end effector, or turned as a whole.
 
-use super::judge::{Candidate, Judge};
-use super::request::{ImportError, Keep, Request};
-use super::ways::{Ways, running};
+use super::judge::{MotionCandidate, MotionEvaluator};
+use super::request::{MotionImportError, PreservedPath, Request};
+use super::ways::{MotionProposals, timed_path};
 use crate::planning::curves::Samples;
 use crate::planning::following::Rule;
-use crate::planning::following::nearest::{nearest_b, same_tip, turned};
-use crate::planning::pose_space::{OwnWay, PoseSpace};
-use crate::query::{Watch, part};
+use crate::planning::following::nearest::{nearest_b, same_tip, turned_to_plane};
+use crate::planning::pose_space::{NotFollowable, PoseSpace};
+use crate::query::{ProgressCallback, part};
 use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::counted;
 
@@ -17,13 +17,13 @@ const ACCOUNT_SHARE: f64 = 0.3;
 /// Returns the motion given by drive angles, and candidates for a proposal, the best first.
 pub(super) fn of_drives(
     asked: &Request,
-    judge: &Judge,
+    judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
-    goes_on: Watch<'_>,
-) -> Result<Ways, ImportError> {
-    let path = samples.path(0.0).ok_or(ImportError::TooDense)?;
-    let given = judge.given(running(path, samples), &mut part(goes_on, [0.0, ACCOUNT_SHARE]));
+    goes_on: ProgressCallback<'_>,
+) -> Result<MotionProposals, MotionImportError> {
+    let path = samples.path(0.0).ok_or(MotionImportError::TooDense)?;
+    let given = judge.given(timed_path(path, samples), &mut part(goes_on, [0.0, ACCOUNT_SHARE]));
     let mean = given.account.b_mean;
     // All drives turned by whole turns give the same pose; choose the equivalent b nearest to the motion.
     let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
@@ -31,10 +31,10 @@ pub(super) fn of_drives(
     let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
     let mut candidates = Vec::new();
     let mut lost = None;
-    if asked.keep != Some(Keep::Joints) {
+    if asked.keep != Some(PreservedPath::Joints) {
         let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
             Ok(moved) => {
-                let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
+                let made = moved.and_then(task).map(|task| MotionCandidate { way: "same-tip", why, task });
                 candidates.extend(made);
                 None
             }
@@ -42,7 +42,7 @@ pub(super) fn of_drives(
         };
         let near =
             || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT_SHARE, 1.0]));
-        lost = if let Err(OwnWay { drives }) = space.follows_curves() {
+        lost = if let Err(NotFollowable { drives }) = space.follows_curves() {
             Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
         } else if let Some((b, _)) = asked.b.is_none().then(near).flatten() {
             let why = "of all b that reach every point of its path, the one that moves the drives least";
@@ -56,19 +56,19 @@ pub(super) fn of_drives(
             add(wanted, format!("{which} reaches every point of its path")).map(|stop| stop.to_string())
         };
     }
-    if asked.keep == Some(Keep::Tip) {
+    if asked.keep == Some(PreservedPath::Tip) {
         let candidates = match lost {
             Some(why) if candidates.is_empty() => Err(why.into()),
             _ => Ok(candidates),
         };
-        return Ok(Ways { given: Some(given), candidates });
+        return Ok(MotionProposals { given: Some(given), candidates });
     }
     let why = match (asked.keep, lost) {
         (Some(_), _) => "the relative joint angles are to be kept".into(),
         (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
         (None, None) => "the end effector's path cannot be kept within the rules".into(),
     };
-    let made = turned(space.lambda(), samples, wanted).and_then(task);
-    candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
-    Ok(Ways { given: Some(given), candidates: Ok(candidates) })
+    let made = turned_to_plane(space.lambda(), samples, wanted).and_then(task);
+    candidates.extend(made.map(|task| MotionCandidate { way: "turned", why, task }));
+    Ok(MotionProposals { given: Some(given), candidates: Ok(candidates) })
 }

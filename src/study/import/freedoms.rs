@@ -1,13 +1,13 @@
 //! A motion of the end effector at constant b, for machines with free drives at a point and a b: the first posture that
 //! can be planned.
 
-use super::judge::{Candidate, Judge};
+use super::judge::{MotionCandidate, MotionEvaluator};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::{Curve, Samples};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::posture::Posture;
 use crate::planning::reactionless::{BSet, between};
-use crate::query::Watch;
+use crate::query::ProgressCallback;
 use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::fixed;
 use crate::study::advice::Advice;
@@ -21,13 +21,13 @@ const POSTURES: [Posture; 4] = [Posture::LeastRates, Posture::MidRange, Posture:
 
 /// Returns the initial pose for minimum-norm rates, and the motion at the requested b, rad, or at one that serves the
 /// path.
-pub(super) fn held(
+pub(super) fn held_b_motion(
     asked: Option<f64>,
-    judge: &Judge,
+    judge: &MotionEvaluator,
     space: &PoseSpace,
     (samples, curve): (&Samples, &Curve),
-    goes_on: Watch<'_>,
-) -> (Option<DriveAngles>, Result<Vec<Candidate>, Advice>) {
+    goes_on: ProgressCallback<'_>,
+) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let start = |b: f64| space.near(samples.point(0), b);
     let points: Vec<Vector> = (0..PATH_POINTS).map(|i| curve.at(i as f64 / (PATH_POINTS - 1) as f64).p).collect();
     let (mut tried, range) = match (asked, widest(space, &points)) {
@@ -57,7 +57,7 @@ pub(super) fn held(
                         between(low, high)
                     ),
                 };
-                return (start(b), Ok(vec![Candidate { way: "on-plane", why, task }]));
+                return (start(b), Ok(vec![MotionCandidate { way: "on-plane", why, task }]));
             }
             Err(why) => refused = refused.or(Some(why)),
         }

@@ -1,9 +1,9 @@
-//! [`Imported`]: the reactions of a given motion, and the motion proposed in its place.
+//! [`ImportedMotion`]: the reactions of a given motion, and the motion proposed in its place.
 
 use serde::Serialize;
 
 use super::given::GivenMotion;
-use super::judge::{Account, Judge, Proposal};
+use super::judge::{MotionEffects, MotionEvaluator, Proposal};
 use crate::planning::curves::Coordinates;
 use crate::session::scenario::Scenario;
 use crate::settings::number::fixed;
@@ -11,7 +11,7 @@ use crate::study::advice::{Advice, Remedy};
 
 /// The reactions of a given motion, and the motion proposed in its place.
 #[derive(Clone, Debug, Serialize)]
-pub struct Imported {
+pub struct ImportedMotion {
     /// Name of the machine.
     pub machine: String,
     /// What the samples give: `drives` or `tip`.
@@ -36,7 +36,7 @@ pub struct Imported {
     pub b_samples: Option<[f64; 2]>,
     /// Assessment of the given motion, for the end effector with minimum-norm rates; `None` if these cannot follow it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub given: Option<Account>,
+    pub given: Option<MotionEffects>,
     /// Whether there is a proposal.
     pub feasible: bool,
     /// Why there is no proposal.
@@ -63,9 +63,9 @@ const MIN_PEAK: f64 = 1e-9;
 /// Final rate, as a fraction of the largest rate, up to which a motion counts as ending at rest.
 const MAX_END_SPEED: f64 = 1e-3;
 
-impl Imported {
+impl ImportedMotion {
     /// Returns the report on a given motion, without a proposal; `given` is its assessment.
-    pub(super) fn of(motion: &GivenMotion, judge: &Judge, given: Option<Account>) -> Self {
+    pub(super) fn of(motion: &GivenMotion, judge: &MotionEvaluator, given: Option<MotionEffects>) -> Self {
         let samples = &motion.samples;
         let lambda = judge.model.lambda();
         let b = (0..samples.count()).map(|i| lambda.dot(samples.values(i)));

@@ -1,15 +1,15 @@
-//! [`Importing`]: the query that assesses a given motion and searches for a reactionless one in its place.
+//! [`ImportQuery`]: the query that assesses a given motion and searches for a reactionless one in its place.
 
 use super::drives::of_drives;
 use super::given::GivenMotion;
-use super::imported::Imported;
-use super::judge::{Candidate, Given, Judge};
-use super::request::{ImportError, Keep, Request};
+use super::imported::ImportedMotion;
+use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
+use super::request::{MotionImportError, PreservedPath, Request};
 use super::tip::of_tip;
-use super::ways::{Ways, as_given};
+use super::ways::{MotionProposals, unchanged_motion};
 use crate::planning::curves::Coordinates;
 use crate::planning::pose_space::NoPoseSpace;
-use crate::query::{Portion, Query, Watch, part};
+use crate::query::{Portion, ProgressCallback, Query, part};
 use crate::session::Refusal;
 
 /// Minimum integration step of a proposal's scenario, s.
@@ -24,7 +24,7 @@ const SEARCHED_AT: f64 = 0.5;
 
 /// Assesses a given motion and finds the first motion near it that has no reactions. One portion analyses the machine,
 /// the next searches for candidates, and each further one simulates a candidate.
-pub struct Importing {
+pub struct ImportQuery {
     request: Request,
     stage: Stage,
 }
@@ -32,30 +32,30 @@ pub struct Importing {
 /// Stage of the work.
 enum Stage {
     Begun,
-    Looked(Box<Judge>),
+    Looked(Box<MotionEvaluator>),
     Trying(Box<Trying>),
 }
 
 /// Candidates, simulated one after the other.
 struct Trying {
-    judge: Judge,
-    given: Option<Given>,
+    judge: MotionEvaluator,
+    given: Option<AssessedMotion>,
     /// Candidates, the best first.
-    candidates: Vec<Candidate>,
+    candidates: Vec<MotionCandidate>,
     /// Number of candidates simulated.
     tried: usize,
-    imported: Imported,
+    imported: ImportedMotion,
 }
 
-impl Query for Importing {
+impl Query for ImportQuery {
     type Input = Request;
-    type Answer = Result<Imported, ImportError>;
+    type Answer = Result<ImportedMotion, MotionImportError>;
 
     fn begin(request: Request) -> Self {
         Self { request, stage: Stage::Begun }
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         // Once the progress callback has returned false, the result is incomplete and is dropped.
         let mut stopped = false;
         let mut goes_on = |done: f64| {
@@ -67,16 +67,16 @@ impl Query for Importing {
     }
 }
 
-impl Importing {
-    fn portion(&mut self, goes_on: Watch<'_>) -> Portion<Result<Imported, ImportError>> {
+impl ImportQuery {
+    fn portion(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Result<ImportedMotion, MotionImportError>> {
         let motion = &*self.request.motion.0;
         match std::mem::replace(&mut self.stage, Stage::Begun) {
             Stage::Begun => {
-                if motion.coordinates != Coordinates::Drives && self.request.keep == Some(Keep::Joints) {
-                    return Portion::Done(Err(ImportError::NoJoints));
+                if motion.coordinates != Coordinates::Drives && self.request.keep == Some(PreservedPath::Joints) {
+                    return Portion::Done(Err(MotionImportError::NoJoints));
                 }
                 let instants = INSTANTS_PER_SAMPLE * motion.samples.count();
-                let judge = Judge::new(&self.request.scenario.0, instants.clamp(MIN_INSTANTS, MAX_INSTANTS));
+                let judge = MotionEvaluator::new(&self.request.scenario.0, instants.clamp(MIN_INSTANTS, MAX_INSTANTS));
                 self.stage = Stage::Looked(judge.into());
                 Portion::More(ANALYSED_AT)
             }
@@ -100,29 +100,37 @@ impl Importing {
 }
 
 /// Assesses the motion and searches for candidates.
-fn ways(request: &Request, judge: &Judge, goes_on: Watch<'_>) -> Result<Ways, ImportError> {
+fn ways(
+    request: &Request,
+    judge: &MotionEvaluator,
+    goes_on: ProgressCallback<'_>,
+) -> Result<MotionProposals, MotionImportError> {
     let motion = &*request.motion.0;
     let (samples, drives) = (&motion.samples, motion.coordinates == Coordinates::Drives);
     match &judge.space {
         Ok(space) if drives => of_drives(request, judge, space, samples, goes_on),
         Ok(space) => of_tip(request, judge, space, samples, goes_on),
-        Err(NoPoseSpace::Free) => as_given(judge, samples, drives, goes_on),
+        Err(NoPoseSpace::Free) => unchanged_motion(judge, samples, drives, goes_on),
         Err(why) => {
-            let given = as_given(judge, samples, drives, goes_on)?;
-            Ok(Ways { candidates: Err(why.to_string().into()), ..given })
+            let given = unchanged_motion(judge, samples, drives, goes_on)?;
+            Ok(MotionProposals { candidates: Err(why.to_string().into()), ..given })
         }
     }
 }
 
 /// Returns the integration step of a scenario that runs the motion, s.
-fn step_of(motion: &GivenMotion, judge: &Judge) -> f64 {
+fn step_of(motion: &GivenMotion, judge: &MotionEvaluator) -> f64 {
     motion.samples.spacing().clamp(MIN_STEP, judge.scenario.step.max(MIN_STEP))
 }
 
 impl Trying {
-    fn of(motion: &GivenMotion, judge: Judge, Ways { given, candidates }: Ways) -> Self {
+    fn of(
+        motion: &GivenMotion,
+        judge: MotionEvaluator,
+        MotionProposals { given, candidates }: MotionProposals,
+    ) -> Self {
         let account = given.as_ref().map(|given| given.account.clone());
-        let mut imported = Imported::of(motion, &judge, account);
+        let mut imported = ImportedMotion::of(motion, &judge, account);
         let b = imported.given.as_ref().map_or(0.0, |given| given.b_mean);
         imported.as_given = judge.as_given(motion, b, step_of(motion, &judge));
         let candidates = candidates.unwrap_or_else(|why| {
@@ -138,7 +146,7 @@ impl Trying {
     }
 
     /// Simulates the next candidate; returns whether another call is needed.
-    fn next(&mut self, motion: &GivenMotion, goes_on: Watch<'_>) -> bool {
+    fn next(&mut self, motion: &GivenMotion, goes_on: ProgressCallback<'_>) -> bool {
         let Some(candidate) = self.candidates.get(self.tried) else { return false };
         let step = step_of(motion, &self.judge);
         let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.way);

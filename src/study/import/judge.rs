@@ -11,8 +11,8 @@ use crate::planning::curves::Coordinates;
 use crate::planning::following::nearest::Deviation;
 use crate::planning::forecast::Forecast;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::timing::Limits;
-use crate::query::{Watch, part};
+use crate::planning::timing::DriveLimits;
+use crate::query::{ProgressCallback, part};
 use crate::session::scenario::{Scenario, Task, TaskKind};
 use crate::session::{Refusal, Run, replay_while};
 use crate::study::advice::{Advice, Remedy};
@@ -22,7 +22,7 @@ const SIMULATION_SHARE: f64 = 0.8;
 
 /// Assessment of a motion that is followed exactly.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Account {
+pub struct MotionEffects {
     /// Largest |n_B|, N m.
     pub peak_base_moment: f64,
     /// Root mean square of n_B, N m.
@@ -74,7 +74,7 @@ pub struct Proposal {
     pub rms_deviation: f64,
     /// Assessment of the motion if it is followed exactly.
     #[serde(flatten)]
-    pub account: Account,
+    pub account: MotionEffects,
     /// Largest |n_B| in the simulation, N m.
     pub simulated_peak_base_moment: f64,
     /// Largest dynamic |f_B| in the simulation, N.
@@ -87,20 +87,20 @@ pub struct Proposal {
 const DRAWN_INTERVALS: usize = 240;
 
 /// A candidate for the proposal.
-pub(super) struct Candidate {
+pub(super) struct MotionCandidate {
     pub way: &'static str,
     pub why: String,
     pub task: Task,
 }
 
 /// The given motion and its assessment.
-pub(super) struct Given {
+pub(super) struct AssessedMotion {
     pub motion: Motion,
-    pub account: Account,
+    pub account: MotionEffects,
 }
 
 /// A machine with everything needed to assess its motions.
-pub(super) struct Judge {
+pub(super) struct MotionEvaluator {
     /// The scenario, whose task is not used.
     pub scenario: Scenario,
     pub machine: Machine,
@@ -110,7 +110,7 @@ pub(super) struct Judge {
     pub instants: usize,
 }
 
-impl Judge {
+impl MotionEvaluator {
     /// Builds the assessor of a scenario's machine, which evaluates motions at a number of instants.
     pub fn new(scenario: &Scenario, instants: usize) -> Self {
         let scenario = Scenario { compare_b: None, edits: Vec::new(), ..scenario.clone() };
@@ -151,12 +151,12 @@ impl Judge {
     }
 
     /// Assesses a motion.
-    fn account(&self, motion: &Motion, goes_on: Watch<'_>) -> Account {
-        let limits = Limits::of(&self.machine);
+    fn account(&self, motion: &Motion, goes_on: ProgressCallback<'_>) -> MotionEffects {
+        let limits = DriveLimits::of(&self.machine);
         let f = Forecast::at_while(motion, (&self.model, &self.around, &limits), self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
         let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
-        Account {
+        MotionEffects {
             peak_base_moment: f.moment,
             rms_base_moment: f.moment_rms,
             moment_impulse: f.impulse,
@@ -176,10 +176,10 @@ impl Judge {
     }
 }
 
-impl Judge {
+impl MotionEvaluator {
     /// Returns a given motion with its assessment.
-    pub fn given(&self, motion: Motion, goes_on: Watch<'_>) -> Given {
-        Given { account: self.account(&motion, goes_on), motion }
+    pub fn given(&self, motion: Motion, goes_on: ProgressCallback<'_>) -> AssessedMotion {
+        AssessedMotion { account: self.account(&motion, goes_on), motion }
     }
 
     /// Checks that a task can be planned.
@@ -217,16 +217,17 @@ impl Judge {
     /// The error says why the candidate cannot be run.
     pub fn proposal(
         &self,
-        candidate: &Candidate,
+        candidate: &MotionCandidate,
         scenario: &Scenario,
-        given: Option<&Given>,
-        goes_on: Watch<'_>,
+        given: Option<&AssessedMotion>,
+        goes_on: ProgressCallback<'_>,
     ) -> Result<Proposal, Refusal> {
         let run = replay_while(scenario, |run, frame| goes_on(SIMULATION_SHARE * frame.time / run.planned_time()))?;
         let peaks = run.frame().peaks;
         let (motion, tip) = (&run.plan().motion, self.machine.end_effector());
-        let deviation =
-            given.map(|Given { motion: given, .. }| Deviation::between(tip, &self.model, given, motion, self.instants));
+        let deviation = given.map(|AssessedMotion { motion: given, .. }| {
+            Deviation::between(tip, &self.model, given, motion, self.instants)
+        });
         let account = self.account(motion, &mut part(goes_on, [SIMULATION_SHARE, 1.0]));
         Ok(Proposal {
             way: candidate.way,
@@ -243,8 +244,8 @@ impl Judge {
     }
 
     /// Returns why constant b does not make the proposal reactionless.
-    pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&Account>) -> Advice {
-        let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
+    pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&MotionEffects>) -> Advice {
+        let most = |a: &MotionEffects| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
             return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();
         }

@@ -1,11 +1,11 @@
-//! [`Line`]: a value of the given motion next to that of the proposed one.
+//! [`ComparedNumber`]: a value of the given motion next to that of the proposed one.
 
-use super::imported::Imported;
-use super::judge::{Account, Proposal};
+use super::imported::ImportedMotion;
+use super::judge::{MotionEffects, Proposal};
 
 /// A value of both motions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct ComparedNumber {
     /// Name of the value.
     pub name: String,
     /// Unit.
@@ -20,18 +20,19 @@ pub struct Line {
     pub of_both: bool,
 }
 
-impl Imported {
+impl ImportedMotion {
     /// Returns the values of both motions: reactions on the base, torques, b.
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<ComparedNumber> {
         let (given, proposal) = (self.given.as_ref(), self.proposal.as_ref());
-        let both = |name: String, of: &dyn Fn(&Account) -> f64, decimals: usize, unit: &'static str| Line {
-            name,
-            unit,
-            given: given.map(of),
-            proposed: proposal.map(|p| of(&p.account)),
-            decimals,
-            of_both: true,
-        };
+        let both =
+            |name: String, of: &dyn Fn(&MotionEffects) -> f64, decimals: usize, unit: &'static str| ComparedNumber {
+                name,
+                unit,
+                given: given.map(of),
+                proposed: proposal.map(|p| of(&p.account)),
+                decimals,
+                of_both: true,
+            };
         let mut lines = vec![
             both("peak |n_B|".into(), &|a| a.peak_base_moment, 9, "N m"),
             both("rms n_B".into(), &|a| a.rms_base_moment, 9, "N m"),
@@ -50,7 +51,7 @@ impl Imported {
         {
             let of_samples = |name: &str, b: f64| {
                 let (name, given) = (name.to_owned(), Some(b));
-                Line { name, unit: "rad", given, proposed: None, decimals: 6, of_both: false }
+                ComparedNumber { name, unit: "rad", given, proposed: None, decimals: 6, of_both: false }
             };
             lines.push(of_samples("least b of the samples", low));
             lines.push(of_samples("greatest b of the samples", high));
@@ -63,10 +64,10 @@ impl Imported {
 
 impl Proposal {
     /// Returns the values that only the proposal has.
-    fn lines(&self, is_measured_from_given: bool) -> Vec<Line> {
+    fn lines(&self, is_measured_from_given: bool) -> Vec<ComparedNumber> {
         let line = |name: String, value: f64, decimals: usize, unit: &'static str| {
             let proposed = Some(value);
-            Line { name, unit, given: None, proposed, decimals, of_both: false }
+            ComparedNumber { name, unit, given: None, proposed, decimals, of_both: false }
         };
         let mut lines = Vec::new();
         if is_measured_from_given {

@@ -8,8 +8,8 @@
 //! |---|---|
 //! | samples with angles within the joint limits, smoothed or not | [`GivenMotion`] |
 //! | the request | [`Request`] |
-//! | the query | [`Importing`] |
-//! | the result | [`Imported`], with [`Account`] and [`Proposal`]; [`Advice`](super::advice::Advice) in words |
+//! | the query | [`ImportQuery`] |
+//! | the result | [`ImportedMotion`], with [`MotionEffects`] and [`Proposal`]; [`Advice`](super::advice::Advice) in words |
 
 mod drives;
 mod freedoms;
@@ -24,8 +24,8 @@ mod tip;
 mod ways;
 
 pub use given::GivenMotion;
-pub use imported::Imported;
-pub use importing::Importing;
-pub use judge::{Account, Proposal};
-pub use lines::Line;
-pub use request::{ImportError, Keep, Request};
+pub use imported::ImportedMotion;
+pub use importing::ImportQuery;
+pub use judge::{MotionEffects, Proposal};
+pub use lines::ComparedNumber;
+pub use request::{MotionImportError, PreservedPath, Request};

@@ -1,11 +1,11 @@
 //! A motion of the end effector on a plane b = const, for machines with closed-form planes: followed on one sheet.
 
-use super::judge::{Candidate, Judge};
+use super::judge::{MotionCandidate, MotionEvaluator};
 use crate::mechanics::planar::DriveAngles;
 use crate::planning::curves::{Curve, Samples};
 use crate::planning::following::{Rule, trace};
 use crate::planning::pose_space::{Planes, PoseSpace};
-use crate::planning::posed::serve;
+use crate::planning::posed::poses_of_points;
 use crate::planning::reactionless::{BSet, between};
 use crate::session::scenario::{Task, TaskKind};
 use crate::study::advice::Advice;
@@ -15,12 +15,12 @@ const PATH_POINTS: usize = 257;
 
 /// Returns the initial pose for minimum-norm rates, and the motion on the requested plane, rad, or on one that serves
 /// the path.
-pub(super) fn held(
+pub(super) fn held_plane_motion(
     asked: Option<f64>,
-    judge: &Judge,
+    judge: &MotionEvaluator,
     (space, planes): (&PoseSpace, &Planes),
     (samples, curve): (&Samples, &Curve),
-) -> (Option<DriveAngles>, Result<Vec<Candidate>, Advice>) {
+) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let (map, curves) = (planes.map(), std::slice::from_ref(curve));
     let (b, why) = match asked {
         Some(b) => (b, "b is the one asked for".to_owned()),
@@ -43,10 +43,10 @@ pub(super) fn held(
         _ => Err(stop),
     });
     let b = followed.as_ref().map_or(b, |(b, _)| *b);
-    let start = serve(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().map(|pose| pose.q));
+    let start = poses_of_points(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().map(|pose| pose.q));
     let candidates = followed.map_err(|stop| stop.to_string().into()).map(|(b, why)| {
         let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine).ok();
-        task.map(|task| Candidate { way: "on-plane", why, task }).into_iter().collect()
+        task.map(|task| MotionCandidate { way: "on-plane", why, task }).into_iter().collect()
     });
     (start, candidates)
 }

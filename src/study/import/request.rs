@@ -9,7 +9,7 @@ use crate::session::scenario::Scenario;
 
 /// What the proposal keeps of given drive angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Keep {
+pub enum PreservedPath {
     /// The end effector's motion.
     Tip,
     /// The relative joint angles.
@@ -29,12 +29,12 @@ pub struct Request {
     pub b: Option<f64>,
     /// What the proposal keeps of given drive angles. By default the end effector's motion, if some plane reaches all
     /// of it.
-    pub keep: Option<Keep>,
+    pub keep: Option<PreservedPath>,
 }
 
 /// Why a motion cannot be imported.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum ImportError {
+pub enum MotionImportError {
     /// The joint angles of a motion of the end effector were to be kept.
     #[error("x and y give no joint angles to be kept")]
     NoJoints,

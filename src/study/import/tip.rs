@@ -1,15 +1,15 @@
 //! A motion given by the end effector: with minimum-norm rates, and at constant b.
 
 use super::freedoms;
-use super::judge::{Candidate, Given, Judge};
+use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
 use super::plane;
-use super::request::{ImportError, Request};
-use super::ways::{Ways, running};
+use super::request::{MotionImportError, Request};
+use super::ways::{MotionProposals, timed_path};
 use crate::planning::curves::Samples;
 use crate::planning::curves::path::minimum_norm_curve;
-use crate::planning::following::nearest::turned;
+use crate::planning::following::nearest::turned_to_plane;
 use crate::planning::pose_space::PoseSpace;
-use crate::query::{Watch, part};
+use crate::query::{ProgressCallback, part};
 use crate::session::scenario::{Task, TaskKind};
 use crate::settings::number::{counted, fixed};
 use crate::study::advice::{Advice, Remedy};
@@ -22,38 +22,38 @@ const MAX_B_DEVIATION_RAD: f64 = 1e-3;
 /// Returns the minimum-norm motion for samples of the end effector, and candidates at constant b.
 pub(super) fn of_tip(
     asked: &Request,
-    judge: &Judge,
+    judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
-    goes_on: Watch<'_>,
-) -> Result<Ways, ImportError> {
-    let curve = samples.curve().ok_or(ImportError::TooDense)?;
+    goes_on: ProgressCallback<'_>,
+) -> Result<MotionProposals, MotionImportError> {
+    let curve = samples.curve().ok_or(MotionImportError::TooDense)?;
     let reaches_area = space.reaches_area();
     let (start, held) = if reaches_area {
         let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
-            Ok(planes) => plane::held(asked.b, judge, (space, planes), (samples, &curve)),
-            Err(_) => freedoms::held(asked.b, judge, space, (samples, &curve), &mut searching),
+            Ok(planes) => plane::held_plane_motion(asked.b, judge, (space, planes), (samples, &curve)),
+            Err(_) => freedoms::held_b_motion(asked.b, judge, space, (samples, &curve), &mut searching),
         };
         (start, Some(candidates))
     } else {
         (space.near(samples.point(0), asked.b.unwrap_or(0.0)), None)
     };
     let usual = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
-    let given = usual.map(|path| judge.given(running(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
+    let given = usual.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
     let candidates = held.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
-    Ok(Ways { given, candidates })
+    Ok(MotionProposals { given, candidates })
 }
 
 /// Returns the candidate for one or two drives, where only motions along the curve of one b are reactionless.
 fn on_curve(
-    judge: &Judge,
+    judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
-    given: Option<&Given>,
-) -> Result<Vec<Candidate>, Advice> {
+    given: Option<&AssessedMotion>,
+) -> Result<Vec<MotionCandidate>, Advice> {
     let drives = counted(space.drives(), "drive");
-    let Some(Given { motion, account }) = given else {
+    let Some(AssessedMotion { motion, account }) = given else {
         let why = format!("{drives} cannot move the end effector along this path: want one within reach");
         return Err(why.into());
     };
@@ -71,8 +71,9 @@ fn on_curve(
     let task =
         Samples::new(&samples.times().into_iter().zip(rows).map(|(t, q)| [&[t], &q[..]].concat()).collect::<Vec<_>>())
             .ok()
-            .and_then(|drives| turned(space.lambda(), &drives, mean))
+            .and_then(|drives| turned_to_plane(space.lambda(), &drives, mean))
             .and_then(|drives| Task::sampled(TaskKind::Given, drives, None, &judge.machine).ok());
     let why = format!("the path lies along the curve of this b, to {:.1e} rad", (high - mean).max(mean - low));
-    task.map(|task| vec![Candidate { way: "turned", why, task }]).ok_or_else(|| "the samples give no spline".into())
+    task.map(|task| vec![MotionCandidate { way: "turned", why, task }])
+        .ok_or_else(|| "the samples give no spline".into())
 }

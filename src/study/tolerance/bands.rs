@@ -179,7 +179,7 @@ impl ForceBand {
 
 /// Difference of two results over time, in standard deviations at each instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Gap {
+pub struct BandDifference {
     /// Largest difference.
     pub worst: f64,
     /// Time of the largest difference, s.
@@ -196,17 +196,17 @@ pub struct Agreement {
     /// Tolerance if one result is sampled: at least four standard errors, in standard deviations.
     pub sampled_tolerance: f64,
     /// Mean of n_B: nominal against exact.
-    pub moment_mean: Gap,
+    pub moment_mean: BandDifference,
     /// Standard deviation of n_B: first-order against exact.
-    pub moment_deviation: Gap,
+    pub moment_deviation: BandDifference,
     /// Root mean square of |f_B|: components to first order against exact.
-    pub force_rms: Gap,
+    pub force_rms: BandDifference,
     /// Mean of |f_B|: nominal against sampled.
-    pub force_mean: Gap,
+    pub force_mean: BandDifference,
     /// Standard deviation of |f_B|: first-order against sampled.
-    pub force_deviation: Gap,
+    pub force_deviation: BandDifference,
     /// Mean of n_B: sampled against exact. This is the sampling error, independent of the order.
-    pub sampling: Gap,
+    pub sampling: BandDifference,
 }
 
 impl Agreement {
@@ -218,7 +218,7 @@ impl Agreement {
         let gap = |a: &[f64], b: &[f64], deviation: &[f64], tolerance: f64| {
             // Instants at which the machines hardly differ are ignored.
             let least = 1e-6 * deviation.iter().fold(0.0_f64, |m, d| m.max(*d));
-            let mut gap = Gap::default();
+            let mut gap = BandDifference::default();
             for (s, t) in time.iter().enumerate().filter(|(s, _)| deviation[*s] > least) {
                 let apart = (a[s] - b[s]).abs() / deviation[s];
                 if apart > gap.worst {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::deviate::CHUNK;
-use super::ensemble::{Ensemble, Outcome, Sampler};
+use super::ensemble::{Ensemble, SampleOutcome, Sampler};
 use super::simulate::simulate;
 use crate::session::{Refusal, Run};
 
@@ -22,9 +22,9 @@ pub struct Batch {
     /// Sample numbers of the machines.
     pub samples: Range<u64>,
     /// Outcome of each machine.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<SampleOutcome>,
     /// Outcomes with perfect tracking, if the machines were simulated.
-    pub tracking: Vec<Outcome>,
+    pub tracking: Vec<SampleOutcome>,
     /// Deviations of the parameters, by machine; empty if not requested.
     pub deviations: Vec<Vec<f64>>,
 }

@@ -8,7 +8,7 @@
 //! | δ | deviations of the parameters | unit of the parameter |
 
 use super::deviate::CHUNK;
-use super::parameter::{Parameter, VariedQuantity};
+use super::parameter::{UncertainParameter, VariedQuantity};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
@@ -50,7 +50,7 @@ pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
 
 /// A number that may vary.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Term {
+pub(super) struct UncertainNumber {
     pub nominal: f64,
     /// The parameter whose deviation is added.
     pub parameter: Option<usize>,
@@ -61,10 +61,10 @@ pub(super) struct Term {
 pub(super) struct LinkConstants {
     pub drive: usize,
     pub sign: f64,
-    pub mass: Term,
-    pub inertia: Term,
-    pub com: Term,
-    pub com_normal: Term,
+    pub mass: UncertainNumber,
+    pub inertia: UncertainNumber,
+    pub com: UncertainNumber,
+    pub com_normal: UncertainNumber,
     /// Coefficients of the root's position, m.
     pub root: [f64; MAX_DRIVES],
     /// Drives that the position depends on, including the body's own.
@@ -77,11 +77,11 @@ pub(super) struct LinkConstants {
 ///
 /// # Errors
 /// Fails if a length cannot vary alone, because a closure of a loop fixes it.
-pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<LinkConstants>, MachineError> {
+pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Result<Vec<LinkConstants>, MachineError> {
     let spec = machine.spec();
     let find = |quantity| parameters.iter().position(|p| p.quantity == quantity);
-    let term = |nominal, quantity| Term { nominal, parameter: find(quantity) };
-    let zero = Term { nominal: 0.0, parameter: None };
+    let term = |nominal, quantity| UncertainNumber { nominal, parameter: find(quantity) };
+    let zero = UncertainNumber { nominal: 0.0, parameter: None };
     let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.resolved_links()).enumerate())
         .map(|(j, (link, part))| LinkConstants {
             drive: part.drive,
@@ -110,7 +110,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
     let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
     let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
     bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
-        let (part, fixed) = (&machine.resolved_links()[*j], |nominal| Term { nominal, parameter: None });
+        let (part, fixed) = (&machine.resolved_links()[*j], |nominal| UncertainNumber { nominal, parameter: None });
         LinkConstants {
             drive: part.drive,
             sign: part.sign,
@@ -158,10 +158,10 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
 }
 
 /// Number of machines evaluated together: four vectors of baseline x86-64.
-pub(super) const LANES: usize = 8;
+pub(super) const BLOCK_MACHINES: usize = 8;
 
 /// One value for each of these machines.
-pub(super) type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; BLOCK_MACHINES];
 
 #[inline(always)]
 fn each(f: impl Fn(usize) -> f64) -> Lanes {
@@ -178,20 +178,20 @@ pub(super) fn evaluate(
     block: usize,
     theta: &mut [Lanes],
 ) {
-    theta.iter_mut().for_each(|t| *t = [0.0; LANES]);
+    theta.iter_mut().for_each(|t| *t = [0.0; BLOCK_MACHINES]);
     let delta = |p: usize| -> &Lanes { &deviations[p].as_chunks().0[block] };
-    let of = |term: &Term| match term.parameter {
+    let of = |term: &UncertainNumber| match term.parameter {
         Some(p) => {
             let delta = delta(p);
             each(|w| term.nominal + delta[w])
         }
-        None => [term.nominal; LANES],
+        None => [term.nominal; BLOCK_MACHINES],
     };
     for body in bodies {
         let (m, spin, u, v) = (of(&body.mass), of(&body.inertia), of(&body.com), of(&body.com_normal));
-        let mut a = [[0.0; LANES]; MAX_DRIVES];
+        let mut a = [[0.0; BLOCK_MACHINES]; MAX_DRIVES];
         for &k in &body.on {
-            a[k] = [body.root[k]; LANES];
+            a[k] = [body.root[k]; BLOCK_MACHINES];
         }
         for &(p, k, rate) in &body.stretch {
             let delta = delta(p);
@@ -203,7 +203,7 @@ pub(super) fn evaluate(
         for (i, &k) in body.on.iter().enumerate() {
             let mut add = |i: usize, f: &dyn Fn(usize) -> f64| {
                 let sum = &mut theta[i];
-                (0..LANES).for_each(|w| sum[w] += f(w));
+                (0..BLOCK_MACHINES).for_each(|w| sum[w] += f(w));
             };
             add(first(k), &|w| m[w] * a[k][w]);
             if k == d {

@@ -13,12 +13,12 @@ pub const CHUNK: usize = 256;
 
 /// The generator of random numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Draws {
+pub(super) struct RandomStream {
     rng: ChaCha8Rng,
     bytes: [u8; 8 * CHUNK],
 }
 
-impl Draws {
+impl RandomStream {
     pub(super) fn new(seed: u64) -> Self {
         Self { rng: ChaCha8Rng::seed_from_u64(seed), bytes: [0; 8 * CHUNK] }
     }

@@ -21,10 +21,10 @@ use nalgebra::DVector;
 use serde::Serialize;
 
 use super::ToleranceError;
-use super::constants::{self, LANES, Lanes, LinkConstants, count, evaluate, unit};
-use super::deviate::{CHUNK, Draws};
+use super::constants::{self, BLOCK_MACHINES, Lanes, LinkConstants, count, evaluate, unit};
+use super::deviate::{CHUNK, RandomStream};
 use super::moments::Moments;
-use super::parameter::{Parameter, parameters};
+use super::parameter::{UncertainParameter, parameters};
 use crate::mechanics::dynamics::{Surroundings, base_wrench};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
@@ -33,7 +33,7 @@ use crate::session::scenario::Spread;
 
 /// Reactions of one machine on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct SampleOutcome {
     /// Largest |n_B|, N m.
     pub peak_moment: f64,
     /// Largest dynamic |f_B|, N.
@@ -48,7 +48,7 @@ pub struct Outcome {
 #[derive(Clone, Debug)]
 pub struct Ensemble {
     machine: Machine,
-    parameters: Vec<Parameter>,
+    parameters: Vec<UncertainParameter>,
     bodies: Vec<LinkConstants>,
     seed: u64,
     references: Vec<Reference>,
@@ -103,7 +103,7 @@ impl Ensemble {
     }
 
     /// Returns the parameters that vary.
-    pub fn parameters(&self) -> &[Parameter] {
+    pub fn parameters(&self) -> &[UncertainParameter] {
         &self.parameters
     }
 
@@ -138,11 +138,11 @@ impl Ensemble {
     }
 
     /// Returns the outcome of the nominal machine.
-    pub fn nominal_outcome(&self) -> Outcome {
+    pub fn nominal_outcome(&self) -> SampleOutcome {
         let between = &self.nominal[self.between()];
         let peak = |f: fn(&(f64, Vector)) -> f64| self.nominal.iter().map(f).fold(0.0, f64::max);
         let rms = |f: fn(&(f64, Vector)) -> f64| (between.iter().map(f).sum::<f64>() / between.len() as f64).sqrt();
-        Outcome {
+        SampleOutcome {
             peak_moment: peak(|w| w.0.abs()),
             peak_force: peak(|w| w.1.norm()),
             rms_moment: rms(|w| w.0 * w.0),
@@ -166,10 +166,10 @@ impl Ensemble {
     pub fn sampler(&self) -> Sampler<'_> {
         Sampler {
             ensemble: self,
-            draws: Draws::new(self.seed),
+            draws: RandomStream::new(self.seed),
             deviations: vec![[0.0; CHUNK]; self.parameters.len()],
-            theta: vec![[0.0; LANES]; count(self.machine.drives())],
-            outcomes: [Outcome::default(); CHUNK],
+            theta: vec![[0.0; BLOCK_MACHINES]; count(self.machine.drives())],
+            outcomes: [SampleOutcome::default(); CHUNK],
         }
     }
 
@@ -233,7 +233,7 @@ impl MotionTable {
             rows.extend(moment.iter().map(|&i| influence[i][s].0));
             rows.extend(force.iter().flat_map(|&i| [influence[i][s].1.re, influence[i][s].1.im]));
         }
-        let mut theta = vec![[0.0; LANES]; influence.len()];
+        let mut theta = vec![[0.0; BLOCK_MACHINES]; influence.len()];
         evaluate(n, bodies, &vec![[0.0; CHUNK]; parameters], 0, &mut theta);
         Self { moment, force, rows, offset: theta.iter().map(|t| t[0]).collect() }
     }
@@ -247,11 +247,11 @@ impl MotionTable {
 #[derive(Clone, Debug)]
 pub struct Sampler<'a> {
     ensemble: &'a Ensemble,
-    draws: Draws,
+    draws: RandomStream,
     /// Deviations, by parameter.
     deviations: Vec<[f64; CHUNK]>,
     theta: Vec<Lanes>,
-    outcomes: [Outcome; CHUNK],
+    outcomes: [SampleOutcome; CHUNK],
 }
 
 impl Sampler<'_> {
@@ -269,19 +269,19 @@ impl Sampler<'_> {
     }
 
     /// Draws the machines of a chunk and returns the outcome of each.
-    pub fn outcomes(&mut self, chunk: u64) -> &[Outcome; CHUNK] {
+    pub fn outcomes(&mut self, chunk: u64) -> &[SampleOutcome; CHUNK] {
         self.draw(chunk);
         let table = &self.ensemble.table;
-        let (mut moment, mut force) = ([[0.0; LANES]; MAX_CONSTANTS], [[0.0; LANES]; MAX_CONSTANTS]);
+        let (mut moment, mut force) = ([[0.0; BLOCK_MACHINES]; MAX_CONSTANTS], [[0.0; BLOCK_MACHINES]; MAX_CONSTANTS]);
         let (moment, force) = (&mut moment[..table.moment.len()], &mut force[..table.force.len()]);
-        for block in 0..CHUNK / LANES {
+        for block in 0..CHUNK / BLOCK_MACHINES {
             self.constants(block);
             gather(&self.theta, &table.moment, &table.offset, moment);
             gather(&self.theta, &table.force, &table.offset, force);
             let [peak_n, peak_f, sum_n, sum_f] = sweep(&table.rows, moment, force);
             let mean = 1.0 / self.ensemble.between().len() as f64;
-            for w in 0..LANES {
-                self.outcomes[block * LANES + w] = Outcome {
+            for w in 0..BLOCK_MACHINES {
+                self.outcomes[block * BLOCK_MACHINES + w] = SampleOutcome {
                     peak_moment: peak_n[w].sqrt(),
                     peak_force: peak_f[w].sqrt(),
                     rms_moment: (sum_n[w] * mean).sqrt(),
@@ -296,14 +296,15 @@ impl Sampler<'_> {
     pub fn courses(&mut self, chunk: u64, mut see: impl FnMut(usize, usize, f64, f64)) {
         self.draw(chunk);
         let table = &self.ensemble.table;
-        let (mut moment, mut force) = (vec![[0.0; LANES]; table.moment.len()], vec![[0.0; LANES]; table.force.len()]);
-        for block in 0..CHUNK / LANES {
+        let (mut moment, mut force) =
+            (vec![[0.0; BLOCK_MACHINES]; table.moment.len()], vec![[0.0; BLOCK_MACHINES]; table.force.len()]);
+        for block in 0..CHUNK / BLOCK_MACHINES {
             self.constants(block);
             gather(&self.theta, &table.moment, &table.offset, &mut moment);
             gather(&self.theta, &table.force, &table.offset, &mut force);
             for (s, row) in table.rows.chunks_exact(table.width()).enumerate() {
                 let (n, fx, fy) = wrenches(row, &moment, &force);
-                (0..LANES).for_each(|w| see(s, block * LANES + w, n[w], fx[w].hypot(fy[w])));
+                (0..BLOCK_MACHINES).for_each(|w| see(s, block * BLOCK_MACHINES + w, n[w], fx[w].hypot(fy[w])));
             }
         }
     }
@@ -330,14 +331,15 @@ fn gather(theta: &[Lanes], which: &[usize], offset: &[f64], out: &mut [Lanes]) {
 fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, Lanes) {
     let (nominal, row) = row.split_at(3);
     let (phi, psi) = row.split_at(moment.len());
-    let (mut n, mut fx, mut fy) = ([nominal[0]; LANES], [nominal[1]; LANES], [nominal[2]; LANES]);
+    let (mut n, mut fx, mut fy) =
+        ([nominal[0]; BLOCK_MACHINES], [nominal[1]; BLOCK_MACHINES], [nominal[2]; BLOCK_MACHINES]);
     for (phi, theta) in phi.iter().zip(moment) {
-        for w in 0..LANES {
+        for w in 0..BLOCK_MACHINES {
             n[w] += phi * theta[w];
         }
     }
     for ([x, y], theta) in psi.as_chunks().0.iter().zip(force) {
-        for w in 0..LANES {
+        for w in 0..BLOCK_MACHINES {
             fx[w] += x * theta[w];
             fy[w] += y * theta[w];
         }
@@ -347,13 +349,13 @@ fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, La
 
 /// Returns the largest n_B² and |f_B|² over all instants, and their sums over all but the first and the last.
 fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
-    let [mut peak_n, mut peak_f, mut sum_n, mut sum_f] = [[0.0; LANES]; 4];
+    let [mut peak_n, mut peak_f, mut sum_n, mut sum_f] = [[0.0; BLOCK_MACHINES]; 4];
     let width = 3 + moment.len() + 2 * force.len();
     let last = rows.len() / width - 1;
     for (s, row) in rows.chunks_exact(width).enumerate() {
         let (n, fx, fy) = wrenches(row, moment, force);
         let weight = if s == 0 || s == last { 0.0 } else { 1.0 };
-        for w in 0..LANES {
+        for w in 0..BLOCK_MACHINES {
             let (n, f) = (n[w] * n[w], fx[w] * fx[w] + fy[w] * fy[w]);
             // Not f64::max: its treatment of NaN, which does not occur here, takes longer than the rest.
             peak_n[w] = if n > peak_n[w] { n } else { peak_n[w] };

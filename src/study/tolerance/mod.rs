@@ -13,14 +13,14 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | parameters that vary, and their spreads | [`Parameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
-//! | random machines, a million per second | [`Ensemble`], [`Sampler`], [`Outcome`] |
+//! | parameters that vary, and their spreads | [`UncertainParameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
+//! | random machines, a million per second | [`Ensemble`], [`Sampler`], [`SampleOutcome`] |
 //! | means and standard deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | contribution of each tolerance | [`Share`] |
 //! | the whole study of a run, for display | [`Study`] |
 //! | consecutive machines, with perfect tracking or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
-//! | results over all machines, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`AgainstTracking`] |
+//! | results over all machines, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`TrackingComparison`] |
 
 mod bands;
 mod batch;
@@ -37,15 +37,15 @@ mod simulate;
 mod statistics;
 mod study;
 
-pub use bands::{Agreement, Bands, ForceBand, Gap, MomentBand, PERCENTILES};
+pub use bands::{Agreement, BandDifference, Bands, ForceBand, MomentBand, PERCENTILES};
 pub use batch::{Batch, Mode};
 pub use deviate::{CHUNK, inverse_normal};
-pub use ensemble::{Ensemble, Outcome, Sampler};
+pub use ensemble::{Ensemble, SampleOutcome, Sampler};
 pub use error::ToleranceError;
-pub use parameter::Parameter;
-pub use part::{Part, PartReport, shard};
-pub use report::{AgainstTracking, Distribution, Distributions, Kept, Yields};
+pub use parameter::UncertainParameter;
+pub use part::{EnsemblePart, PartReport, shard};
+pub use report::{Distribution, Distributions, LimitYield, TrackingComparison, Yields};
 pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};
-pub use study::{INSTANTS, Studied, Study, Studying, left_out};
+pub use study::{STUDY_INSTANTS, StudiedRun, Study, StudyQuery, neglected_effects};

@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::constants::{LinkConstants, Term, count, coupling, diagonal, first};
-use super::parameter::Parameter;
+use super::constants::{LinkConstants, UncertainNumber, count, coupling, diagonal, first};
+use super::parameter::UncertainParameter;
 
 /// Parameters of a monomial, ascending, each repeated to its power; [`NONE`] fills the rest.
 type Monomial = [u16; 3];
@@ -28,7 +28,7 @@ const NONE: u16 = u16::MAX;
 struct Polynomial(BTreeMap<Monomial, f64>);
 
 impl Polynomial {
-    fn of(term: &Term) -> Self {
+    fn of(term: &UncertainNumber) -> Self {
         let mut p = Self::constant(term.nominal);
         p.0.extend(term.parameter.map(|i| ([i as u16, NONE, NONE], 1.0)));
         p
@@ -58,7 +58,7 @@ impl Polynomial {
 }
 
 /// Returns the expectation of a product of deviations; the factors are ascending.
-fn expectation(factors: &[u16], parameters: &[Parameter]) -> f64 {
+fn expectation(factors: &[u16], parameters: &[UncertainParameter]) -> f64 {
     let present = factors.iter().position(|f| *f == NONE).map_or(factors, |end| &factors[..end]);
     present.chunk_by(|a, b| a == b).map(|same| parameters[usize::from(same[0])].moments[same.len()]).product()
 }
@@ -77,7 +77,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    pub fn of(n: usize, bodies: &[LinkConstants], parameters: &[Parameter]) -> Self {
+    pub fn of(n: usize, bodies: &[LinkConstants], parameters: &[UncertainParameter]) -> Self {
         let theta = polynomials(n, bodies);
         let mut monomials: Vec<Monomial> = theta.iter().flat_map(|p| p.0.keys().copied()).collect();
         monomials.sort_unstable();
@@ -112,7 +112,7 @@ fn polynomials(n: usize, bodies: &[LinkConstants]) -> Vec<Polynomial> {
         let [m, spin, u, v] = [&body.mass, &body.inertia, &body.com, &body.com_normal].map(Polynomial::of);
         let mut a: Vec<Polynomial> = body.root.iter().map(|w| Polynomial::constant(*w)).collect();
         for &(p, k, rate) in &body.stretch {
-            let deviation = Term { nominal: 0.0, parameter: Some(p) };
+            let deviation = UncertainNumber { nominal: 0.0, parameter: Some(p) };
             a[k].add(rate, &Polynomial::of(&deviation));
         }
         let d = body.drive;

@@ -1,4 +1,4 @@
-//! [`Parameter`]: one number of the machine that varies, named by the key of its setting.
+//! [`UncertainParameter`]: one number of the machine that varies, named by the key of its setting.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -57,7 +57,7 @@ impl VariedQuantity {
 
 /// One number of the machine that varies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
+pub struct UncertainParameter {
     /// Key of the setting: `link.5.com`.
     pub key: String,
     /// SI unit.
@@ -107,7 +107,7 @@ fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
 pub(super) fn parameters(
     machine: &Machine,
     spreads: &BTreeMap<String, Spread>,
-) -> Result<Vec<Parameter>, ToleranceError> {
+) -> Result<Vec<UncertainParameter>, ToleranceError> {
     let all = everything(machine.spec());
     for (key, spread) in spreads {
         let named: Vec<_> = all.iter().filter(|(_, k, _)| names(key, k)).collect();
@@ -129,7 +129,7 @@ pub(super) fn parameters(
             Amount::Percent(x) => x / 100.0 * nominal.abs(),
         };
         if scale > 0.0 {
-            found.push(Parameter::new(quantity, key, nominal, spread, scale, stream as u64)?);
+            found.push(UncertainParameter::new(quantity, key, nominal, spread, scale, stream as u64)?);
         }
     }
     match found.is_empty() {
@@ -145,7 +145,7 @@ const MAX_TRUNCATED: f64 = 0.1;
 const MAX_VALUE: f64 = 1e6;
 
 /// Serialised as key, unit, nominal value, spread, and the statistics of the drawn values.
-impl Serialize for Parameter {
+impl Serialize for UncertainParameter {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Parameter", 7)?;
         fields.serialize_field("key", &self.key)?;
@@ -159,7 +159,7 @@ impl Serialize for Parameter {
     }
 }
 
-impl Parameter {
+impl UncertainParameter {
     fn new(
         quantity: VariedQuantity,
         key: String,

@@ -4,13 +4,16 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::{AgainstTracking, Agreement, Bands, Distributions, Ensemble, Outcome, Parameter, Shares, Yields, simulate};
+use super::{
+    Agreement, Bands, Distributions, Ensemble, SampleOutcome, Shares, TrackingComparison, UncertainParameter, Yields,
+    simulate,
+};
 use crate::session::scenario::Tolerance;
 use crate::session::{Refusal, Run};
 
 /// Consecutive machines of an ensemble with their outcomes.
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
+pub struct EnsemblePart<'a> {
     /// The run whose planned motion the machines perform.
     pub run: &'a Run,
     /// The ensemble that they were drawn from.
@@ -20,9 +23,9 @@ pub struct Part<'a> {
     /// Sample number of the first machine of this part.
     pub first: u64,
     /// Outcome of each machine.
-    pub outcomes: &'a [Outcome],
+    pub outcomes: &'a [SampleOutcome],
     /// Outcomes with perfect tracking, if the machines were simulated.
-    pub tracking: &'a [Outcome],
+    pub tracking: &'a [SampleOutcome],
     /// Whether the machines were simulated.
     pub simulated: bool,
 }
@@ -43,9 +46,9 @@ pub struct PartReport {
     /// Duration of the motion, s.
     pub motion_time: f64,
     /// Parameters that vary.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<UncertainParameter>,
     /// Outcome of the machine without deviations, with perfect tracking or simulated like the others.
-    pub nominal: Outcome,
+    pub nominal: SampleOutcome,
     /// Distributions of peaks and root mean squares.
     #[serde(flatten)]
     pub distributions: Distributions,
@@ -60,7 +63,7 @@ pub struct PartReport {
     pub agreement: Agreement,
     /// Comparison of the simulation with perfect tracking.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub against_tracking: Option<AgainstTracking>,
+    pub against_tracking: Option<TrackingComparison>,
 }
 
 impl PartReport {
@@ -68,8 +71,8 @@ impl PartReport {
     ///
     /// # Errors
     /// Fails if machines were simulated, and the one without deviations cannot be.
-    pub fn of(part: &Part<'_>, tolerance: &Tolerance) -> Result<Option<Self>, Refusal> {
-        let Part { run, ensemble, samples, first, outcomes, tracking, simulated } = *part;
+    pub fn of(part: &EnsemblePart<'_>, tolerance: &Tolerance) -> Result<Option<Self>, Refusal> {
+        let EnsemblePart { run, ensemble, samples, first, outcomes, tracking, simulated } = *part;
         let Some(distributions) = Distributions::of(outcomes) else { return Ok(None) };
         let bands = Bands::of(ensemble, samples);
         // Computed like the other machines: simulated with the same base, control and friction, or with perfect
@@ -92,7 +95,7 @@ impl PartReport {
             shares: Shares::of(ensemble),
             agreement: Agreement::of(&bands),
             bands,
-            against_tracking: AgainstTracking::of(outcomes, tracking),
+            against_tracking: TrackingComparison::of(outcomes, tracking),
         }))
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::ensemble::Outcome;
+use super::ensemble::SampleOutcome;
 use super::statistics::{Histogram, Quantiles, Yield};
 
 /// Distribution of a quantity over all machines.
@@ -51,8 +51,8 @@ pub struct Distributions {
 
 impl Distributions {
     /// Returns the distributions over machines; `None` if there are none.
-    pub fn of(outcomes: &[Outcome]) -> Option<Self> {
-        let of = |f: fn(&Outcome) -> f64| Distribution::of(outcomes.iter().map(f).collect());
+    pub fn of(outcomes: &[SampleOutcome]) -> Option<Self> {
+        let of = |f: fn(&SampleOutcome) -> f64| Distribution::of(outcomes.iter().map(f).collect());
         Some(Self {
             peak_moment: of(|o| o.peak_moment)?,
             peak_force: of(|o| o.peak_force)?,
@@ -64,7 +64,7 @@ impl Distributions {
 
 /// Number of machines within a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Kept {
+pub struct LimitYield {
     /// Limit, N m or N; `None` if two limits apply together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
@@ -78,34 +78,34 @@ pub struct Kept {
 pub struct Yields {
     /// Within the limit on peak |n_B|, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub moment: Option<Kept>,
+    pub moment: Option<LimitYield>,
     /// Within the limit on peak |f_B|, N.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<Kept>,
+    pub force: Option<LimitYield>,
     /// Within both limits.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub both: Option<Kept>,
+    pub both: Option<LimitYield>,
 }
 
 impl Yields {
     /// Counts machines within limits on peak |n_B|, N m, and peak |f_B|, N.
-    pub fn of(outcomes: &[Outcome], moment: Option<f64>, force: Option<f64>) -> Self {
-        let count = |good: &dyn Fn(&Outcome) -> bool| {
+    pub fn of(outcomes: &[SampleOutcome], moment: Option<f64>, force: Option<f64>) -> Self {
+        let count = |good: &dyn Fn(&SampleOutcome) -> bool| {
             Yield::new(outcomes.iter().filter(|o| good(o)).count() as u64, outcomes.len() as u64)
         };
-        let kept = |limit: Option<f64>, of: fn(&Outcome) -> f64| {
-            limit.map(|most| Kept { limit, count: count(&|o| of(o) <= most) })
+        let kept = |limit: Option<f64>, of: fn(&SampleOutcome) -> f64| {
+            limit.map(|most| LimitYield { limit, count: count(&|o| of(o) <= most) })
         };
         let both = moment
             .zip(force)
-            .map(|(n, f)| Kept { limit: None, count: count(&|o| o.peak_moment <= n && o.peak_force <= f) });
+            .map(|(n, f)| LimitYield { limit: None, count: count(&|o| o.peak_moment <= n && o.peak_force <= f) });
         Self { moment: kept(moment, |o| o.peak_moment), force: kept(force, |o| o.peak_force), both }
     }
 }
 
 /// Comparison of simulated machines with the same ones under perfect tracking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AgainstTracking {
+pub struct TrackingComparison {
     /// Largest difference of peak |n_B|, N m.
     pub peak_moment_difference: f64,
     /// Largest difference of peak |f_B|, N.
@@ -116,17 +116,17 @@ pub struct AgainstTracking {
     pub peak_force_ratio: f64,
 }
 
-impl AgainstTracking {
+impl TrackingComparison {
     /// Compares the same machines in the same order; `None` if nothing was simulated.
-    pub fn of(simulated: &[Outcome], tracking: &[Outcome]) -> Option<Self> {
+    pub fn of(simulated: &[SampleOutcome], tracking: &[SampleOutcome]) -> Option<Self> {
         if tracking.is_empty() {
             return None;
         }
-        let difference = |of: fn(&Outcome) -> f64| {
+        let difference = |of: fn(&SampleOutcome) -> f64| {
             simulated.iter().zip(tracking).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max)
         };
-        let ratio = |of: fn(&Outcome) -> f64| {
-            let sum = |all: &[Outcome]| all.iter().map(of).sum::<f64>();
+        let ratio = |of: fn(&SampleOutcome) -> f64| {
+            let sum = |all: &[SampleOutcome]| all.iter().map(of).sum::<f64>();
             if sum(tracking) > 0.0 { sum(simulated) / sum(tracking) } else { 1.0 }
         };
         Some(Self {

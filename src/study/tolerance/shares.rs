@@ -61,7 +61,7 @@ impl Shares {
         }
         let total = [0, 1].map(|i| sums.iter().map(|sum| sum[i]).sum::<f64>());
         let part = |x: f64, of: f64| if of > 0.0 { x / of } else { 0.0 };
-        let share = |(p, parameter): (usize, &super::Parameter)| Share {
+        let share = |(p, parameter): (usize, &super::UncertainParameter)| Share {
             key: parameter.key.clone(),
             unit: parameter.unit,
             deviation: parameter.deviation,

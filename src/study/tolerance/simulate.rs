@@ -1,6 +1,6 @@
 //! Simulation of a varied machine under control that knows only the nominal one.
 
-use super::ensemble::Outcome;
+use super::ensemble::SampleOutcome;
 use crate::mechanics::machine::Machine;
 use crate::session::{Refusal, Run};
 use crate::simulation::plant::{Load, PlantDifferences};
@@ -10,7 +10,7 @@ use crate::simulation::{Guide, Setup, Simulation};
 ///
 /// # Errors
 /// Fails if the state diverges, or an audit fails: a study must not contain values of a run that failed its audit.
-pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
+pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
     // A payload held from the start is part of the varied machine; one that comes later is not.
@@ -35,7 +35,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
             if let Some(lamp) = frame.fault() {
                 return Err(Refusal::Untrusted { why: lamp.to_string() });
             }
-            return Ok(Outcome {
+            return Ok(SampleOutcome {
                 peak_moment: frame.peaks.moment,
                 peak_force: frame.peaks.force,
                 rms_moment: f64::sqrt(moment / weights),

@@ -3,17 +3,19 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, ToleranceError, Yield};
-use crate::query::{Portion, Query, Watch};
+use super::{
+    Agreement, Bands, CHUNK, Ensemble, Histogram, Quantiles, SampleOutcome, Share, Shares, ToleranceError, Yield,
+};
+use crate::query::{Portion, ProgressCallback, Query};
 use crate::session::Run;
 use crate::session::scenario::{Scenario, Spread, Tolerance};
 use crate::simulation::control::Control;
 use crate::simulation::plant::PlantDifferences;
-use crate::study::base_spectrum::{Axes, BaseSpectrum};
-use crate::study::spectrum::{Spectrum, Window};
+use crate::study::base_spectrum::{BaseSpectrum, PerAxis};
+use crate::study::spectrum::{Spectrum, WindowFunction};
 
 /// Number of instants at which a motion is evaluated.
-pub const INSTANTS: usize = 200;
+pub const STUDY_INSTANTS: usize = 200;
 
 /// Number of machines, unless the scenario states it.
 const DEFAULT_SAMPLES: u64 = 20_000;
@@ -55,7 +57,7 @@ pub struct Study {
 
 /// Query for the study of a run; a portion draws about two thousand machines.
 #[derive(Debug)]
-pub struct Studying {
+pub struct StudyQuery {
     run: Run,
     drawing: Option<Drawing>,
 }
@@ -67,7 +69,7 @@ struct Drawing {
     spreads: BTreeMap<String, Spread>,
     ensemble: Ensemble,
     samples: u64,
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<SampleOutcome>,
     /// Number of chunks drawn.
     drawn: u64,
 }
@@ -77,23 +79,23 @@ const CHUNKS_PER_PORTION: u64 = 8;
 
 /// A run as the input of a study; two runs are equal if their scenarios are.
 #[derive(Clone, Debug)]
-pub struct Studied(pub Arc<Run>);
+pub struct StudiedRun(pub Arc<Run>);
 
-impl PartialEq for Studied {
+impl PartialEq for StudiedRun {
     fn eq(&self, other: &Self) -> bool {
         self.0.shared_scenario() == other.0.shared_scenario()
     }
 }
 
-impl Query for Studying {
-    type Input = Studied;
+impl Query for StudyQuery {
+    type Input = StudiedRun;
     type Answer = Result<Study, String>;
 
-    fn begin(Studied(run): Studied) -> Self {
+    fn begin(StudiedRun(run): StudiedRun) -> Self {
         Self { run: Run::clone(&run), drawing: None }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<Self::Answer> {
         if let Some(waiting) = self.run.waiting() {
             return Portion::Done(Err(waiting.why.to_string()));
         }
@@ -126,7 +128,7 @@ impl Drawing {
         let (seed, samples) =
             (tolerance.seed.unwrap_or(1), tolerance.samples.unwrap_or(DEFAULT_SAMPLES).clamp(1, MAX_SAMPLES));
         let spreads = tolerance.spreads_or_default(&plant);
-        let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &spreads, seed)?;
+        let ensemble = Ensemble::new(&plant, &run.plan().motion, STUDY_INSTANTS, &spreads, seed)?;
         let outcomes = Vec::with_capacity(samples as usize + CHUNK);
         Ok(Self { tolerance, spreads, ensemble, samples, outcomes, drawn: 0 })
     }
@@ -157,7 +159,7 @@ impl Study {
     fn of(run: &Run, drawing: &Drawing) -> Self {
         let Drawing { tolerance, spreads, ensemble, outcomes, .. } = drawing;
         let (scenario, samples) = (run.scenario(), drawing.samples);
-        let sorted = |value: fn(&Outcome) -> f64| {
+        let sorted = |value: fn(&SampleOutcome) -> f64| {
             let mut values: Vec<f64> = outcomes.iter().map(value).collect();
             values.sort_unstable_by(f64::total_cmp);
             values
@@ -189,7 +191,7 @@ impl Study {
             yields,
             shares,
             spectra: spectra(run),
-            left_out: left_out(scenario),
+            left_out: neglected_effects(scenario),
             tolerance: tolerance.clone(),
             spreads: spreads.clone(),
         }
@@ -197,7 +199,7 @@ impl Study {
 }
 
 /// Returns the features of a scenario that perfect tracking on a fixed base omits.
-pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
+pub fn neglected_effects(scenario: &Scenario) -> Vec<&'static str> {
     let PlantDifferences { torque_limits, force, payload, friction, length, link } = &scenario.plant;
     let known = Control { kp: scenario.control.kp, kd: scenario.control.kd, ..Control::default() };
     let always = payload.is_held(0.0, 0.5 * scenario.step) && payload.until.is_none();
@@ -219,8 +221,8 @@ pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
 
 /// Returns the spectra of the whole run; `None` if it cannot be run, fails an audit or is too short.
 fn spectra(run: &Run) -> Option<[Spectrum; 3]> {
-    let found = BaseSpectrum::of(run.scenario(), Window::Hann).ok()?;
+    let found = BaseSpectrum::of(run.scenario(), WindowFunction::Hann).ok()?;
     // Spectra of a run that failed an audit are not shown.
-    let Axes { force_x, force_y, moment } = found.fault.is_none().then_some(found.spectra)?;
+    let PerAxis { force_x, force_y, moment } = found.fault.is_none().then_some(found.spectra)?;
     Some([force_x, force_y, moment])
 }

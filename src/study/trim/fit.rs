@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector, SVD};
 
 use super::error::TrimError;
-use super::long_run::{critical, lags, long_run};
-use super::rows::{Channel, LINE, Made, Rows};
+use super::long_run::{bartlett_lags, long_run, t_quantile};
+use super::rows::{Channel, Regressor, RegressorSource, TREND_PARAMETERS};
 use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 
@@ -63,7 +63,7 @@ const EXACT_BELOW: f64 = 1e-9;
 ///
 /// # Errors
 /// Fails if there are too few rows, or the residuals are too strongly correlated.
-pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
+pub fn fit(machine: &Machine, rows: &Regressor) -> Result<Fit, TrimError> {
     let Estimate { fit, rank, share } = estimate(machine, rows)?;
     if share < MIN_FREEDOM {
         return Err(TrimError::Correlated { effective: fit.effective.iter().sum(), unknowns: rank });
@@ -84,7 +84,7 @@ pub(super) struct Estimate {
 ///
 /// # Errors
 /// Fails if a result is not finite.
-pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimError> {
+pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, TrimError> {
     let (inertia, p) = (Inertia::of(machine), rows.unknowns.count());
     let nominal = DVector::from_vec(rows.unknowns.nominal(&inertia));
     let scales = DVector::from_vec(rows.unknowns.scales(&inertia));
@@ -113,11 +113,11 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
     let (confused, told) = solved.confused(p);
     let count = rows.count();
-    let least = if rows.made == Made::Samples { 1 } else { MIN_LAGS };
+    let least = if rows.made == RegressorSource::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
-    let lags = lags(&parts, &rows.motions, least);
+    let lags = bartlett_lags(&parts, &rows.motions, least);
     // For windows the larger number of lags compensates for the second parameter of the line.
-    let fitted = if rows.made == Made::Samples { LINE as i32 } else { 1 };
+    let fitted = if rows.made == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
     // Ratio of the long-run variance to the variance of one row: correlation length in rows.
     let correlation = |of: &[usize]| {
         let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
@@ -136,7 +136,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     let effective = [0, 1].map(|of| channels[of] * (count as f64 / correlation[of]));
     let all = effective[0] + effective[1];
     // Offset and drift of each channel of each motion are fitted too.
-    let nuisance = 3 * LINE * rows.motions.len();
+    let nuisance = 3 * TREND_PARAMETERS * rows.motions.len();
     let rank = p - solved.free.ncols() + nuisance;
     let share = (all - rank as f64) / all;
     let weights = [sigma[0], sigma[0], sigma[1]].map(|sigma| 1.0 / (sigma * sigma));
@@ -157,7 +157,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
         measured: &nominal + &solved.by,
         nominal,
         covariance,
-        critical: critical(lags as f64 / count as f64),
+        critical: t_quantile(lags as f64 / count as f64),
         told,
         confused,
         noise: sigma,
@@ -199,7 +199,7 @@ fn joined(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
 }
 
 /// Returns the largest root mean square force and moment that a machine of this size could have.
-fn largest(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
+fn largest(rows: &Regressor, scales: &DVector<f64>) -> [f64; 2] {
     let of = |channels: &[usize]| {
         let size = |c: &usize| {
             let columns = rows.channels[*c].x.column_iter().zip(scales.iter());
@@ -213,7 +213,7 @@ fn largest(rows: &Rows, scales: &DVector<f64>) -> [f64; 2] {
 
 /// Compresses the rows and right sides of some channels to the R factor of their QR decomposition; also returns the sum
 /// of their noise matrices.
-fn compressed(rows: &Rows, deviations: &[DVector<f64>; 3], channels: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
+fn compressed(rows: &Regressor, deviations: &[DVector<f64>; 3], channels: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
     let (count, p) = (rows.count(), rows.unknowns.count());
     let mut all = DMatrix::zeros(channels.len() * count, p + 1);
     let mut noise = DMatrix::zeros(p, p);
@@ -236,7 +236,12 @@ struct Solved {
 }
 
 impl Solved {
-    fn of(rows: &Rows, groups: &[(DMatrix<f64>, DMatrix<f64>); 2], sigma: &[f64; 2], nominal: &DVector<f64>) -> Self {
+    fn of(
+        rows: &Regressor,
+        groups: &[(DMatrix<f64>, DMatrix<f64>); 2],
+        sigma: &[f64; 2],
+        nominal: &DVector<f64>,
+    ) -> Self {
         let p = nominal.len();
         let heights = groups.each_ref().map(|(r, _)| r.nrows());
         let mut all = DMatrix::zeros(heights[0] + heights[1], p + 1);
@@ -260,7 +265,7 @@ impl Solved {
         let Some((u, singular, v)) = parts else {
             return Self { by: DVector::zeros(p), inverse: DMatrix::zeros(p, p), free: DMatrix::identity(p, p) };
         };
-        let share = if let Made::Windows { noise, .. } = rows.made { noise } else { 0.0 };
+        let share = if let RegressorSource::Windows { noise, .. } = rows.made { noise } else { 0.0 };
         let threshold = singular.max() * RANK_TOLERANCE.max(NOISE_FACTOR * share);
         let kept: Vec<usize> = (0..p).filter(|i| singular[*i] > threshold).collect();
         let rest: Vec<usize> = (0..p).filter(|i| singular[*i] <= threshold).collect();

@@ -38,7 +38,7 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fi
 const LAG_FACTOR: f64 = 2.0;
 
 /// Returns the number of lags of Bartlett's window for residuals, at least `least`.
-pub(super) fn lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
+pub(super) fn bartlett_lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
     let count: usize = motions.iter().sum();
     let first = |y: &[f64]| {
         let (mut own, mut next, mut from) = (0.0, 0.0, 0);
@@ -59,7 +59,7 @@ pub(super) fn lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usi
 
 /// Returns the ratio of the half width of a 95 % interval to the standard deviation, if the window covers this fraction
 /// of the data.
-pub(super) fn critical(share: f64) -> f64 {
+pub(super) fn t_quantile(share: f64) -> f64 {
     let b = share.clamp(0.0, 1.0);
     1.96 + b * (2.9694 + b * (0.4160 - 0.5324 * b))
 }

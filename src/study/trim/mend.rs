@@ -1,20 +1,21 @@
-//! [`mend`]: finds the least change of counterweights that removes the measured imbalance.
+//! [`correct_machine`]: finds the least change of counterweights that removes the measured imbalance.
 
 use serde::Serialize;
 use thiserror::Error;
 
-use super::taken::Taken;
-use super::way::Way;
+use super::taken::AdoptedParameters;
+use super::way::TrimMethod;
 use crate::mechanics::balance::{
-    Body, Condition, Hold, Keep, NotKept, Parameter, Quantity, keep_with, unreachable_by_changes,
+    Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceError, RebalanceRequest, rebalance_with,
+    unreachable_by_changes,
 };
-use crate::mechanics::counterweights::{NoWeights, place_with, unreachable_by_weights};
+use crate::mechanics::counterweights::{CounterweightError, place_weights_with, unreachable_by_weights};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
 
 /// Change of one number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Change {
+pub struct ParameterChange {
     /// Key of the number.
     pub key: String,
     /// Present value; 0 for a new counterweight.
@@ -29,9 +30,9 @@ pub struct Change {
 
 /// Correction of a machine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mended {
+pub struct MachineCorrection {
     /// Changes, by number.
-    pub changes: Vec<Change>,
+    pub changes: Vec<ParameterChange>,
     /// The nominal machine with the rounded changes.
     pub machine: Machine,
     /// Residual of each line of (7) and (8) after the change, if the machine is as identified.
@@ -40,9 +41,9 @@ pub struct Mended {
     pub by: Vec<Vector>,
 }
 
-impl Mended {
+impl MachineCorrection {
     /// Returns a correction without any change.
-    pub fn not_at_all(machine: &Machine, taken: &Taken) -> Self {
+    pub fn not_at_all(machine: &Machine, taken: &AdoptedParameters) -> Self {
         let left = taken.left();
         Self { changes: Vec::new(), machine: machine.clone(), by: vec![Vector::default(); left.len()], left }
     }
@@ -50,13 +51,13 @@ impl Mended {
 
 /// Why a machine cannot be corrected.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoMend {
+pub enum NoCorrection {
     /// The numbers that may change do not suffice.
     #[error(transparent)]
-    Kept(#[from] NotKept),
+    Kept(#[from] RebalanceError),
     /// No new counterweights correct it.
     #[error(transparent)]
-    Weights(#[from] NoWeights),
+    Weights(#[from] CounterweightError),
     /// The result is no valid machine.
     #[error("the machine with the changes: {0}")]
     Machine(String),
@@ -68,24 +69,28 @@ const SETTING_STEP: f64 = 1e-4;
 const NEGLIGIBLE_MASS: f64 = 1e-3;
 
 /// Finds the least change that removes the identified imbalance. An imbalance that no change on the axes of the links
-/// removes stays; it is part of [`Mended::left`].
+/// removes stays; it is part of [`MachineCorrection::left`].
 ///
 /// # Errors
 /// Fails if the bounds permit no solution.
-pub fn mend(machine: &Machine, taken: &Taken, way: &Way) -> Result<Mended, NoMend> {
+pub fn correct_machine(
+    machine: &Machine,
+    taken: &AdoptedParameters,
+    way: &TrimMethod,
+) -> Result<MachineCorrection, NoCorrection> {
     let nominal = balance_residuals(machine);
     let beyond: Vec<Vector> = taken.left().iter().zip(&nominal).map(|(real, nominal)| real - nominal).collect();
     let (exact, rounded) = match way {
-        Way::Change(asked) => {
+        TrimMethod::Change(asked) => {
             let stays = unreachable_by_changes(machine, asked, &beyond)?;
-            let kept = keep_with(machine, asked, &difference(&beyond, &stays))?;
+            let kept = rebalance_with(machine, asked, &difference(&beyond, &stays))?;
             let parameters: Vec<Parameter> = asked.parameters.iter().map(|one| one.parameter).collect();
             let spec = rounded(machine, kept.machine.spec(), &parameters);
             (kept.machine.spec().clone(), spec)
         }
-        Way::Add(asked) => {
+        TrimMethod::Add(asked) => {
             let stays = unreachable_by_weights(machine, asked, &beyond)?;
-            let placed = place_with(machine, asked, &difference(&beyond, &stays))?;
+            let placed = place_weights_with(machine, asked, &difference(&beyond, &stays))?;
             let mut spec = placed.machine.spec().clone();
             for weight in &mut spec.counterweights {
                 (weight.mass, weight.at) = (to_step(weight.mass), to_step(weight.at));
@@ -97,15 +102,17 @@ pub fn mend(machine: &Machine, taken: &Taken, way: &Way) -> Result<Mended, NoMen
         }
     };
     let changes = match way {
-        Way::Change(asked) => {
+        TrimMethod::Change(asked) => {
             asked.parameters.iter().filter_map(|one| change(machine, one.parameter, &exact, &rounded)).collect()
         }
-        Way::Add(_) => exact.counterweights.iter().filter_map(|weight| added(weight, &rounded)).flatten().collect(),
+        TrimMethod::Add(_) => {
+            exact.counterweights.iter().filter_map(|weight| added(weight, &rounded)).flatten().collect()
+        }
     };
-    let machine = Machine::new(rounded).map_err(|why| NoMend::Machine(why.to_string()))?;
+    let machine = Machine::new(rounded).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     let now = balance_residuals(&machine);
     let left = now.iter().zip(&beyond).map(|(now, beyond)| now + beyond).collect();
-    Ok(Mended { changes, machine, left, by: difference(&now, &nominal) })
+    Ok(MachineCorrection { changes, machine, left, by: difference(&now, &nominal) })
 }
 
 /// Returns the machine as built, before any correction, and the residuals of (7) and (8), by line, that it does not
@@ -114,19 +121,22 @@ pub fn mend(machine: &Machine, taken: &Taken, way: &Way) -> Result<Mended, NoMen
 ///
 /// # Errors
 /// Fails if there is no such machine.
-pub fn identified(machine: &Machine, taken: &Taken) -> Result<(Machine, Vec<Vector>), NoMend> {
+pub fn identified_machine(
+    machine: &Machine,
+    taken: &AdoptedParameters,
+) -> Result<(Machine, Vec<Vector>), NoCorrection> {
     let links = 0..machine.links().len();
-    let mut asked = Keep::default();
-    for (link, quantity) in links.flat_map(|j| [(j, Quantity::Along), (j, Quantity::Across)]) {
-        asked.hold(machine, Parameter::new(Body::Link(link), quantity), Hold::Free);
+    let mut asked = RebalanceRequest::default();
+    for (link, quantity) in links.flat_map(|j| [(j, BodyQuantity::Along), (j, BodyQuantity::Across)]) {
+        asked.hold(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
     }
     // With the negative of the identified imbalance as offset, balance is reached where the machine has that imbalance.
     let wanted: Vec<Vector> = taken.left().iter().map(|left| -left).collect();
     let misses = unreachable_by_changes(machine, &asked, &wanted)?;
-    let kept = keep_with(machine, &asked, &difference(&wanted, &misses))?;
+    let kept = rebalance_with(machine, &asked, &difference(&wanted, &misses))?;
     let mut spec = kept.machine.spec().clone();
     set_momenta(&mut spec, &kept.machine, &taken.momenta);
-    let machine = Machine::new(spec).map_err(|why| NoMend::Machine(why.to_string()))?;
+    let machine = Machine::new(spec).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     Ok((machine, misses.iter().map(|miss| -miss).collect()))
 }
 
@@ -135,7 +145,11 @@ pub fn identified(machine: &Machine, taken: &Taken) -> Result<(Machine, Vec<Vect
 ///
 /// # Errors
 /// Fails if there is no such machine.
-pub fn trimmed(built: &Machine, nominal: &Machine, mended: &Mended) -> Result<Machine, MachineError> {
+pub fn corrected_as_built(
+    built: &Machine,
+    nominal: &Machine,
+    mended: &MachineCorrection,
+) -> Result<Machine, MachineError> {
     let mut spec = built.spec().clone();
     spec.counterweights = mended.machine.spec().counterweights.clone();
     let changes = nominal.spec().links.iter().zip(&mended.machine.spec().links);
@@ -185,25 +199,30 @@ fn rounded(machine: &Machine, exact: &MachineSpec, parameters: &[Parameter]) -> 
     for parameter in parameters {
         if let Some((from, to)) = parameter.value(was).zip(parameter.value(exact)) {
             let value = from + to_step(to - from);
-            parameter.set(&mut spec, if value > 0.0 || parameter.quantity != Quantity::Mass { value } else { to });
+            parameter.set(&mut spec, if value > 0.0 || parameter.quantity != BodyQuantity::Mass { value } else { to });
         }
     }
     spec
 }
 
-fn change(machine: &Machine, parameter: Parameter, exact: &MachineSpec, rounded: &MachineSpec) -> Option<Change> {
-    let unit = if parameter.quantity == Quantity::Mass { "kg" } else { "m" };
+fn change(
+    machine: &Machine,
+    parameter: Parameter,
+    exact: &MachineSpec,
+    rounded: &MachineSpec,
+) -> Option<ParameterChange> {
+    let unit = if parameter.quantity == BodyQuantity::Mass { "kg" } else { "m" };
     let (from, to) = (parameter.value(machine.spec())?, parameter.value(rounded)?);
-    Some(Change { key: parameter.key(machine), unit, from, exact: parameter.value(exact)?, to })
+    Some(ParameterChange { key: parameter.key(machine), unit, from, exact: parameter.value(exact)?, to })
 }
 
 /// Returns the mass and position of a new counterweight; `None` if it was too light and left out.
-fn added(weight: &Counterweight, rounded: &MachineSpec) -> Option<[Change; 2]> {
+fn added(weight: &Counterweight, rounded: &MachineSpec) -> Option<[ParameterChange; 2]> {
     let place = rounded.counterweights.iter().position(|own| own.link == weight.link)?;
     let own = &rounded.counterweights[place];
     let key = |what: &str| format!("counterweight.{}.{what}, new on link {}", place + 1, weight.link);
     Some([
-        Change { key: key("mass"), unit: "kg", from: 0.0, exact: weight.mass, to: own.mass },
-        Change { key: key("at"), unit: "m", from: 0.0, exact: weight.at, to: own.at },
+        ParameterChange { key: key("mass"), unit: "kg", from: 0.0, exact: weight.mass, to: own.mass },
+        ParameterChange { key: key("at"), unit: "m", from: 0.0, exact: weight.at, to: own.at },
     ])
 }

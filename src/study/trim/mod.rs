@@ -48,17 +48,19 @@ mod way;
 mod window;
 mod worth;
 
-pub use doubt::{Cause, Doubt, Said, doubt};
+pub use doubt::{Cause, Doubt, MeasuredValue, doubt};
 pub use error::TrimError;
 pub use fit::{Fit, fit};
-pub use mend::{Change, Mended, NoMend, identified, mend, trimmed};
-pub use next::{Candidate, Next, next};
-pub use recording::{Motion, Recording};
-pub use report::{Gain, Number, Suggestion, Tried, TrimReport};
-pub use rows::{Made, Rows};
-pub use taken::{Taken, taken};
-pub use taking::taken_by;
-pub use trimming::{NoTrim, Trim, TrimRequest, Trimmed, Trimming};
-pub use unknowns::{Part, Unknown, Unknowns};
-pub use way::{Way, free_weights};
-pub use worth::{Worth, worth};
+pub use mend::{
+    MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
+};
+pub use next::{Excitation, NextMeasurement, next_excitation};
+pub use recording::{MeasuredMotion, MeasurementSet};
+pub use report::{ExcitationReport, Number, Suggestion, TrimImprovement, TrimReport};
+pub use rows::{Regressor, RegressorSource};
+pub use taken::{AdoptedParameters, adopt_parameters};
+pub use taking::adopting_edit;
+pub use trimming::{NoTrim, TrimOutcome, TrimQuery, TrimRequest, TrimResult};
+pub use unknowns::{ComplexPart, Unknown, Unknowns};
+pub use way::{TrimMethod, free_weights};
+pub use worth::{CorrectionBenefit, correction_benefit};

@@ -1,18 +1,18 @@
-//! [`next`]: finds the motion that would add most information on the least known unknown.
+//! [`next_excitation`]: finds the motion that would add most information on the least known unknown.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::Serialize;
 
 use super::fit::Fit;
-use super::recording::{Motion, Recording};
-use super::rows::{Line, Rows};
+use super::recording::{MeasuredMotion, MeasurementSet};
+use super::rows::{LinearTrend, Regressor};
 use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 
 /// A motion to measure next: each drive moves as a sine about the middle of its measured range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
+pub struct Excitation {
     /// Drives that move, from 0, and their senses, ±1.
     #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
@@ -32,7 +32,7 @@ fn is_infinite(x: &f64) -> bool {
     !x.is_finite()
 }
 
-impl Candidate {
+impl Excitation {
     /// Describes the motion in words, with the names of the drives.
     pub fn words(&self, machine: &Machine) -> String {
         let names: Vec<&str> = self.drives.iter().map(|(k, _)| machine.spec().drives[*k].name.as_str()).collect();
@@ -50,7 +50,7 @@ impl Candidate {
 
 /// Proposal for the next measurement.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Next {
+pub struct NextMeasurement {
     /// Index of the least known unknown of (7) or (8).
     pub worst: usize,
     /// Present half width of its interval; infinite if it is not identifiable.
@@ -58,7 +58,7 @@ pub struct Next {
     /// Duration of each candidate, s.
     pub duration: f64,
     /// Candidates, the best first.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<Excitation>,
 }
 
 /// Number of instants at which a candidate is evaluated.
@@ -73,14 +73,20 @@ const DEFAULT_ACCELERATION: f64 = 5.0;
 /// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
 /// different frequencies. Amplitudes are those measured; accelerations are the largest measured, unless they are given,
 /// rad/s². The uncertainty after each is predicted from the information that its rows add at the identified noise.
-pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, accelerations: Option<&[f64]>) -> Next {
+pub fn next_excitation(
+    machine: &Machine,
+    recording: &MeasurementSet,
+    rows: &Regressor,
+    fit: &Fit,
+    accelerations: Option<&[f64]>,
+) -> NextMeasurement {
     let limits = Limits::of(machine, recording, rows, accelerations);
     let scales = rows.unknowns.scales(&Inertia::of(machine));
     let balance = rows.unknowns.of_balance();
     let size = |i: usize| if fit.told[i] { fit.half_width(i) / scales[i] } else { f64::INFINITY };
     let worst = (0..balance).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or_default();
     let half_width = if fit.told[worst] { fit.half_width(worst) } else { f64::INFINITY };
-    let duration = recording.motions.iter().map(Motion::duration).sum::<f64>() / recording.motions.len() as f64;
+    let duration = recording.motions.iter().map(MeasuredMotion::duration).sum::<f64>() / recording.motions.len() as f64;
     let now = Known::of(&fit.information, &scales);
     let assessed = |drives: Vec<(usize, f64)>, apart: bool| {
         let motion = limits.motion(machine, &drives, apart);
@@ -94,10 +100,10 @@ pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, ac
         let all = (0.5 * (then.log_volume(balance) - now.log_volume(balance)) / balance as f64).exp();
         let amplitude = drives.iter().map(|(k, _)| motion.amplitude[*k]).collect();
         let frequency = drives.iter().map(|(k, _)| motion.rate[*k] / std::f64::consts::TAU).collect();
-        Candidate { drives, amplitude, frequency, half_width, all: 1.0 / all.max(f64::MIN_POSITIVE) }
+        Excitation { drives, amplitude, frequency, half_width, all: 1.0 / all.max(f64::MIN_POSITIVE) }
     };
     let n = machine.drives();
-    let mut candidates: Vec<Candidate> = (0..n).map(|k| assessed(vec![(k, 1.0)], false)).collect();
+    let mut candidates: Vec<Excitation> = (0..n).map(|k| assessed(vec![(k, 1.0)], false)).collect();
     for (k, l) in Inertia::pairs(n) {
         candidates.push(assessed(vec![(k, 1.0), (l, 1.0)], false));
         candidates.push(assessed(vec![(k, 1.0), (l, -1.0)], false));
@@ -110,7 +116,7 @@ pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, ac
         candidates.push(assessed(every(), true));
     }
     candidates.sort_by(|a, b| a.half_width.total_cmp(&b.half_width));
-    Next { worst, half_width, duration, candidates }
+    NextMeasurement { worst, half_width, duration, candidates }
 }
 
 /// Ranges and accelerations of the drives.
@@ -121,7 +127,7 @@ struct Limits {
 }
 
 impl Limits {
-    fn of(machine: &Machine, recording: &Recording, rows: &Rows, given: Option<&[f64]>) -> Self {
+    fn of(machine: &Machine, recording: &MeasurementSet, rows: &Regressor, given: Option<&[f64]>) -> Self {
         let n = machine.drives();
         let samples = || recording.motions.iter().flat_map(|m| &m.q);
         let ends = |k: usize| {
@@ -219,7 +225,7 @@ impl Sines {
             }
         }
         let dt = duration / INSTANTS as f64;
-        let line = Line::through(&(0..INSTANTS).map(|i| i as f64).collect::<Vec<_>>());
+        let line = LinearTrend::through(&(0..INSTANTS).map(|i| i as f64).collect::<Vec<_>>());
         let mut sum = DMatrix::zeros(p, p);
         for (mut rows, density) in rows.into_iter().zip([fit.density[0], fit.density[0], fit.density[1]]) {
             rows.column_iter_mut().for_each(|mut column| line.take_out(column.as_mut_slice()));

@@ -1,11 +1,11 @@
-//! [`Recording`]: the measured data.
+//! [`MeasurementSet`]: the measured data.
 
 use super::error::TrimError;
 use crate::mechanics::planar::{PerDrive, Vector};
 
 /// Samples of one motion. All lists have one entry per time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct MeasuredMotion {
     /// Times, s, ascending.
     pub t: Vec<f64>,
     /// Absolute drive angles, unwrapped, rad.
@@ -20,7 +20,7 @@ pub struct Motion {
     pub moment: Vec<f64>,
 }
 
-impl Motion {
+impl MeasuredMotion {
     /// Returns the time from the first sample to the last, s.
     pub fn duration(&self) -> f64 {
         self.t.last().unwrap_or(&0.0) - self.t.first().unwrap_or(&0.0)
@@ -48,12 +48,12 @@ impl Motion {
 
 /// Measured motions of one machine on a fixed base.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Recording {
+pub struct MeasurementSet {
     /// Motions, each with its own sensor offsets.
-    pub motions: Vec<Motion>,
+    pub motions: Vec<MeasuredMotion>,
 }
 
-impl Recording {
+impl MeasurementSet {
     /// Returns whether every motion has rates and accelerations.
     pub fn has_accelerations(&self) -> bool {
         self.motions.iter().all(|motion| !motion.qdd.is_empty() && !motion.qd.is_empty())

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::fit::Fit;
-use super::mend::{Change, Mended};
-use super::next::{Candidate, Next};
-use super::rows::{Made, Rows};
-use super::taken::Taken;
-use super::worth::Worth;
+use super::mend::{MachineCorrection, ParameterChange};
+use super::next::{Excitation, NextMeasurement};
+use super::rows::{Regressor, RegressorSource};
+use super::taken::AdoptedParameters;
+use super::worth::CorrectionBenefit;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 use crate::settings::number::{fixed, shown};
@@ -37,20 +37,20 @@ pub struct TrimReport {
     /// Groups of unknowns that are only identifiable in combination.
     pub untold: Vec<Vec<String>>,
     /// Proposed changes.
-    pub changes: Vec<Change>,
+    pub changes: Vec<ParameterChange>,
     /// Effect of the change over these motions, also if it is not significant and therefore not proposed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub worth: Option<Gain>,
+    pub worth: Option<TrimImprovement>,
     /// Proposal for the next measurement.
     pub next: Suggestion,
 }
 
 /// Effect of a change, and whether it is significant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Gain {
+pub struct TrimImprovement {
     /// Effect of the change.
     #[serde(flatten)]
-    pub worth: Worth,
+    pub worth: CorrectionBenefit,
     /// Whether the 95 % interval of the gain lies above 0.
     pub helps: bool,
 }
@@ -99,7 +99,7 @@ pub struct Suggestion {
     /// Duration of each motion, s.
     pub duration: f64,
     /// Motions, the best first.
-    pub candidates: Vec<Tried>,
+    pub candidates: Vec<ExcitationReport>,
 }
 
 impl Suggestion {
@@ -120,17 +120,17 @@ impl Suggestion {
 
 /// A motion to measure next.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Tried {
+pub struct ExcitationReport {
     /// Description in words.
     pub motion: String,
     /// Parameters of the motion and its predicted effect.
     #[serde(flatten)]
-    pub candidate: Candidate,
+    pub candidate: Excitation,
 }
 
 impl TrimReport {
     /// Iterates over the numbers that change.
-    pub fn changed(&self) -> impl Iterator<Item = &Change> {
+    pub fn changed(&self) -> impl Iterator<Item = &ParameterChange> {
         self.changes.iter().filter(|change| change.to != change.from)
     }
 
@@ -159,10 +159,10 @@ impl TrimReport {
     /// Builds the report from the fit, and from the correction and its effect, if there is one.
     pub(super) fn of(
         machine: &Machine,
-        rows: &Rows,
-        (fit, taken): (&Fit, &Taken),
-        (mended, worth): (Option<&Mended>, Option<Worth>),
-        next: &Next,
+        rows: &Regressor,
+        (fit, taken): (&Fit, &AdoptedParameters),
+        (mended, worth): (Option<&MachineCorrection>, Option<CorrectionBenefit>),
+        next: &NextMeasurement,
     ) -> Self {
         let unknowns = &fit.unknowns;
         let number = |i: usize| {
@@ -186,20 +186,23 @@ impl TrimReport {
         };
         let name = |i: &usize| unknowns.at(*i).name(machine);
         let worst = unknowns.at(next.worst);
-        let tried = |candidate: &Candidate| Tried { motion: candidate.words(machine), candidate: candidate.clone() };
+        let tried = |candidate: &Excitation| ExcitationReport {
+            motion: candidate.words(machine),
+            candidate: candidate.clone(),
+        };
         Self {
             machine: machine.name().to_owned(),
             motions: rows.motions.len(),
             rows: rows.count(),
-            made_of: if rows.made == Made::Samples { "samples" } else { "windows" },
-            window: if let Made::Windows { half, .. } = rows.made { Some(half) } else { None },
+            made_of: if rows.made == RegressorSource::Samples { "samples" } else { "windows" },
+            window: if let RegressorSource::Windows { half, .. } = rows.made { Some(half) } else { None },
             size: fit.size,
             noise: fit.noise,
             effective_rows: fit.effective,
             numbers: (0..unknowns.count()).map(number).collect(),
             untold: fit.confused.iter().map(|group| group.iter().map(name).collect()).collect(),
             changes: mended.map_or_else(Vec::new, |mended| mended.changes.clone()),
-            worth: worth.map(|worth| Gain { worth, helps: worth.helps() }),
+            worth: worth.map(|worth| TrimImprovement { worth, helps: worth.helps() }),
             next: Suggestion {
                 worst: worst.name(machine),
                 half_width: Some(next.half_width).filter(|half| half.is_finite()),

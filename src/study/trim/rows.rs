@@ -1,18 +1,18 @@
-//! [`Rows`]: the linear equations of a recording.
+//! [`Regressor`]: the linear equations of a recording.
 
 use nalgebra::DMatrix;
 
 use super::differences::{noise, stencil};
 use super::error::TrimError;
-use super::recording::{Motion, Recording};
+use super::recording::{MeasuredMotion, MeasurementSet};
 use super::unknowns::Unknowns;
-use super::window::Window;
+use super::window::SmoothingWindow;
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Origin of the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Made {
+pub enum RegressorSource {
     /// Samples with measured rates and accelerations.
     Samples,
     /// Averages over windows.
@@ -26,11 +26,11 @@ pub enum Made {
 
 /// Equations for f_x, f_y and n in the unknowns, row by row; each motion less its straight line over time.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct Regressor {
     /// The unknowns.
     pub unknowns: Unknowns,
     /// Origin of the rows.
-    pub made: Made,
+    pub made: RegressorSource,
     /// Whether each drive moves.
     pub moves: Vec<bool>,
     /// Largest acceleration of each drive, rad/s².
@@ -72,15 +72,15 @@ const STILL_RANGE_RAD: f64 = 1e-3;
 /// Upper bound on the root mean square acceleration of a still drive, as a fraction of that of the fastest drive.
 const STILL_ACCELERATION: f64 = 1e-2;
 /// Number of parameters of the straight line that a sensor adds to each channel of a motion: offset and drift.
-pub(super) const LINE: usize = 2;
+pub(super) const TREND_PARAMETERS: usize = 2;
 
-impl Rows {
+impl Regressor {
     /// Builds the equations of a recording, for a machine's drives and gravity. Measured rates and accelerations are
     /// ignored if `angles_only` is set.
     ///
     /// # Errors
     /// Fails if the recording cannot be used.
-    pub fn of(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+    pub fn of(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Self, TrimError> {
         Self::at_least(0.0, machine, recording, angles_only)
     }
 
@@ -91,7 +91,7 @@ impl Rows {
     pub(super) fn at_least(
         half: f64,
         machine: &Machine,
-        recording: &Recording,
+        recording: &MeasurementSet,
         angles_only: bool,
     ) -> Result<Self, TrimError> {
         recording.check(machine.drives())?;
@@ -102,7 +102,8 @@ impl Rows {
         if !rows.moves.contains(&true) {
             return Err(TrimError::Still);
         }
-        let (own, unknowns) = (rows.count().saturating_sub(LINE * rows.motions.len()), rows.unknowns.count());
+        let (own, unknowns) =
+            (rows.count().saturating_sub(TREND_PARAMETERS * rows.motions.len()), rows.unknowns.count());
         if 3 * own <= unknowns {
             return Err(TrimError::TooFew { rows: rows.count(), unknowns });
         }
@@ -116,12 +117,12 @@ impl Rows {
         self.motions.iter().sum()
     }
 
-    fn of_samples(machine: &Machine, recording: &Recording) -> Self {
+    fn of_samples(machine: &Machine, recording: &MeasurementSet) -> Self {
         let all = || recording.motions.iter();
         let squares = |k: usize| all().flat_map(|m| &m.qdd).map(|a| a[k] * a[k]).sum::<f64>();
         let fastest = (0..machine.drives()).map(squares).fold(0.0, f64::max);
         let stands = |k: usize| {
-            let turns = |m: &Motion| spread(m.q.iter().map(|q| q[k]));
+            let turns = |m: &MeasuredMotion| spread(m.q.iter().map(|q| q[k]));
             all().map(turns).fold(0.0, f64::max) <= STILL_RANGE_RAD
                 && squares(k) <= STILL_ACCELERATION.powi(2) * fastest
         };
@@ -137,23 +138,28 @@ impl Rows {
             }
             made.end_of_motion();
         }
-        let time: f64 = all().map(Motion::duration).sum();
-        made.rows(Made::Samples, moves, time)
+        let time: f64 = all().map(MeasuredMotion::duration).sum();
+        made.rows(RegressorSource::Samples, moves, time)
     }
 
     /// Returns the half width of the windows, s; 0 for samples.
     pub(super) fn half(&self) -> f64 {
-        if let Made::Windows { half, .. } = self.made { half } else { 0.0 }
+        if let RegressorSource::Windows { half, .. } = self.made { half } else { 0.0 }
     }
 
-    fn of_windows(least: f64, machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+    fn of_windows(
+        least: f64,
+        machine: &Machine,
+        recording: &MeasurementSet,
+        angles_only: bool,
+    ) -> Result<Self, TrimError> {
         let smooth: Vec<Smooth> = recording.motions.iter().map(|motion| Smooth::of(motion, angles_only)).collect();
         let mut widths = widths(&smooth)?;
         widths.retain(|half| *half >= least);
         let drives = machine.drives();
         let shares: Vec<Vec<f64>> = widths.iter().map(|half| noise_ratios(&smooth, *half, drives)).collect();
         let best = |k: usize| shares.iter().map(|of| of[k]).fold(f64::INFINITY, f64::min);
-        let turns = |m: &Motion, k: usize| spread(m.q.iter().map(|q| q[k])) > TURNING_ABOVE_RAD;
+        let turns = |m: &MeasuredMotion, k: usize| spread(m.q.iter().map(|q| q[k])) > TURNING_ABOVE_RAD;
         let turns = |k: usize| recording.motions.iter().any(|motion| turns(motion, k));
         let moves: Vec<bool> = (0..drives).map(|k| turns(k) && best(k) < STILL_NOISE).collect();
         let worst = |of: &Vec<f64>| of.iter().zip(&moves).filter(|(_, m)| **m).map(|(x, _)| *x).fold(0.0, f64::max);
@@ -166,7 +172,7 @@ impl Rows {
             own.rows(half, &moves, &mut made);
         }
         let time = smooth.iter().map(|own| own.motion.duration() - 2.0 * half).sum();
-        Ok(made.rows(Made::Windows { half, noise: worst[chosen] }, moves, time))
+        Ok(made.rows(RegressorSource::Windows { half, noise: worst[chosen] }, moves, time))
     }
 
     /// Removes from each motion the straight line over time that fits it best: offset and drift of a sensor. With the
@@ -174,7 +180,7 @@ impl Rows {
     fn level(&mut self) {
         let mut from = 0;
         for &count in &self.motions {
-            let line = Line::through(&self.times[from..from + count]);
+            let line = LinearTrend::through(&self.times[from..from + count]);
             for Channel { x, y, .. } in &mut self.channels {
                 x.column_iter_mut().for_each(|mut column| line.take_out(column.rows_mut(from, count).as_mut_slice()));
                 line.take_out(&mut y[from..from + count]);
@@ -185,12 +191,12 @@ impl Rows {
 }
 
 /// Removes straight lines over given times.
-pub(super) struct Line {
+pub(super) struct LinearTrend {
     /// Times less their mean, scaled to norm 1; zero for a single time.
     slope: Vec<f64>,
 }
 
-impl Line {
+impl LinearTrend {
     /// Prepares the removal for given times.
     pub fn through(times: &[f64]) -> Self {
         let mean = times.iter().sum::<f64>() / times.len() as f64;
@@ -214,7 +220,7 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the motion with constant angles for drives that count as still.
-fn held(motion: &Motion, moves: &[bool]) -> Motion {
+fn held(motion: &MeasuredMotion, moves: &[bool]) -> MeasuredMotion {
     let mut motion = motion.clone();
     for k in (0..moves.len()).filter(|k| !moves[*k]) {
         let mean = motion.q.iter().map(|q| q[k]).sum::<f64>() / motion.q.len() as f64;
@@ -244,7 +250,7 @@ fn noise_ratios(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
     for own in smooth {
         let mut centres = own.centres(half, 0.5 * half).peekable();
         while let Some(centre) = centres.next() {
-            let Some(window) = Window::about(&own.motion.t, centre, half) else { continue };
+            let Some(window) = SmoothingWindow::about(&own.motion.t, centre, half) else { continue };
             for k in 0..drives {
                 let mean: f64 = window.samples.clone().zip(&window.rate).map(|(j, d)| d * own.qd[j][k]).sum();
                 sizes[k] += mean * mean;
@@ -260,7 +266,7 @@ fn noise_ratios(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
 
 /// A motion with rates, measured or by finite differences.
 struct Smooth<'a> {
-    motion: &'a Motion,
+    motion: &'a MeasuredMotion,
     qd: Vec<PerDrive>,
     /// Whether the rates were measured.
     measured: bool,
@@ -271,7 +277,7 @@ struct Smooth<'a> {
 }
 
 impl<'a> Smooth<'a> {
-    fn of(motion: &'a Motion, angles_only: bool) -> Self {
+    fn of(motion: &'a MeasuredMotion, angles_only: bool) -> Self {
         let (t, drives) = (&motion.t, motion.q.first().map_or(0, |q| q.len()));
         let measured = !motion.qd.is_empty() && !angles_only;
         let rate = |i: usize| {
@@ -296,7 +302,7 @@ impl<'a> Smooth<'a> {
     }
 
     /// Returns σ of an averaged acceleration if the underlying samples have σ = 1.
-    fn gain(&self, window: &Window) -> f64 {
+    fn gain(&self, window: &SmoothingWindow) -> f64 {
         if self.measured {
             return window.rate.iter().map(|d| d * d).sum::<f64>().sqrt();
         }
@@ -319,7 +325,7 @@ impl<'a> Smooth<'a> {
         let mut one = made.rows.clone();
         let mut noise = None;
         for centre in self.centres(half, half / ROWS_PER_HALF_WIDTH) {
-            let Some(window) = Window::about(&self.motion.t, centre, half) else { continue };
+            let Some(window) = SmoothingWindow::about(&self.motion.t, centre, half) else { continue };
             let (mut force, mut moment, mut time) = (Vector::default(), 0.0, 0.0);
             made.rows.iter_mut().for_each(|row| row.fill(0.0));
             for ((j, a), d) in window.samples.clone().zip(&window.mean).zip(&window.rate) {
@@ -409,7 +415,7 @@ impl Making {
         self.motions.push(self.y[0].len() - before);
     }
 
-    fn rows(mut self, made: Made, moves: Vec<bool>, time: f64) -> Rows {
+    fn rows(mut self, made: RegressorSource, moves: Vec<bool>, time: f64) -> Regressor {
         let (count, p) = (self.y[0].len(), self.unknowns.count());
         self.motions.retain(|rows| *rows > 0);
         let spaces = count.saturating_sub(self.motions.len()).max(1);
@@ -426,6 +432,6 @@ impl Making {
         let place = self.unknowns.of_balance();
         let fastest = (0..moves.len()).map(|k| moment.x.column(place + k).amax()).collect();
         let Self { unknowns, motions, times, .. } = self;
-        Rows { unknowns, made, moves, fastest, spacing, motions, times, channels }
+        Regressor { unknowns, made, moves, fastest, spacing, motions, times, channels }
     }
 }

@@ -1,4 +1,4 @@
-//! [`taken`]: decides which unknowns of balance are taken from the measurement, and which from the machine's file.
+//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's file.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,7 +7,7 @@ use crate::mechanics::planar::Vector;
 
 /// The machine as identified.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Taken {
+pub struct AdoptedParameters {
     /// Values of all unknowns.
     pub values: DVector<f64>,
     /// Covariance of the values, given that the others are as in the file.
@@ -23,7 +23,7 @@ pub struct Taken {
     pub momenta: Vec<Option<f64>>,
 }
 
-impl Taken {
+impl AdoptedParameters {
     /// Returns the residual of each line of (7) and (8).
     pub fn left(&self) -> Vec<Vector> {
         let parts = &self.values.as_slice()[..self.measured.len()];
@@ -37,7 +37,7 @@ const ROUNDING_TOLERANCE: f64 = 1e-10;
 /// Selects the unknowns of (7) and (8) to take from the measurement by backward elimination. The least significant
 /// difference from the file is set to zero and the others are estimated again, until every remaining one exceeds its
 /// interval. So noise is not balanced out, and a well-known sum is kept even if its parts are not known.
-pub fn taken(fit: &Fit) -> Taken {
+pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     let count = fit.unknowns.of_balance();
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
     let mut known = Known { values, covariance, inverse };
@@ -67,7 +67,7 @@ pub fn taken(fit: &Fit) -> Taken {
     let half_widths: Vec<f64> = (0..values.len()).map(|i| half_width(&covariance, i)).collect();
     let differs = |i: usize| fit.told[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
     let off = (0..values.len()).map(|i| measured.get(i).copied().unwrap_or_else(|| differs(i))).collect();
-    Taken { values, covariance, half_widths, measured, off, momenta }
+    AdoptedParameters { values, covariance, half_widths, measured, off, momenta }
 }
 
 /// Least-squares estimate with some unknowns fixed.

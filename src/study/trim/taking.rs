@@ -1,10 +1,10 @@
 //! The edit by which a session adopts the result of a measurement.
 
-use super::mend::{identified, trimmed};
-use super::trimming::Trim;
+use super::mend::{corrected_as_built, identified_machine};
+use super::trimming::TrimResult;
 use crate::mechanics::machine::Machine;
 use crate::session::Edit;
-use crate::session::design::becoming;
+use crate::session::design::machine_edit;
 use crate::session::scenario::Scenario;
 
 /// Returns the edit that replaces the session's machine by the identified one, as built or with its correction; `None`
@@ -12,16 +12,21 @@ use crate::session::scenario::Scenario;
 ///
 /// # Errors
 /// Fails if the session's machine has other links, or there is no such machine.
-pub fn taken_by(scenario: &Scenario, measured: &Machine, found: &Trim, mends: bool) -> Result<Option<Edit>, String> {
+pub fn adopting_edit(
+    scenario: &Scenario,
+    measured: &Machine,
+    found: &TrimResult,
+    mends: bool,
+) -> Result<Option<Edit>, String> {
     let names = |machine: &Machine| machine.links().iter().map(|link| link.name.clone()).collect::<Vec<_>>();
     if names(measured) != names(&scenario.machine) {
         return Err(format!("the measurement is of {}: open that machine, then the table again", measured.name()));
     }
-    let (built, _) = identified(measured, &found.taken).map_err(|why| why.to_string())?;
+    let (built, _) = identified_machine(measured, &found.taken).map_err(|why| why.to_string())?;
     if !mends {
-        return Ok(becoming(scenario, &built));
+        return Ok(machine_edit(scenario, &built));
     }
     let mended = found.mended.as_ref().map_err(ToString::to_string)?;
-    let machine = trimmed(&built, measured, mended).map_err(|why| why.to_string())?;
-    Ok(becoming(scenario, &machine))
+    let machine = corrected_as_built(&built, measured, mended).map_err(|why| why.to_string())?;
+    Ok(machine_edit(scenario, &machine))
 }

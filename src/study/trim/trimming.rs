@@ -1,20 +1,20 @@
-//! [`Trimming`]: the query that evaluates a measurement of a machine and finds its correction.
+//! [`TrimQuery`]: the query that evaluates a measurement of a machine and finds its correction.
 
 use thiserror::Error;
 
-use super::doubt::{Doubt, Doubting};
+use super::doubt::{Doubt, DoubtSearch};
 use super::error::TrimError;
 use super::fit::{Fit, fit};
-use super::mend::{Mended, NoMend, mend};
-use super::next::{Next, next};
-use super::recording::Recording;
+use super::mend::{MachineCorrection, NoCorrection, correct_machine};
+use super::next::{NextMeasurement, next_excitation};
+use super::recording::MeasurementSet;
 use super::report::TrimReport;
-use super::rows::{Made, Rows};
-use super::taken::{Taken, taken};
-use super::way::Way;
-use super::worth::worth;
+use super::rows::{Regressor, RegressorSource};
+use super::taken::{AdoptedParameters, adopt_parameters};
+use super::way::TrimMethod;
+use super::worth::correction_benefit;
 use crate::mechanics::machine::Machine;
-use crate::query::{Portion, Query, Shared, Watch};
+use crate::query::{Portion, ProgressCallback, Query, Shared};
 
 /// A measurement, with the options for its evaluation.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,37 +22,37 @@ pub struct TrimRequest {
     /// The machine of the file.
     pub machine: Shared<Machine>,
     /// The measured data.
-    pub recording: Shared<Recording>,
+    pub recording: Shared<MeasurementSet>,
     /// Whether to ignore measured rates and accelerations.
     pub angles_only: bool,
     /// Whether to accept the columns as given, even if another sign, order or unit explains them far better.
     pub as_given: bool,
     /// Numbers that may change.
-    pub way: Way,
+    pub way: TrimMethod,
     /// Maximum acceleration of each drive in a next motion, rad/s²; by default the largest measured.
     pub accelerations: Option<Vec<f64>>,
 }
 
 /// Result of the evaluation.
 #[derive(Clone, Debug)]
-pub struct Trimmed {
+pub struct TrimOutcome {
     /// Relative noise of the accelerations from noisy angles, if it is so large that results may be inaccurate.
     pub angle_noise: Option<f64>,
     /// Suspected fault, if the measurement was accepted as given all the same.
     pub doubt: Option<Doubt>,
     /// The identified machine, or why there is none.
-    pub outcome: Result<Trim, NoTrim>,
+    pub outcome: Result<TrimResult, NoTrim>,
 }
 
 /// Identified values of a machine, and their correction.
 #[derive(Clone, Debug)]
-pub struct Trim {
+pub struct TrimResult {
     /// Report for the user.
     pub report: TrimReport,
     /// The machine as identified.
-    pub taken: Taken,
+    pub taken: AdoptedParameters,
     /// Correction, without changes if none is significant; or why there is none.
-    pub mended: Result<Mended, NoMend>,
+    pub mended: Result<MachineCorrection, NoCorrection>,
 }
 
 /// Why a measurement has no result.
@@ -80,10 +80,10 @@ const SEARCHED_AT: f64 = 0.95;
 
 /// Evaluates a measurement: builds its rows, tests for faults, one in each portion, fits the unknowns and finds the
 /// correction.
-pub struct Trimming {
+pub struct TrimQuery {
     request: TrimRequest,
     stage: Stage,
-    /// As [`Trimmed::angle_noise`].
+    /// As [`TrimOutcome::angle_noise`].
     angle_noise: Option<f64>,
     doubt: Option<Doubt>,
 }
@@ -92,47 +92,47 @@ pub struct Trimming {
 enum Stage {
     Begun,
     /// Rows are built.
-    Made(Rows),
-    Doubting(Rows, Box<Doubting>),
+    Made(Regressor),
+    Doubting(Regressor, Box<DoubtSearch>),
     /// No fault is suspected, or the measurement is accepted as given.
-    Believed(Rows),
-    Fitted(Rows, Box<Fit>),
+    Believed(Regressor),
+    Fitted(Regressor, Box<Fit>),
     /// The next motion is found.
-    Searched(Rows, Box<Fit>, Next),
+    Searched(Regressor, Box<Fit>, NextMeasurement),
 }
 
-impl Query for Trimming {
+impl Query for TrimQuery {
     type Input = TrimRequest;
-    type Answer = Trimmed;
+    type Answer = TrimOutcome;
 
     fn begin(request: TrimRequest) -> Self {
         Self { request, stage: Stage::Begun, angle_noise: None, doubt: None }
     }
 
-    fn go_on(&mut self, _: Watch<'_>) -> Portion<Trimmed> {
+    fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<TrimOutcome> {
         let outcome = match self.next() {
             Ok(Portion::More(share)) => return Portion::More(share),
             Ok(Portion::Stopped) => return Portion::Stopped,
             Ok(Portion::Done(trim)) => Ok(trim),
             Err(why) => Err(why),
         };
-        Portion::Done(Trimmed { angle_noise: self.angle_noise, doubt: self.doubt.take(), outcome })
+        Portion::Done(TrimOutcome { angle_noise: self.angle_noise, doubt: self.doubt.take(), outcome })
     }
 }
 
-impl Trimming {
-    fn next(&mut self) -> Result<Portion<Trim>, NoTrim> {
+impl TrimQuery {
+    fn next(&mut self) -> Result<Portion<TrimResult>, NoTrim> {
         let TrimRequest { machine: Shared(machine), recording: Shared(recording), angles_only, .. } = &self.request;
         let (stage, share) = match std::mem::replace(&mut self.stage, Stage::Begun) {
             Stage::Begun => {
-                let rows = Rows::of(machine, recording, *angles_only).map_err(NoTrim::Unusable)?;
+                let rows = Regressor::of(machine, recording, *angles_only).map_err(NoTrim::Unusable)?;
                 self.angle_noise = match rows.made {
-                    Made::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
+                    RegressorSource::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
                     _ => None,
                 };
                 (Stage::Made(rows), MADE_AT)
             }
-            Stage::Made(rows) => match Doubting::begin(machine, recording, *angles_only) {
+            Stage::Made(rows) => match DoubtSearch::begin(machine, recording, *angles_only) {
                 Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE_AT),
                 // The fit reports errors of the recording itself.
                 Err(_) => (Stage::Believed(rows), TRIED_AT),
@@ -155,11 +155,11 @@ impl Trimming {
                 (Stage::Fitted(rows, fit.into()), FITTED_AT)
             }
             Stage::Fitted(rows, fit) => {
-                let next = next(machine, recording, &rows, &fit, self.request.accelerations.as_deref());
+                let next = next_excitation(machine, recording, &rows, &fit, self.request.accelerations.as_deref());
                 (Stage::Searched(rows, fit, next), SEARCHED_AT)
             }
             Stage::Searched(rows, fit, next) => {
-                return Ok(Portion::Done(Trim::of(&self.request, &rows, &fit, &next)));
+                return Ok(Portion::Done(TrimResult::of(&self.request, &rows, &fit, &next)));
             }
         };
         self.stage = stage;
@@ -167,16 +167,16 @@ impl Trimming {
     }
 }
 
-impl Trim {
+impl TrimResult {
     /// Returns the result of a fit, with the correction and the proposal for the next motion.
-    fn of(request: &TrimRequest, rows: &Rows, fit: &Fit, next: &Next) -> Self {
+    fn of(request: &TrimRequest, rows: &Regressor, fit: &Fit, next: &NextMeasurement) -> Self {
         let machine = &*request.machine.0;
-        let taken = taken(fit);
-        let mended = mend(machine, &taken, &request.way);
-        let worth = mended.as_ref().ok().map(|mended| worth(machine, rows, fit, &taken, mended));
+        let taken = adopt_parameters(fit);
+        let mended = correct_machine(machine, &taken, &request.way);
+        let worth = mended.as_ref().ok().map(|mended| correction_benefit(machine, rows, fit, &taken, mended));
         let helps = worth.is_some_and(|worth| worth.helps());
         // A change whose effect is not significant is not proposed.
-        let mended = mended.map(|mended| if helps { mended } else { Mended::not_at_all(machine, &taken) });
+        let mended = mended.map(|mended| if helps { mended } else { MachineCorrection::not_at_all(machine, &taken) });
         let report = TrimReport::of(machine, rows, (fit, &taken), (mended.as_ref().ok(), worth), next);
         Self { report, taken, mended }
     }

@@ -2,11 +2,11 @@
 
 use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, Units, Vector, cross};
+use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross};
 
 /// Part of a complex coefficient of (7) or (8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum ComplexPart {
     /// Real part: masses on the axes of the links.
     Along,
     /// Imaginary part: masses off the axes of the links.
@@ -17,7 +17,7 @@ pub enum Part {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unknown {
     /// A part of a coefficient of (7), kg m, or of (8), kg m².
-    Of(Condition, Part),
+    Of(Condition, ComplexPart),
     /// The momentum coefficient D_k, kg m².
     Momentum(usize),
 }
@@ -26,7 +26,7 @@ impl Unknown {
     /// Returns the name, with the names of its drives.
     pub fn name(self, machine: &Machine) -> String {
         let drive = |k: usize| &machine.spec().drives[k].name;
-        let part = |part: Part| if part == Part::Along { "along" } else { "across" };
+        let part = |part: ComplexPart| if part == ComplexPart::Along { "along" } else { "across" };
         match self {
             Self::Of(Condition::Force(k), of) => format!("g {} {}", drive(k), part(of)),
             Self::Of(Condition::Coupling(k, l), of) => format!("C {},{} {}", drive(k), drive(l), part(of)),
@@ -78,7 +78,7 @@ impl Unknowns {
 
     /// Returns the unknown at an index.
     pub fn at(&self, place: usize) -> Unknown {
-        let part = if place.is_multiple_of(2) { Part::Along } else { Part::Across };
+        let part = if place.is_multiple_of(2) { ComplexPart::Along } else { ComplexPart::Across };
         match self.conditions.get(place / 2) {
             Some(condition) => Unknown::Of(*condition, part),
             None => Unknown::Momentum(place - self.of_balance()),
@@ -104,7 +104,7 @@ impl Unknowns {
 
     /// Computes force (x, y) and moment per unit of each unknown at a state; the dynamic force, the moment with the
     /// weight.
-    pub fn reaction(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
+    pub fn reaction(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
         let [fx, fy, n] = out;
         self.still(e, gravity, n);
         for (i, condition) in self.conditions.iter().enumerate() {
@@ -126,7 +126,7 @@ impl Unknowns {
     }
 
     /// Computes linear (x, y) and angular momentum per unit of each unknown.
-    pub fn momentum(&self, e: &Units, qd: &PerDrive, out: [&mut [f64]; 3]) {
+    pub fn momentum(&self, e: &UnitVectors, qd: &PerDrive, out: [&mut [f64]; 3]) {
         let [px, py, h] = out;
         h.fill(0.0);
         for (i, condition) in self.conditions.iter().enumerate() {
@@ -144,7 +144,7 @@ impl Unknowns {
     }
 
     /// Computes the moment of the weight per unit of each unknown.
-    pub fn still(&self, e: &Units, gravity: Vector, n: &mut [f64]) {
+    pub fn still(&self, e: &UnitVectors, gravity: Vector, n: &mut [f64]) {
         n.fill(0.0);
         for k in 0..self.drives {
             n[2 * k] = cross(e[k], gravity);

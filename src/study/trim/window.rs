@@ -1,4 +1,4 @@
-//! [`Window`]: weights for the average of a signal over a window and for the average of its derivative.
+//! [`SmoothingWindow`]: weights for the average of a signal over a window and for the average of its derivative.
 //!
 //! # Symbols
 //! | letter | meaning |
@@ -13,10 +13,10 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 
 /// Minimum number of samples in a window.
-pub(super) const FEWEST: usize = 7;
+pub(super) const MIN_WINDOW_SAMPLES: usize = 7;
 
 /// Weights of the samples in a window.
-pub(super) struct Window {
+pub(super) struct SmoothingWindow {
     /// Indices of the samples.
     pub samples: Range<usize>,
     /// Weights a_j.
@@ -25,12 +25,12 @@ pub(super) struct Window {
     pub rate: Vec<f64>,
 }
 
-impl Window {
+impl SmoothingWindow {
     /// Returns the window with a half width, s, centred at a time; `None` if it contains too few samples.
     pub fn about(t: &[f64], centre: f64, half: f64) -> Option<Self> {
         let from = t.partition_point(|t| *t <= centre - half);
         let samples = from..t.partition_point(|t| *t < centre + half);
-        if samples.len() < FEWEST {
+        if samples.len() < MIN_WINDOW_SAMPLES {
             return None;
         }
         let u: Vec<f64> = samples.clone().map(|j| (t[j] - centre) / half).collect();

@@ -1,4 +1,4 @@
-//! [`worth`]: effect of a change on the identified imbalance, and whether it is a significant reduction.
+//! [`correction_benefit`]: effect of a change on the identified imbalance, and whether it is a significant reduction.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -16,15 +16,15 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use super::fit::Fit;
-use super::mend::Mended;
-use super::rows::Rows;
-use super::taken::Taken;
+use super::mend::MachineCorrection;
+use super::rows::Regressor;
+use super::taken::AdoptedParameters;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::settings::number::shown;
 
 /// Effect of a change over the measured motions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Worth {
+pub struct CorrectionBenefit {
     /// Root mean square force of imbalance before and after the change, N.
     pub force: [f64; 2],
     /// Root mean square moment of imbalance before and after the change, N m.
@@ -35,7 +35,7 @@ pub struct Worth {
     pub half_width: f64,
 }
 
-impl Worth {
+impl CorrectionBenefit {
     /// Describes the effect in words.
     pub fn words(&self) -> String {
         let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
@@ -56,7 +56,13 @@ impl Worth {
 }
 
 /// Computes the effect of a change.
-pub fn worth(machine: &Machine, rows: &Rows, fit: &Fit, taken: &Taken, mended: &Mended) -> Worth {
+pub fn correction_benefit(
+    machine: &Machine,
+    rows: &Regressor,
+    fit: &Fit,
+    taken: &AdoptedParameters,
+    mended: &MachineCorrection,
+) -> CorrectionBenefit {
     let count = fit.unknowns.of_balance();
     let inertia = Inertia::of(machine);
     let radius_squared = inertia.diagonals().iter().sum::<f64>() / inertia.mass();
@@ -79,7 +85,7 @@ pub fn worth(machine: &Machine, rows: &Rows, fit: &Fit, taken: &Taken, mended: &
     // Wilson and Hilferty (1931): the cube root of χ² is approximately normal.
     let part = 2.0 / (9.0 * chosen);
     let scheffe = (chosen * (1.0 - part + 1.645 * part.sqrt()).powi(3)).sqrt();
-    Worth {
+    CorrectionBenefit {
         force: [rms(&force, &now), rms(&force, &then)],
         moment: [rms(&moment, &now), rms(&moment, &then)],
         gain: gain / all,

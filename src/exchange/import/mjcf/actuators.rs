@@ -2,24 +2,24 @@
 
 use roxmltree::Node;
 
-use super::coupled::{Against, Coupled, Sum, unsigned};
+use super::coupled::{CoupledBodies, HingeSum, RelativeSet, unsigned};
 use crate::exchange::import::defaults::Element;
-use crate::exchange::import::linkage::{MOST_PARTS, Motor};
-use crate::exchange::import::read::{Source, each, number, numbers, several};
-use crate::exchange::import::refusal::{ImportError, wrong};
+use crate::exchange::import::linkage::{ImportedMotor, MAX_PARTS};
+use crate::exchange::import::read::{AttributeSource, each, number, numbers, several};
+use crate::exchange::import::refusal::{ImportError, element_error};
 use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::Short;
-use crate::settings::range::clipped;
+use crate::settings::number::ShortNumber;
+use crate::settings::range::quote_clipped;
 
-impl<'a> Coupled<'a> {
+impl<'a> CoupledBodies<'a> {
     /// Returns the actuators as motors. Several that turn the same sum of hinges become one, with the sum of their
     /// torque limits.
-    pub(super) fn actuators(&self) -> Result<Vec<(Element<'a>, Motor)>, ImportError> {
+    pub(super) fn actuators(&self) -> Result<Vec<(Element<'a>, ImportedMotor)>, ImportError> {
         let all = each(self.bodies.model, "actuator").flat_map(|node| node.children()).filter(Node::is_element);
-        let mut found: Vec<(Element, Motor)> = Vec::new();
+        let mut found: Vec<(Element, ImportedMotor)> = Vec::new();
         for (count, node) in all.enumerate() {
-            if count == MOST_PARTS {
-                return Err(wrong(node, "too many actuators", format!("at most {MOST_PARTS}")));
+            if count == MAX_PARTS {
+                return Err(element_error(node, "too many actuators", format!("at most {MAX_PARTS}")));
             }
             let element = self.bodies.element(node)?;
             let (own, sum) = (self.motor(&element)?, unsigned(&self.moved(&element)?));
@@ -35,7 +35,7 @@ impl<'a> Coupled<'a> {
                     motor.torque_limit = motor.torque_limit.zip(own.torque_limit).map(|(a, b)| a + b);
                 }
                 None if found.len() == MAX_DRIVES => {
-                    return Err(wrong(node, "too many motors", format!("at most {MAX_DRIVES}")));
+                    return Err(element_error(node, "too many motors", format!("at most {MAX_DRIVES}")));
                 }
                 None => found.push((element, own)),
             }
@@ -51,7 +51,7 @@ impl<'a> Coupled<'a> {
     }
 
     /// Returns the sum of hinges that an actuator turns.
-    pub(super) fn moved(&self, element: &Element<'a>) -> Result<Sum, ImportError> {
+    pub(super) fn moved(&self, element: &Element<'a>) -> Result<HingeSum, ImportError> {
         for attribute in ["joint", "jointinparent"] {
             if element.get(attribute).is_some() {
                 return Ok(vec![(self.bodies.part_of(element, attribute)?, 1.0)]);
@@ -59,12 +59,14 @@ impl<'a> Coupled<'a> {
         }
         match element.get("tendon") {
             Some(_) => self.tendon(element, "tendon"),
-            None => Err(wrong(element.node(), "an actuator of no joint or tendon", "joint=\"…\" or tendon=\"…\"")),
+            None => {
+                Err(element_error(element.node(), "an actuator of no joint or tendon", "joint=\"…\" or tendon=\"…\""))
+            }
         }
     }
 
     /// Returns the motors, each with the set that it turns and the set against which it turns it.
-    pub(super) fn motors(&self) -> Result<Vec<(Motor, Against)>, ImportError> {
+    pub(super) fn motors(&self) -> Result<Vec<(ImportedMotor, RelativeSet)>, ImportError> {
         let mut motors = Vec::new();
         for (element, motor) in self.actuators()? {
             let (to, from) = self.turned(element.node(), &self.moved(&element)?)?;
@@ -76,7 +78,7 @@ impl<'a> Coupled<'a> {
     }
 
     /// Returns a motor in the first hinge of each set, for models without actuators.
-    fn usual_motors(&self) -> Vec<(Motor, Against)> {
+    fn usual_motors(&self) -> Vec<(ImportedMotor, RelativeSet)> {
         let (mut seen, mut motors) = (vec![self.base], Vec::new());
         for (i, part) in self.bodies.parts.iter().enumerate().filter(|(_, part)| part.hinge.is_some()) {
             let is_geared = self.geared.iter().any(|geared| geared.part == i);
@@ -84,7 +86,7 @@ impl<'a> Coupled<'a> {
                 seen.push(self.set(i));
                 let of_hinge = self.bodies.hinge(i).and_then(|hinge| hinge.node().attribute("name"));
                 let name = of_hinge.map_or_else(|| part.name.clone(), Into::into);
-                let motor = Motor { name, hinge: Some(i), ..Motor::default() };
+                let motor = ImportedMotor { name, hinge: Some(i), ..ImportedMotor::default() };
                 motors.push((motor, (self.set(i), self.set(self.on(i)))));
             }
         }
@@ -95,10 +97,10 @@ impl<'a> Coupled<'a> {
     ///
     /// # Errors
     /// If two motors turn the same set, or if no motor turns the set that carries one.
-    pub(super) fn numbered(&self, motors: &[(Motor, Against)]) -> Result<Vec<Motor>, ImportError> {
+    pub(super) fn numbered(&self, motors: &[(ImportedMotor, RelativeSet)]) -> Result<Vec<ImportedMotor>, ImportError> {
         let number_of = |set: usize| motors.iter().position(|(_, (to, _))| *to == set);
-        let numbered = |(k, (motor, (to, from))): (usize, &(Motor, Against))| {
-            let said = |what: &str| format!("\"{}\" {what}", clipped(&motor.name));
+        let numbered = |(k, (motor, (to, from))): (usize, &(ImportedMotor, RelativeSet))| {
+            let said = |what: &str| format!("\"{}\" {what}", quote_clipped(&motor.name));
             if number_of(*to) != Some(k) || *to == self.base {
                 let what = said("turns what another motor turns, or nothing");
                 return Err(ImportError::whole(what, "one motor for each set of parallel bodies"));
@@ -109,7 +111,7 @@ impl<'a> Coupled<'a> {
                     ImportError::whole(said("sits on what no motor turns"), "a motor for every drive")
                 })?),
             };
-            Ok(Motor { from, ..motor.clone() })
+            Ok(ImportedMotor { from, ..motor.clone() })
         };
         motors.iter().enumerate().map(numbered).collect()
     }
@@ -118,7 +120,11 @@ impl<'a> Coupled<'a> {
     ///
     /// # Errors
     /// If an armature is negative, or belongs to a hinge without a motor or to a motor with a rotor.
-    pub(super) fn armatures(&self, motors: &mut [Motor], rotors: &[(usize, usize, f64)]) -> Result<(), ImportError> {
+    pub(super) fn armatures(
+        &self,
+        motors: &mut [ImportedMotor],
+        rotors: &[(usize, usize, f64)],
+    ) -> Result<(), ImportError> {
         for i in 0..self.base {
             let Some(hinge) = self.bodies.hinge(i) else { continue };
             let armature = number(hinge, "armature")?.filter(|x| *x != 0.0);
@@ -127,7 +133,11 @@ impl<'a> Coupled<'a> {
             let k = k.filter(|k| armature > 0.0 && !rotors.iter().any(|(_, of, _)| of == k));
             let Some(k) = k else {
                 let want = "one that is above 0, of a hinge that a motor without a rotor turns";
-                return Err(wrong(hinge.node(), format!("an armature of {} kg m²", Short(armature)), want));
+                return Err(element_error(
+                    hinge.node(),
+                    format!("an armature of {} kg m²", ShortNumber(armature)),
+                    want,
+                ));
             };
             motors[k].armature = armature;
         }
@@ -135,7 +145,7 @@ impl<'a> Coupled<'a> {
     }
 
     /// Reads a motor; without a name of its own it has that of the joint or tendon that it turns.
-    fn motor(&self, element: &Element<'a>) -> Result<Motor, ImportError> {
+    fn motor(&self, element: &Element<'a>) -> Result<ImportedMotor, ImportError> {
         let own = ["name", "joint", "jointinparent", "tendon"].into_iter().find_map(|name| element.get(name));
         let name = own.unwrap_or("motor").to_owned();
         let gear = numbers(element, "gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0).abs();
@@ -147,7 +157,12 @@ impl<'a> Coupled<'a> {
             [(part, _)] => Some(part),
             _ => None,
         };
-        Ok(Motor { name, hinge, torque_limit: limit.map(|x| gear * x).filter(|x| *x > 0.0), ..Motor::default() })
+        Ok(ImportedMotor {
+            name,
+            hinge,
+            torque_limit: limit.map(|x| gear * x).filter(|x| *x > 0.0),
+            ..ImportedMotor::default()
+        })
     }
 
     /// Returns the largest magnitude of a range that is a limit.

@@ -1,55 +1,55 @@
-//! [`Coupled`]: bodies, with the sets that turn together and the couplings between them.
+//! [`CoupledBodies`]: bodies, with the sets that turn together and the couplings between them.
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::together::Together;
-use crate::exchange::import::bodies::{Bodies, End};
-use crate::exchange::import::linkage::{MOST_PARTS, common_axis, owners, plane};
-use crate::exchange::import::read::{Source, each, number, word};
-use crate::exchange::import::refusal::{ImportError, wrong};
-use crate::settings::range::clipped;
+use super::together::CoupledSets;
+use crate::exchange::import::bodies::{AttachmentPoint, MjcfBodies};
+use crate::exchange::import::linkage::{MAX_PARTS, common_axis, owners, plane};
+use crate::exchange::import::read::{AttributeSource, each, number, word};
+use crate::exchange::import::refusal::{ImportError, element_error};
+use crate::settings::range::quote_clipped;
 
 /// The couplings that are supported, for messages.
 pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \
                                           coupling by 1 or -1 keeps two bodies parallel";
 
 /// A set, and another against which it turns.
-pub(super) type Against = (usize, usize);
+pub(super) type RelativeSet = (usize, usize);
 /// A weighted sum of hinge angles about the common axis: parts with coefficients.
-pub(super) type Sum = Vec<(usize, f64)>;
+pub(super) type HingeSum = Vec<(usize, f64)>;
 
 /// A part that is coupled to a sum of hinges with a gear ratio.
-pub(super) struct Geared<'a> {
+pub(super) struct GearedPart<'a> {
     pub part: usize,
     pub node: Node<'a, 'a>,
-    pub to: Sum,
+    pub to: HingeSum,
     pub ratio: f64,
 }
 
 /// Bodies, with the sets that their loops and equalities keep parallel.
-pub(super) struct Coupled<'a> {
-    pub bodies: Bodies<'a>,
+pub(super) struct CoupledBodies<'a> {
+    pub bodies: MjcfBodies<'a>,
     pub signs: Vec<f64>,
     /// Two axes of the plane, and its normal.
     pub plane: [Vector3<f64>; 3],
     pub owners: Vec<Option<usize>>,
     /// Index that stands for the base among the parts.
     pub base: usize,
-    pub tendons: BTreeMap<&'a str, Sum>,
-    pub together: Together,
-    pub geared: Vec<Geared<'a>>,
-    pub loops: Vec<[End; 2]>,
+    pub tendons: BTreeMap<&'a str, HingeSum>,
+    pub together: CoupledSets,
+    pub geared: Vec<GearedPart<'a>>,
+    pub loops: Vec<[AttachmentPoint; 2]>,
 }
 
-impl<'a> Coupled<'a> {
+impl<'a> CoupledBodies<'a> {
     /// Begins with bodies, before any equality is read.
     ///
     /// # Errors
     /// If the hinges have no common axis, or if a tendon is wrong.
-    pub fn of(bodies: Bodies<'a>) -> Result<Self, ImportError> {
+    pub fn of(bodies: MjcfBodies<'a>) -> Result<Self, ImportError> {
         let (normal, signs) = common_axis(&bodies.parts)?;
         let (owners, base) = (owners(&bodies.parts), bodies.parts.len());
         let tendons = tendons(&bodies, &signs)?;
@@ -59,7 +59,7 @@ impl<'a> Coupled<'a> {
             owners,
             base,
             tendons,
-            together: Together::new(base),
+            together: CoupledSets::new(base),
             geared: Vec::new(),
             loops: Vec::new(),
             bodies,
@@ -67,10 +67,10 @@ impl<'a> Coupled<'a> {
     }
 
     /// Returns the sum of the fixed tendon that an attribute names.
-    pub fn tendon(&self, element: impl Source<'a>, attribute: &'static str) -> Result<Sum, ImportError> {
+    pub fn tendon(&self, element: impl AttributeSource<'a>, attribute: &'static str) -> Result<HingeSum, ImportError> {
         let name = word(&element, attribute)?;
-        let what = || format!("{attribute} \"{}\" is no fixed tendon", clipped(name));
-        self.tendons.get(name).cloned().ok_or_else(|| wrong(element.node(), what(), "the name of one"))
+        let what = || format!("{attribute} \"{}\" is no fixed tendon", quote_clipped(name));
+        self.tendons.get(name).cloned().ok_or_else(|| element_error(element.node(), what(), "the name of one"))
     }
 
     /// Returns the turning part with which a part moves, itself or the part to which it is fixed; the base otherwise.
@@ -89,7 +89,7 @@ impl<'a> Coupled<'a> {
     }
 
     /// Returns the two parts whose relative angle a sum of hinges is; `None` if it is not such an angle.
-    pub fn against(&self, sum: &[(usize, f64)]) -> Option<Against> {
+    pub fn against(&self, sum: &[(usize, f64)]) -> Option<RelativeSet> {
         let mut turns: BTreeMap<usize, f64> = BTreeMap::new();
         for (part, times) in sum {
             *turns.entry(self.owner(Some(*part))).or_default() += times;
@@ -104,19 +104,19 @@ impl<'a> Coupled<'a> {
     ///
     /// # Errors
     /// If the sum is not the angle between two parts.
-    pub fn turned(&self, node: Node<'_, '_>, sum: &[(usize, f64)]) -> Result<Against, ImportError> {
+    pub fn turned(&self, node: Node<'_, '_>, sum: &[(usize, f64)]) -> Result<RelativeSet, ImportError> {
         let want = "a sum of hinges from one body to another";
-        self.against(sum).ok_or_else(|| wrong(node, "no body turns against another by its tendon", want))
+        self.against(sum).ok_or_else(|| element_error(node, "no body turns against another by its tendon", want))
     }
 }
 
 /// Reads the fixed tendons by name.
-fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, Sum>, ImportError> {
+fn tendons<'a>(bodies: &MjcfBodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, HingeSum>, ImportError> {
     let mut all = BTreeMap::new();
     let fixed = each(bodies.model, "tendon").flat_map(|node| each(node, "fixed"));
     for (count, node) in fixed.enumerate() {
-        if count == MOST_PARTS || each(node, "joint").nth(MOST_PARTS).is_some() {
-            return Err(wrong(node, "too many tendons, or hinges of one", format!("at most {MOST_PARTS}")));
+        if count == MAX_PARTS || each(node, "joint").nth(MAX_PARTS).is_some() {
+            return Err(element_error(node, "too many tendons, or hinges of one", format!("at most {MAX_PARTS}")));
         }
         let mut sum = Vec::new();
         for joint in each(node, "joint") {
@@ -129,7 +129,7 @@ fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, S
 }
 
 /// Returns a sum sorted by hinges, with its sign chosen so that the first coefficient is not negative.
-pub(super) fn unsigned(sum: &[(usize, f64)]) -> Sum {
+pub(super) fn unsigned(sum: &[(usize, f64)]) -> HingeSum {
     let mut sum = sum.to_vec();
     sum.sort_by_key(|(part, _)| *part);
     if sum.first().is_some_and(|(_, times)| *times < 0.0) {

@@ -2,14 +2,14 @@
 
 use roxmltree::Node;
 
-use super::coupled::{Coupled, Geared, PARALLEL_WANTED, Sum, unsigned};
+use super::coupled::{CoupledBodies, GearedPart, HingeSum, PARALLEL_WANTED, unsigned};
 use crate::exchange::import::bodies::{is_active, polynomial};
 use crate::exchange::import::defaults::Element;
-use crate::exchange::import::linkage::MOST_PARTS;
-use crate::exchange::import::read::{Source, each};
-use crate::exchange::import::refusal::{ImportError, wrong};
-use crate::settings::number::Short;
-use crate::settings::range::clipped;
+use crate::exchange::import::linkage::MAX_PARTS;
+use crate::exchange::import::read::{AttributeSource, each};
+use crate::exchange::import::refusal::{ImportError, element_error};
+use crate::settings::number::ShortNumber;
+use crate::settings::range::quote_clipped;
 
 /// Tolerance of an equality of a tendon in the pose of the file, rad.
 const EQUALITY_TOLERANCE_RAD: f64 = 1e-6;
@@ -19,19 +19,19 @@ const ON_AXIS_TOLERANCE: f64 = 1e-9;
 /// An equality of two sums of hinges: `one` is `ratio` times `other`.
 struct Coupling<'a> {
     node: Node<'a, 'a>,
-    one: Sum,
-    other: Sum,
+    one: HingeSum,
+    other: HingeSum,
     ratio: f64,
 }
 
-impl<'a> Coupled<'a> {
+impl<'a> CoupledBodies<'a> {
     /// Reads the equalities. Loops come last, because they are easier to resolve if parallel bodies are known.
     pub(super) fn couple(&mut self) -> Result<(), ImportError> {
         let all = each(self.bodies.model, "equality").flat_map(|node| node.children()).filter(Node::is_element);
         let (mut loops, mut couplings) = (Vec::new(), Vec::new());
         for (count, node) in all.enumerate() {
-            if count == MOST_PARTS {
-                return Err(wrong(node, "too many equalities", format!("at most {MOST_PARTS}")));
+            if count == MAX_PARTS {
+                return Err(element_error(node, "too many equalities", format!("at most {MAX_PARTS}")));
             }
             let element = self.bodies.element(node)?;
             if !is_active(&element) {
@@ -42,8 +42,8 @@ impl<'a> Coupled<'a> {
                 "joint" => couplings.extend(self.joint_equality(&element)?),
                 "tendon" => couplings.extend(self.tendon_equality(&element)?),
                 kind => {
-                    let what = format!("an equality of kind \"{}\"", clipped(kind));
-                    return Err(wrong(node, what, "connect, joint or tendon"));
+                    let what = format!("an equality of kind \"{}\"", quote_clipped(kind));
+                    return Err(element_error(node, what, "connect, joint or tendon"));
                 }
             }
         }
@@ -59,9 +59,13 @@ impl<'a> Coupled<'a> {
         self.join_parallel(&mut others);
         for Coupling { node, one, other, ratio } in rotors.into_iter().chain(others) {
             let [(part, times)] = one[..] else {
-                return Err(wrong(node, "it couples sums of hinges that keep no bodies parallel", PARALLEL_WANTED));
+                return Err(element_error(
+                    node,
+                    "it couples sums of hinges that keep no bodies parallel",
+                    PARALLEL_WANTED,
+                ));
             };
-            self.geared.push(Geared { part, node, to: other, ratio: ratio * times });
+            self.geared.push(GearedPart { part, node, to: other, ratio: ratio * times });
         }
         Ok(())
     }
@@ -95,7 +99,7 @@ impl<'a> Coupled<'a> {
 
     /// Returns whether a coupling drives a rotor: a body without children, balanced about its hinge, and coupled to a
     /// sum that a motor turns.
-    fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[Sum]) -> bool {
+    fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[HingeSum]) -> bool {
         let [(part, _)] = coupling.one[..] else { return false };
         let parts = &self.bodies.parts;
         let carries = parts.iter().any(|other| other.parent == Some(part))
@@ -108,7 +112,7 @@ impl<'a> Coupled<'a> {
     }
 
     /// Returns the sums of hinges that motors turn.
-    fn driven(&self) -> Result<Vec<Sum>, ImportError> {
+    fn driven(&self) -> Result<Vec<HingeSum>, ImportError> {
         self.actuators()?.into_iter().map(|(element, _)| Ok(unsigned(&self.moved(&element)?))).collect()
     }
 
@@ -134,8 +138,8 @@ impl<'a> Coupled<'a> {
         match other {
             // Only an equality without a second tendon fixes an angle: gears may have any offset.
             None if off.abs() > EQUALITY_TOLERANCE_RAD => {
-                let what = format!("its tendon is off by {} rad in the pose of the file", Short(off));
-                Err(wrong(node, what, "a keyframe in which every equality holds"))
+                let what = format!("its tendon is off by {} rad in the pose of the file", ShortNumber(off));
+                Err(element_error(node, what, "a keyframe in which every equality holds"))
             }
             None => {
                 let (to, from) = self.turned(node, &one)?;
@@ -158,6 +162,6 @@ impl<'a> Coupled<'a> {
 fn linear(element: &Element<'_>) -> Result<f64, ImportError> {
     match polynomial(element)?[..] {
         [_, ratio, ref rest @ ..] if rest.iter().all(|x| *x == 0.0) => Ok(ratio),
-        _ => Err(wrong(element.node(), "a coupling that is not linear", "polycoef=\"0 N 0 0 0\"")),
+        _ => Err(element_error(element.node(), "a coupling that is not linear", "polycoef=\"0 N 0 0 0\"")),
     }
 }

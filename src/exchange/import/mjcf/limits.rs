@@ -1,20 +1,20 @@
 //! Limits of hinges and tendons.
 
-use super::coupled::{Against, Coupled, Sum};
-use crate::exchange::import::linkage::{Limit, Motor};
+use super::coupled::{CoupledBodies, HingeSum, RelativeSet};
+use crate::exchange::import::linkage::{ImportedMotor, JointLimit};
 use crate::exchange::import::read::{each, several};
 use crate::exchange::import::refusal::ImportError;
 
 /// A sum of hinges, its value in the reference pose, and its limits, rad.
-type Limited = (Sum, f64, [f64; 2]);
+type Limited = (HingeSum, f64, [f64; 2]);
 
-impl Coupled<'_> {
+impl CoupledBodies<'_> {
     /// Returns the limits of hinges and tendons that are angles between two drives, or between a drive and the base.
     pub(super) fn limits(
         &self,
-        motors: &[(Motor, Against)],
+        motors: &[(ImportedMotor, RelativeSet)],
         rotors: &[(usize, usize, f64)],
-    ) -> Result<Vec<Limit>, ImportError> {
+    ) -> Result<Vec<JointLimit>, ImportError> {
         let number_of = |set: usize| motors.iter().position(|(_, (to, _))| *to == set);
         let hinges = (0..self.base).filter(|i| !rotors.iter().any(|(rotor, ..)| rotor == i));
         let mut limited: Vec<Limited> = hinges.filter_map(|i| self.limits_of(i)).collect();
@@ -22,7 +22,7 @@ impl Coupled<'_> {
         let limit = |(sum, now, range): Limited| {
             let (to, from) = self.against(&sum)?;
             let from = if self.set(from) == self.base { None } else { Some(number_of(self.set(from))?) };
-            Some(Limit { name: None, to: number_of(self.set(to))?, from, now, range: Some(range) })
+            Some(JointLimit { name: None, to: number_of(self.set(to))?, from, now, range: Some(range) })
         };
         Ok(limited.into_iter().filter_map(limit).collect())
     }

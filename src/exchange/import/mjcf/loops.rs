@@ -3,21 +3,21 @@
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::coupled::Coupled;
-use crate::exchange::import::bodies::End;
-use crate::exchange::import::refusal::{ImportError, wrong};
+use super::coupled::CoupledBodies;
+use crate::exchange::import::bodies::AttachmentPoint;
+use crate::exchange::import::refusal::{ImportError, element_error};
 use crate::mechanics::planar::Vector;
 
 /// Closure tolerance: vectors of a loop cancel if their sum is at most this fraction of the largest.
 const CLOSURE_TOLERANCE: f64 = 1e-9;
 /// Maximum number of sides of one loop.
 const MAX_SIDES: usize = 12;
-impl Coupled<'_> {
+impl CoupledBodies<'_> {
     /// Joins the sets that a loop keeps parallel: opposite sides of parallelograms.
     ///
     /// # Errors
     /// If the loop is not closed in the pose of the file, or if its sides do not pair.
-    pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[End; 2]) -> Result<(), ImportError> {
+    pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[AttachmentPoint; 2]) -> Result<(), ImportError> {
         let sides = self.sides(ends);
         let largest = sides.iter().fold(0.0_f64, |most, (_, v)| most.max(v.norm()));
         let is_zero = |v: Vector| v.norm() <= CLOSURE_TOLERANCE * largest;
@@ -33,7 +33,7 @@ impl Coupled<'_> {
         merged.retain(|(_, v)| !is_zero(*v));
         let total: Vector = merged.iter().map(|(_, v)| v).sum();
         if !is_zero(total) || merged.len() > MAX_SIDES {
-            return Err(wrong(
+            return Err(element_error(
                 node,
                 "its ends are apart in the pose of the file",
                 "a keyframe in which every loop is closed",
@@ -47,7 +47,11 @@ impl Coupled<'_> {
             let pairs = pairs.filter(|(a, b)| is_zero(merged[*a].1 + merged[*b].1));
             let apart = |(a, b): &(usize, usize)| (b - a).min(count - (b - a));
             let Some((a, b)) = pairs.max_by_key(apart) else {
-                return Err(wrong(node, "a loop that is no parallelogram", "loops whose opposite sides are equal"));
+                return Err(element_error(
+                    node,
+                    "a loop that is no parallelogram",
+                    "loops whose opposite sides are equal",
+                ));
             };
             self.together.join(merged[a].0, merged[b].0);
             merged.remove(b);
@@ -57,7 +61,7 @@ impl Coupled<'_> {
     }
 
     /// Returns the vector of each part from its hinge to the next, around the loop.
-    fn sides(&self, ends: &[End; 2]) -> Vec<(usize, Vector)> {
+    fn sides(&self, ends: &[AttachmentPoint; 2]) -> Vec<(usize, Vector)> {
         let flat = |p: Vector3<f64>| Vector::new(self.plane[0].dot(&p), self.plane[1].dot(&p));
         let mut sides: Vec<(usize, Vector)> = Vec::new();
         for (direction, (part, at)) in [(1.0, ends[0]), (-1.0, ends[1])] {

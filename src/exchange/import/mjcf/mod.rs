@@ -8,12 +8,12 @@ mod loops;
 mod sets;
 mod together;
 
-use coupled::Coupled;
+use coupled::CoupledBodies;
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::bodies::Bodies;
-use super::linkage::Linkage;
+use super::bodies::MjcfBodies;
+use super::linkage::ImportedLinkage;
 use super::read::{child, numbers, vector};
 use super::refusal::ImportError;
 
@@ -21,14 +21,14 @@ use super::refusal::ImportError;
 ///
 /// # Errors
 /// If the model is outside the family of machines.
-pub fn linkage(model: Node<'_, '_>) -> Result<Linkage, ImportError> {
-    let mut coupled = Coupled::of(Bodies::of(model)?)?;
+pub fn linkage(model: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
+    let mut coupled = CoupledBodies::of(MjcfBodies::of(model)?)?;
     coupled.couple()?;
     coupled.linkage()
 }
 
-impl Coupled<'_> {
-    fn linkage(mut self) -> Result<Linkage, ImportError> {
+impl CoupledBodies<'_> {
+    fn linkage(mut self) -> Result<ImportedLinkage, ImportError> {
         let motors = self.motors()?;
         let (mut numbered, rotors) = (self.numbered(&motors)?, self.rotors(&motors)?);
         self.armatures(&mut numbered, &rotors)?;
@@ -40,7 +40,7 @@ impl Coupled<'_> {
         notes.append(&mut self.bodies.notes);
         let pins = self.loops.iter().map(|ends| ends.map(|(i, at)| (self.owner(i), at)));
         let loops = pins.filter(|ends| ends.iter().all(|(i, _)| *i != self.base)).collect();
-        Ok(Linkage {
+        Ok(ImportedLinkage {
             name: model.attribute("model").unwrap_or("model").into(),
             gravity: gravity.unwrap_or(Vector3::new(0.0, 0.0, -9.81)),
             sets,

@@ -1,23 +1,26 @@
 //! The motor that turns each part, and the parts that are rotors.
 
-use super::coupled::{Against, Coupled, Geared, PARALLEL_WANTED};
-use crate::exchange::import::linkage::{Motor, Part};
-use crate::exchange::import::refusal::{ImportError, wrong};
+use super::coupled::{CoupledBodies, GearedPart, PARALLEL_WANTED, RelativeSet};
+use crate::exchange::import::linkage::{ImportedMotor, ImportedPart};
+use crate::exchange::import::refusal::{ImportError, element_error};
 
-impl Coupled<'_> {
+impl CoupledBodies<'_> {
     /// Returns the rotors: the part, its motor, and the gear ratio.
     ///
     /// # Errors
     /// If a coupling is not that of a rotor to its motor.
-    pub(super) fn rotors(&self, motors: &[(Motor, Against)]) -> Result<Vec<(usize, usize, f64)>, ImportError> {
-        let rotor = |geared: &Geared| {
+    pub(super) fn rotors(
+        &self,
+        motors: &[(ImportedMotor, RelativeSet)],
+    ) -> Result<Vec<(usize, usize, f64)>, ImportError> {
+        let rotor = |geared: &GearedPart| {
             let turned = self.against(&geared.to).map(|(to, from)| (self.set(to), self.set(from)));
             let k = motors.iter().position(|(_, against)| Some(*against) == turned);
             let is_leaf = !self.bodies.parts.iter().any(|part| part.parent == Some(geared.part));
             let sits = |k: &usize| motors[*k].1.1 == self.set(self.on(geared.part));
             k.filter(|k| is_leaf && sits(k))
                 .map(|k| (geared.part, k, geared.ratio))
-                .ok_or_else(|| wrong(geared.node, "it couples what is no rotor and motor", PARALLEL_WANTED))
+                .ok_or_else(|| element_error(geared.node, "it couples what is no rotor and motor", PARALLEL_WANTED))
         };
         self.geared.iter().map(rotor).collect()
     }
@@ -28,10 +31,10 @@ impl Coupled<'_> {
     /// If no motor turns a part that has a hinge.
     pub(super) fn sets(
         &self,
-        motors: &[(Motor, Against)],
+        motors: &[(ImportedMotor, RelativeSet)],
         rotors: &[(usize, usize, f64)],
     ) -> Result<Vec<Option<usize>>, ImportError> {
-        let set = |(i, part): (usize, &Part)| {
+        let set = |(i, part): (usize, &ImportedPart)| {
             let own = self.owner(Some(i));
             let k = motors.iter().position(|(_, (to, _))| own != self.base && *to == self.set(own));
             let is_rotor = rotors.iter().any(|(rotor, ..)| *rotor == i);

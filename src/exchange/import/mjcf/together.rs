@@ -1,11 +1,11 @@
-//! [`Together`]: the sets of parts that turn together.
+//! [`CoupledSets`]: the sets of parts that turn together.
 
 /// Disjoint sets of parts that turn together; the last index is the base.
-pub(super) struct Together {
+pub(super) struct CoupledSets {
     of: Vec<usize>,
 }
 
-impl Together {
+impl CoupledSets {
     /// Begins with each part in a set of its own.
     pub fn new(parts: usize) -> Self {
         Self { of: (0..=parts).collect() }

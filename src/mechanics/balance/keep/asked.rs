@@ -1,14 +1,14 @@
-//! [`Keep`]: the parameters that may change to balance a machine, with bounds and penalties.
+//! [`RebalanceRequest`]: the parameters that may change to balance a machine, with bounds and penalties.
 
 use super::super::breakdown::Body;
-use super::super::parameter::{Parameter, Quantity};
-use super::refusal::NotKept;
+use super::super::parameter::{BodyQuantity, Parameter};
+use super::refusal::RebalanceError;
 use crate::mechanics::machine::Machine;
-use crate::settings::number::Short;
+use crate::settings::number::ShortNumber;
 
 /// Bounds of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hold {
+pub enum ParameterBounds {
     /// The parameter keeps its value in the machine. Unlike one that is not listed, a refusal may name it as a cause.
     Fixed,
     /// Default bounds about the reference value: for a mass a tenth to ten times, for a position ten times the
@@ -30,29 +30,29 @@ const DEFAULT_TRAVEL_FACTOR: f64 = 10.0;
 
 /// A listed parameter, with its bounds and its penalty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adjusted {
+pub struct ListedParameter {
     /// The parameter.
     pub parameter: Parameter,
     /// Its bounds.
-    pub hold: Hold,
+    pub hold: ParameterBounds,
     /// Penalty p on its change, 1/m or 1/kg.
     pub penalty: f64,
     /// Reference value from which its change is measured, m or kg.
     pub from: f64,
 }
 
-impl Adjusted {
+impl ListedParameter {
     /// Returns its lower and upper bound, kg or m; both are its value if it is fixed.
     pub(super) fn ends(&self, machine: &Machine) -> Option<[f64; 2]> {
         let value = self.parameter.value(machine.spec())?;
         Some(match (self.hold, self.parameter.quantity) {
-            (Hold::Fixed, _) => [value; 2],
-            (Hold::Within(ends), _) => ends,
+            (ParameterBounds::Fixed, _) => [value; 2],
+            (ParameterBounds::Within(ends), _) => ends,
             // The default bounds include the present value.
-            (Hold::Free, Quantity::Mass) => {
+            (ParameterBounds::Free, BodyQuantity::Mass) => {
                 [value.min(self.from / DEFAULT_MASS_FACTOR), value.max(self.from * DEFAULT_MASS_FACTOR)]
             }
-            (Hold::Free, Quantity::Along | Quantity::Across) => {
+            (ParameterBounds::Free, BodyQuantity::Along | BodyQuantity::Across) => {
                 let way = DEFAULT_TRAVEL_FACTOR * machine.reach().max(1.0);
                 [value.min(self.from - way), value.max(self.from + way)]
             }
@@ -62,25 +62,25 @@ impl Adjusted {
     /// Returns the widest bounds to which its limits may be relaxed: the default bounds and its own, whichever are
     /// wider.
     pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
-        let ([low, high], usual) = (self.ends(machine)?, Self { hold: Hold::Free, ..*self }.ends(machine)?);
+        let ([low, high], usual) = (self.ends(machine)?, Self { hold: ParameterBounds::Free, ..*self }.ends(machine)?);
         Some([low.min(usual[0]), high.max(usual[1])])
     }
 }
 
 /// The parameters that may change. All others stay as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Keep {
+pub struct RebalanceRequest {
     /// The parameters, each at most once.
-    pub parameters: Vec<Adjusted>,
+    pub parameters: Vec<ListedParameter>,
 }
 
-impl Keep {
+impl RebalanceRequest {
     /// Lists the positions of all links' centres of mass along the links, with default bounds about their present
     /// values. `penalty` holds one penalty a link, such as those of a [`Preset`](super::super::Preset).
     pub fn coms(machine: &Machine, penalty: &[f64]) -> Self {
-        let adjusted = |(j, link): (usize, &crate::mechanics::machine::Link)| Adjusted {
+        let adjusted = |(j, link): (usize, &crate::mechanics::machine::Link)| ListedParameter {
             parameter: Parameter::com(j),
-            hold: Hold::Free,
+            hold: ParameterBounds::Free,
             penalty: penalty.get(j).copied().unwrap_or(1.0),
             from: link.com,
         };
@@ -98,33 +98,33 @@ impl Keep {
     }
 
     /// Returns the entry of a parameter.
-    pub fn of(&self, parameter: Parameter) -> Option<&Adjusted> {
+    pub fn of(&self, parameter: Parameter) -> Option<&ListedParameter> {
         self.parameters.iter().find(|one| one.parameter == parameter)
     }
 
     /// Sets the bounds of a parameter. A parameter that is not listed is added with its present value as reference and
     /// penalty 1.
-    pub fn hold(&mut self, machine: &Machine, parameter: Parameter, hold: Hold) {
+    pub fn hold(&mut self, machine: &Machine, parameter: Parameter, hold: ParameterBounds) {
         match self.parameters.iter_mut().find(|one| one.parameter == parameter) {
             Some(one) => one.hold = hold,
             None => {
                 let from = parameter.value(machine.spec()).unwrap_or_default();
-                self.parameters.push(Adjusted { parameter, hold, penalty: 1.0, from });
+                self.parameters.push(ListedParameter { parameter, hold, penalty: 1.0, from });
             }
         }
     }
 
     /// Checks that the parameters exist in a machine and that all numbers are within range.
-    pub(super) fn check(&self, machine: &Machine) -> Result<(), NotKept> {
+    pub(super) fn check(&self, machine: &Machine) -> Result<(), RebalanceError> {
         for (i, one) in self.parameters.iter().enumerate() {
             let bad = |what: &str, value: f64, want: String| {
-                Err(NotKept::OutOfRange { what: format!("{}: {what}", one.parameter.key(machine)), value, want })
+                Err(RebalanceError::OutOfRange { what: format!("{}: {what}", one.parameter.key(machine)), value, want })
             };
             if one.parameter.value(machine.spec()).is_none() {
-                return Err(NotKept::NoParameter(name(one.parameter, machine)));
+                return Err(RebalanceError::NoParameter(name(one.parameter, machine)));
             }
             if self.parameters[..i].iter().any(|other| other.parameter == one.parameter) {
-                return Err(NotKept::Twice(one.parameter.key(machine)));
+                return Err(RebalanceError::Twice(one.parameter.key(machine)));
             }
             if !(1e-6..=1e6).contains(&one.penalty) {
                 return bad("a penalty of", one.penalty, "1e-6 to 1e6".into());
@@ -133,8 +133,8 @@ impl Keep {
             if !range.contains(one.from) {
                 return bad("a change measured from", one.from, range.to_string());
             }
-            let Hold::Within([low, high]) = one.hold else { continue };
-            let zero_mass = low == 0.0 && one.parameter.quantity == Quantity::Mass;
+            let ParameterBounds::Within([low, high]) = one.hold else { continue };
+            let zero_mass = low == 0.0 && one.parameter.quantity == BodyQuantity::Mass;
             if !(range.contains(low) || zero_mass) {
                 return bad("bounds from", low, range.to_string());
             }
@@ -142,7 +142,7 @@ impl Keep {
                 return bad("bounds up to", high, range.to_string());
             }
             if low > high {
-                return bad("bounds up to", high, format!("no less than {}", Short(low)));
+                return bad("bounds up to", high, format!("no less than {}", ShortNumber(low)));
             }
         }
         Ok(())

@@ -1,21 +1,21 @@
-//! [`keep`]: the balanced machine with the least change.
+//! [`rebalance`]: the balanced machine with the least change.
 
 use nalgebra::DVector;
 
 use super::super::breakdown::Body;
 use super::super::condition::Condition;
-use super::super::parameter::{Parameter, Quantity};
-use super::super::plane::{Equation, Plane};
-use super::asked::{Adjusted, Hold, Keep, MIN_MASS};
-use super::refusal::{Limit, NotKept, Relief, Side};
-use super::search::{Mass, Search};
-use crate::convex::{Program, Row, conflict};
-use crate::mechanics::machine::{BALANCED, Inertia, Machine, MachineError, MachineSpec};
+use super::super::parameter::{BodyQuantity, Parameter};
+use super::super::plane::{LinearEquation, SolutionSpace};
+use super::asked::{ListedParameter, MIN_MASS, ParameterBounds, RebalanceRequest};
+use super::refusal::{LimitRelaxation, LimitSide, ParameterLimit, RebalanceError};
+use super::search::{MassVariable, RebalanceSearch};
+use crate::convex::{LinearRow, Program, infeasible_bounds};
+use crate::mechanics::machine::{BALANCE_TOLERANCE, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
 
 /// A machine that has been kept balanced.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct RebalancedMachine {
     /// The machine, balanced to rounding.
     pub machine: Machine,
     /// Value of each parameter, kg or m, in the order of the list.
@@ -27,7 +27,7 @@ pub struct Kept {
     pub certified: bool,
 }
 
-impl Kept {
+impl RebalancedMachine {
     /// Returns the settings that turn machine `of` into this machine, by key, including the radii of discs.
     pub fn settings(&self, of: &Machine) -> Vec<(String, f64)> {
         let (now, was) = (self.machine.spec(), of.spec());
@@ -46,22 +46,26 @@ impl Kept {
 /// # Errors
 /// If the list is not valid, or if there is no such machine: then with the limits that contradict each other and the
 /// values to which they would have to be relaxed.
-pub fn keep(machine: &Machine, asked: &Keep) -> Result<Kept, NotKept> {
-    keep_with(machine, asked, &[])
+pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<RebalancedMachine, RebalanceError> {
+    rebalance_with(machine, asked, &[])
 }
 
 /// As [`keep`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
 /// computed and additional residuals are to vanish.
 ///
 /// # Errors
-/// As [`keep`].
-pub fn keep_with(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<Kept, NotKept> {
+/// As [`rebalance`].
+pub fn rebalance_with(
+    machine: &Machine,
+    asked: &RebalanceRequest,
+    beyond: &[Vector],
+) -> Result<RebalancedMachine, RebalanceError> {
     asked.check(machine)?;
     let problem = Problem::of(machine, asked, beyond)?;
     let n = asked.parameters.len();
     let mut equations = problem.balance.clone();
     equations.extend((0..n).filter_map(|i| problem.fixed(i)));
-    let plane = Plane::of(&equations, n);
+    let plane = SolutionSpace::of(&equations, n);
     let bounds = problem.bounds(&problem.limits(false));
     match plane.exists.then(|| plane.nearest(&bounds)) {
         Some(Ok(nearest)) => {
@@ -80,13 +84,17 @@ pub fn keep_with(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<K
 ///
 /// # Errors
 /// If the list is not valid.
-pub fn unreachable_by_changes(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<Vec<Vector>, NotKept> {
+pub fn unreachable_by_changes(
+    machine: &Machine,
+    asked: &RebalanceRequest,
+    beyond: &[Vector],
+) -> Result<Vec<Vector>, RebalanceError> {
     asked.check(machine)?;
     let problem = Problem::of(machine, asked, beyond)?;
     let n = asked.parameters.len();
     let fixed = (0..n).filter_map(|i| problem.fixed(i));
-    let equations: Vec<Equation> = problem.balance.iter().cloned().chain(fixed).collect();
-    let missed = Plane::of(&equations, n).missed;
+    let equations: Vec<LinearEquation> = problem.balance.iter().cloned().chain(fixed).collect();
+    let missed = SolutionSpace::of(&equations, n).missed;
     let count = problem.conditions.len();
     Ok((0..count).map(|i| Vector::new(missed[i], missed[count + i])).collect())
 }
@@ -94,18 +102,18 @@ pub fn unreachable_by_changes(machine: &Machine, asked: &Keep, beyond: &[Vector]
 /// The conditions as equations in y, and the limits of y.
 struct Problem<'a> {
     machine: &'a Machine,
-    asked: &'a Keep,
+    asked: &'a RebalanceRequest,
     /// The machine with every parameter at its reference value.
     from: MachineSpec,
     conditions: Vec<Condition>,
     /// Additional residual of each condition.
     beyond: Vec<Vector>,
     /// The real parts of all conditions, then the imaginary ones.
-    balance: Vec<Equation>,
+    balance: Vec<LinearEquation>,
 }
 
 impl<'a> Problem<'a> {
-    fn of(machine: &'a Machine, asked: &'a Keep, beyond: &[Vector]) -> Result<Self, NotKept> {
+    fn of(machine: &'a Machine, asked: &'a RebalanceRequest, beyond: &[Vector]) -> Result<Self, RebalanceError> {
         let mut from = machine.spec().clone();
         for one in &asked.parameters {
             one.parameter.set(&mut from, one.from);
@@ -121,8 +129,11 @@ impl<'a> Problem<'a> {
                 let residual = condition.left(&start) + beyond;
                 // A tenth of the tolerance of the finished machine.
                 let tolerance = 0.1 * condition.nothing(&scale).max(condition.nothing(&start));
-                let equation =
-                    Equation { a: a.collect(), right: if across { -residual.im } else { -residual.re }, tolerance };
+                let equation = LinearEquation {
+                    a: a.collect(),
+                    right: if across { -residual.im } else { -residual.re },
+                    tolerance,
+                };
                 problem.balance.push(equation);
             }
         }
@@ -135,13 +146,16 @@ impl<'a> Problem<'a> {
         let mass = self.mass_from(parameter.body);
         let Some(link) = self.carrier(parameter.body) else { return 0.0 };
         let part = &self.machine.resolved_links()[link];
-        let at = |quantity: Quantity| Parameter::new(parameter.body, quantity).value(&self.from).unwrap_or_default();
+        let at =
+            |quantity: BodyQuantity| Parameter::new(parameter.body, quantity).value(&self.from).unwrap_or_default();
         match (parameter.quantity, across) {
-            (Quantity::Mass, false) => condition.by_mass(part) + at(Quantity::Along) * condition.by_moment(part),
-            (Quantity::Mass, true) => at(Quantity::Across) * condition.by_cross_moment(part),
-            (Quantity::Along, false) => mass * condition.by_moment(part),
-            (Quantity::Across, true) => mass * condition.by_cross_moment(part),
-            (Quantity::Along, true) | (Quantity::Across, false) => 0.0,
+            (BodyQuantity::Mass, false) => {
+                condition.by_mass(part) + at(BodyQuantity::Along) * condition.by_moment(part)
+            }
+            (BodyQuantity::Mass, true) => at(BodyQuantity::Across) * condition.by_cross_moment(part),
+            (BodyQuantity::Along, false) => mass * condition.by_moment(part),
+            (BodyQuantity::Across, true) => mass * condition.by_cross_moment(part),
+            (BodyQuantity::Along, true) | (BodyQuantity::Across, false) => 0.0,
         }
     }
 
@@ -158,7 +172,7 @@ impl<'a> Problem<'a> {
 
     /// Returns m₀ of a body, kg.
     fn mass_from(&self, body: Body) -> f64 {
-        Parameter::new(body, Quantity::Mass).value(&self.from).unwrap_or_default()
+        Parameter::new(body, BodyQuantity::Mass).value(&self.from).unwrap_or_default()
     }
 
     fn listed(&self, parameter: Parameter) -> Option<usize> {
@@ -166,65 +180,66 @@ impl<'a> Problem<'a> {
     }
 
     /// Returns the minimisation problem for bodies of which masses and positions may change.
-    fn search<'b>(&self, equations: &'b [Equation], bounds: &'b [Row]) -> Search<'b> {
+    fn search<'b>(&self, equations: &'b [LinearEquation], bounds: &'b [LinearRow]) -> RebalanceSearch<'b> {
         let all = || self.asked.parameters.iter().enumerate();
-        let masses = all().filter(|(_, one)| one.parameter.quantity == Quantity::Mass).map(|(at, one)| {
+        let masses = all().filter(|(_, one)| one.parameter.quantity == BodyQuantity::Mass).map(|(at, one)| {
             let places = all().filter(|(_, other)| {
                 other.parameter.body == one.parameter.body
-                    && other.parameter.quantity != Quantity::Mass
-                    && other.hold != Hold::Fixed
+                    && other.parameter.quantity != BodyQuantity::Mass
+                    && other.hold != ParameterBounds::Fixed
             });
             let ends = one.ends(self.machine).unwrap_or([one.from; 2]);
-            Mass { at, from: one.from, penalty: one.penalty, ends, places: places.map(|(i, _)| i).collect() }
+            MassVariable { at, from: one.from, penalty: one.penalty, ends, places: places.map(|(i, _)| i).collect() }
         });
-        let counts = all().map(|(_, one)| one.hold != Hold::Fixed).collect();
-        Search { equations, counts, masses: masses.collect(), bounds }
+        let counts = all().map(|(_, one)| one.hold != ParameterBounds::Fixed).collect();
+        RebalanceSearch { equations, counts, masses: masses.collect(), bounds }
     }
 
     /// Returns whether no body may change both its mass and a position: then the problem is a convex quadratic program.
     fn is_convex(&self) -> bool {
-        let all = || self.asked.parameters.iter().filter(|one| one.hold != Hold::Fixed).map(|one| one.parameter);
-        let mut masses = all().filter(|mass| mass.quantity == Quantity::Mass);
+        let all =
+            || self.asked.parameters.iter().filter(|one| one.hold != ParameterBounds::Fixed).map(|one| one.parameter);
+        let mut masses = all().filter(|mass| mass.quantity == BodyQuantity::Mass);
         !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
     }
 
     /// Returns the row a · y = right that holds where parameter i has a value, kg or m.
-    fn row(&self, i: usize, value: f64) -> Row {
-        let Adjusted { parameter, penalty, from, .. } = self.asked.parameters[i];
+    fn row(&self, i: usize, value: f64) -> LinearRow {
+        let ListedParameter { parameter, penalty, from, .. } = self.asked.parameters[i];
         let mut terms = vec![(i, 1.0)];
-        let of_body = self.listed(Parameter::new(parameter.body, Quantity::Mass));
-        if let (Some(k), true) = (of_body, parameter.quantity != Quantity::Mass) {
+        let of_body = self.listed(Parameter::new(parameter.body, BodyQuantity::Mass));
+        if let (Some(k), true) = (of_body, parameter.quantity != BodyQuantity::Mass) {
             let by = penalty * (value - from) / self.mass_from(parameter.body);
             terms.push((k, -by / self.asked.parameters[k].penalty));
         }
-        Row::new(terms, penalty * (value - from))
+        LinearRow::new(terms, penalty * (value - from))
     }
 
     /// Returns the equation of parameter i if it is fixed.
-    fn fixed(&self, i: usize) -> Option<Equation> {
+    fn fixed(&self, i: usize) -> Option<LinearEquation> {
         let one = &self.asked.parameters[i];
-        let value = one.parameter.value(self.machine.spec()).filter(|_| one.hold == Hold::Fixed)?;
+        let value = one.parameter.value(self.machine.spec()).filter(|_| one.hold == ParameterBounds::Fixed)?;
         let row = self.row(i, value);
         let mut a = vec![0.0; self.asked.parameters.len()];
         row.terms.iter().for_each(|&(j, by)| a[j] += by);
         // At least 1e-12 m or kg.
-        let tolerance = one.penalty * BALANCED * (value.abs() + one.from.abs()).max(1e-3);
-        Some(Equation { a, right: row.right, tolerance })
+        let tolerance = one.penalty * BALANCE_TOLERANCE * (value.abs() + one.from.abs()).max(1e-3);
+        Some(LinearEquation { a, right: row.right, tolerance })
     }
 
     /// Returns the limits with their rows a · y ≤ right; with those of fixed parameters if `fixed`.
-    fn limits(&self, fixed: bool) -> Vec<(Limit, Row)> {
+    fn limits(&self, fixed: bool) -> Vec<(ParameterLimit, LinearRow)> {
         let mut all = Vec::new();
         for (i, one) in self.asked.parameters.iter().enumerate() {
-            let ends = one.ends(self.machine).filter(|_| fixed || one.hold != Hold::Fixed);
-            for (side, value) in [Side::Least, Side::Most].into_iter().zip(ends.into_iter().flatten()) {
-                let (key, fixed) = (one.parameter.key(self.machine), one.hold == Hold::Fixed);
-                let usual = one.hold == Hold::Free;
+            let ends = one.ends(self.machine).filter(|_| fixed || one.hold != ParameterBounds::Fixed);
+            for (side, value) in [LimitSide::Least, LimitSide::Most].into_iter().zip(ends.into_iter().flatten()) {
+                let (key, fixed) = (one.parameter.key(self.machine), one.hold == ParameterBounds::Fixed);
+                let usual = one.hold == ParameterBounds::Free;
                 let carrier = match one.parameter.body {
                     Body::Counterweight(i) => Some(self.from.counterweights[i].link.clone()),
                     _ => None,
                 };
-                let limit = Limit { parameter: one.parameter, key, carrier, side, fixed, usual, value };
+                let limit = ParameterLimit { parameter: one.parameter, key, carrier, side, fixed, usual, value };
                 all.push((limit, self.limit(i, side, value)));
             }
         }
@@ -232,21 +247,21 @@ impl<'a> Problem<'a> {
     }
 
     /// Returns the rows of limits, after those that keep every mass positive.
-    fn bounds(&self, limits: &[(Limit, Row)]) -> Vec<Row> {
+    fn bounds(&self, limits: &[(ParameterLimit, LinearRow)]) -> Vec<LinearRow> {
         self.floors().chain(limits.iter().map(|(_, row)| row.clone())).collect()
     }
 
-    fn floors(&self) -> impl Iterator<Item = Row> {
+    fn floors(&self) -> impl Iterator<Item = LinearRow> {
         let masses = self.asked.parameters.iter().enumerate();
-        masses.filter(|(_, one)| one.parameter.quantity == Quantity::Mass).map(|(i, one)| {
+        masses.filter(|(_, one)| one.parameter.quantity == BodyQuantity::Mass).map(|(i, one)| {
             let present = one.parameter.value(self.machine.spec()).unwrap_or(one.from);
-            self.limit(i, Side::Least, MIN_MASS * one.from.min(present))
+            self.limit(i, LimitSide::Least, MIN_MASS * one.from.min(present))
         })
     }
 
-    fn limit(&self, i: usize, side: Side, value: f64) -> Row {
+    fn limit(&self, i: usize, side: LimitSide, value: f64) -> LinearRow {
         let mut row = self.row(i, value);
-        if side == Side::Least {
+        if side == LimitSide::Least {
             row.terms.iter_mut().for_each(|(_, by)| *by = -*by);
             row.right = -row.right;
         }
@@ -257,8 +272,8 @@ impl<'a> Problem<'a> {
     fn value(&self, i: usize, y: &DVector<f64>) -> f64 {
         let one = &self.asked.parameters[i];
         let change = |i: usize| y[i] / self.asked.parameters[i].penalty;
-        let ratio = match self.listed(Parameter::new(one.parameter.body, Quantity::Mass)) {
-            Some(k) if one.parameter.quantity != Quantity::Mass => {
+        let ratio = match self.listed(Parameter::new(one.parameter.body, BodyQuantity::Mass)) {
+            Some(k) if one.parameter.quantity != BodyQuantity::Mass => {
                 let mass = self.mass_from(one.parameter.body);
                 mass / (mass + change(k))
             }
@@ -267,14 +282,14 @@ impl<'a> Problem<'a> {
         one.from + change(i) * ratio
     }
 
-    fn kept(&self, y: &DVector<f64>) -> Result<Kept, NotKept> {
+    fn kept(&self, y: &DVector<f64>) -> Result<RebalancedMachine, RebalanceError> {
         let (mut spec, mut values, mut cost) = (self.machine.spec().clone(), Vec::new(), 0.0);
         for (i, one) in self.asked.parameters.iter().enumerate() {
             let value = match (one.hold, one.ends(self.machine)) {
-                (Hold::Fixed, _) | (_, None) => one.parameter.value(&spec).unwrap_or_default(),
+                (ParameterBounds::Fixed, _) | (_, None) => one.parameter.value(&spec).unwrap_or_default(),
                 (_, Some([low, high])) => self.value(i, y).clamp(low, high),
             };
-            if one.hold != Hold::Fixed {
+            if one.hold != ParameterBounds::Fixed {
                 one.parameter.set(&mut spec, value);
                 cost += (one.penalty * (value - one.from)).powi(2);
             }
@@ -288,31 +303,31 @@ impl<'a> Problem<'a> {
             (condition.left(&inertia) + beyond).norm() <= tolerance(condition)
         };
         match conditions.into_iter().all(balanced) {
-            true => Ok(Kept { machine, values, cost, certified: self.is_convex() }),
-            false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
+            true => Ok(RebalancedMachine { machine, values, cost, certified: self.is_convex() }),
+            false => Err(RebalanceError::Failed("what it found is not balanced to rounding".into())),
         }
     }
 
     /// Returns the reason why there is no solution.
-    fn conflict(&self) -> NotKept {
-        let plane = Plane::of(&self.balance, self.asked.parameters.len());
+    fn conflict(&self) -> RebalanceError {
+        let plane = SolutionSpace::of(&self.balance, self.asked.parameters.len());
         if !plane.exists {
             return self.inconsistent(&plane);
         }
         let limits = self.limits(true);
-        let solve = |limits: &[(Limit, Row)]| plane.nearest(&self.bounds(limits));
+        let solve = |limits: &[(ParameterLimit, LinearRow)]| plane.nearest(&self.bounds(limits));
         match solve(&limits) {
-            Ok(_) => NotKept::Failed("limits that contradict each other by no more than rounding".into()),
+            Ok(_) => RebalanceError::Failed("limits that contradict each other by no more than rounding".into()),
             Err(weights) => {
                 let relief = self.relief(&plane, &limits);
                 let weights = &weights[weights.len() - limits.len()..];
-                let limits = conflict(limits, weights, |some| solve(some).is_err());
-                if limits.is_empty() { NotKept::NoMass } else { NotKept::Conflict { limits, relief } }
+                let limits = infeasible_bounds(limits, weights, |some| solve(some).is_err());
+                if limits.is_empty() { RebalanceError::NoMass } else { RebalanceError::Conflict { limits, relief } }
             }
         }
     }
 
-    fn inconsistent(&self, plane: &Plane) -> NotKept {
+    fn inconsistent(&self, plane: &SolutionSpace) -> RebalanceError {
         let n = self.conditions.len();
         let residual = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
         let off: Vec<usize> = (0..n).filter(|i| residual(*i) > self.balance[*i].tolerance).collect();
@@ -321,19 +336,25 @@ impl<'a> Problem<'a> {
         let worst = of_kind.max_by(|a, b| residual(*a).total_cmp(&residual(*b))).unwrap_or_default();
         let condition = self.conditions[worst];
         let left = format!("{:.3e} {}", residual(worst), condition.unit());
-        NotKept::Inconsistent { condition: condition.name(self.machine), left }
+        RebalanceError::Inconsistent { condition: condition.name(self.machine), left }
     }
 
     /// Returns the relaxed limits with the least Σ p |change| with which there is a solution: within the default
     /// bounds, or without these if they are too tight. Empty if the solver finds no solution.
-    fn relief(&self, plane: &Plane, limits: &[(Limit, Row)]) -> Vec<Relief> {
+    fn relief(&self, plane: &SolutionSpace, limits: &[(ParameterLimit, LinearRow)]) -> Vec<LimitRelaxation> {
         let mut reliefs = [false, true].into_iter().map(|usual| self.relief_of(plane, limits, usual));
         reliefs.find(|relief| !relief.is_empty()).unwrap_or_default()
     }
 
-    fn relief_of(&self, plane: &Plane, limits: &[(Limit, Row)], usual: bool) -> Vec<Relief> {
+    fn relief_of(
+        &self,
+        plane: &SolutionSpace,
+        limits: &[(ParameterLimit, LinearRow)],
+        usual: bool,
+    ) -> Vec<LimitRelaxation> {
         let widest = self.asked.parameters.iter().enumerate().filter(|_| !usual).flat_map(|(i, one)| {
-            let ends = [Side::Least, Side::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
+            let ends =
+                [LimitSide::Least, LimitSide::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
             ends.map(move |(side, value)| self.limit(i, side, value))
         });
         let (m, c) = plane.cut(&widest.chain(self.bounds(limits)).collect::<Vec<_>>());
@@ -344,12 +365,12 @@ impl<'a> Problem<'a> {
             let mut terms: Vec<(usize, f64)> = (0..k).map(|j| (j, m[(i, j)])).collect();
             if i >= floors {
                 let gives = k + i - floors;
-                program.at_most.push(Row::new([(gives, -1.0)], 0.0));
+                program.at_most.push(LinearRow::new([(gives, -1.0)], 0.0));
                 if usual || !limits[i - floors].0.usual {
                     terms.push((gives, -1.0));
                 }
             }
-            program.at_most.push(Row::new(terms, c[i] / scale));
+            program.at_most.push(LinearRow::new(terms, c[i] / scale));
         }
         let Ok(least) = program.solve() else { return Vec::new() };
         let z = DVector::from_fn(k, |j, _| least.x[j] * scale);
@@ -361,24 +382,34 @@ impl<'a> Problem<'a> {
 
     /// Returns the relaxed limits that admit y, rounded outwards in steps of a fraction `step` of the change's power of
     /// ten.
-    fn relieved(&self, limits: &[(Limit, Row)], y: &DVector<f64>, step: f64, scale: f64) -> Vec<Relief> {
-        let relief = |(limit, row): &(Limit, Row)| {
+    fn relieved(
+        &self,
+        limits: &[(ParameterLimit, LinearRow)],
+        y: &DVector<f64>,
+        step: f64,
+        scale: f64,
+    ) -> Vec<LimitRelaxation> {
+        let relief = |(limit, row): &(ParameterLimit, LinearRow)| {
             let over = row.terms.iter().map(|&(j, by)| by * y[j]).sum::<f64>() - row.right;
             let i = self.listed(limit.parameter).filter(|_| over > 1e-7 * scale)?;
             let by = (self.value(i, y) - limit.value).abs();
             let digit = step * 10.0_f64.powf(by.log10().ceil());
             let to = match limit.side {
-                Side::Least => ((limit.value - by) / digit).floor() - 1.0,
-                Side::Most => ((limit.value + by) / digit).ceil() + 1.0,
+                LimitSide::Least => ((limit.value - by) / digit).floor() - 1.0,
+                LimitSide::Most => ((limit.value + by) / digit).ceil() + 1.0,
             };
-            Some(Relief { limit: limit.clone(), to: to * digit })
+            Some(LimitRelaxation { limit: limit.clone(), to: to * digit })
         };
         limits.iter().filter_map(relief).collect()
     }
 
     /// Returns the limits with their relaxed values.
-    fn relaxed(&self, limits: &[(Limit, Row)], relief: &[Relief]) -> Vec<(Limit, Row)> {
-        let row = |(limit, row): &(Limit, Row)| {
+    fn relaxed(
+        &self,
+        limits: &[(ParameterLimit, LinearRow)],
+        relief: &[LimitRelaxation],
+    ) -> Vec<(ParameterLimit, LinearRow)> {
+        let row = |(limit, row): &(ParameterLimit, LinearRow)| {
             let relaxed = relief.iter().find(|relief| relief.limit == *limit).zip(self.listed(limit.parameter));
             relaxed.map_or_else(|| row.clone(), |(relief, i)| self.limit(i, limit.side, relief.to))
         };
@@ -386,6 +417,6 @@ impl<'a> Problem<'a> {
     }
 }
 
-fn of_machine(why: MachineError) -> NotKept {
-    NotKept::Machine(why.to_string())
+fn of_machine(why: MachineError) -> RebalanceError {
+    RebalanceError::Machine(why.to_string())
 }

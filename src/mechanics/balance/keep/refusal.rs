@@ -1,4 +1,4 @@
-//! [`NotKept`]: the reason why a machine cannot be kept balanced, and the relaxed limits with which it can.
+//! [`RebalanceError`]: the reason why a machine cannot be kept balanced, and the relaxed limits with which it can.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::settings::number::nine_digits;
 
 /// Lower or upper limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum LimitSide {
     /// Lower limit.
     Least,
     /// Upper limit.
@@ -18,7 +18,7 @@ pub enum Side {
 
 /// A limit of a parameter. Both limits of a fixed parameter are its value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limit {
+pub struct ParameterLimit {
     /// The parameter.
     pub parameter: Parameter,
     /// Key of the parameter.
@@ -26,7 +26,7 @@ pub struct Limit {
     /// For a counterweight, the link that carries it, because its key has only its number.
     pub carrier: Option<String>,
     /// Whether it is the lower or the upper limit.
-    pub side: Side,
+    pub side: LimitSide,
     /// Whether the parameter is fixed.
     pub fixed: bool,
     /// Whether it is a default limit.
@@ -35,20 +35,20 @@ pub struct Limit {
     pub value: f64,
 }
 
-impl Limit {
+impl ParameterLimit {
     fn named(&self) -> String {
         let Some(link) = &self.carrier else { return self.key.clone() };
         format!("{} (on link {link})", self.key)
     }
 }
 
-impl fmt::Display for Limit {
+impl fmt::Display for ParameterLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (key, value) = (self.named(), nine_digits(self.value));
         match (self.fixed, self.side) {
             (true, _) => write!(f, "{key} stays {value}"),
-            (false, Side::Least) => write!(f, "{key} at least {value}"),
-            (false, Side::Most) => write!(f, "{key} at most {value}"),
+            (false, LimitSide::Least) => write!(f, "{key} at least {value}"),
+            (false, LimitSide::Most) => write!(f, "{key} at most {value}"),
         }?;
         if self.usual { write!(f, " unless bounded otherwise") } else { Ok(()) }
     }
@@ -56,20 +56,20 @@ impl fmt::Display for Limit {
 
 /// A limit with the value to which it is relaxed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Relief {
+pub struct LimitRelaxation {
     /// The limit.
-    pub limit: Limit,
+    pub limit: ParameterLimit,
     /// Its relaxed value, m or kg.
     pub to: f64,
 }
 
-impl fmt::Display for Relief {
+impl fmt::Display for LimitRelaxation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (key, to) = (self.limit.named(), nine_digits(self.to));
         match (self.limit.fixed, self.limit.side) {
             (true, _) => write!(f, "{key} free as far as {to}"),
-            (false, Side::Least) => write!(f, "{key} at least {to}"),
-            (false, Side::Most) => write!(f, "{key} at most {to}"),
+            (false, LimitSide::Least) => write!(f, "{key} at least {to}"),
+            (false, LimitSide::Most) => write!(f, "{key} at most {to}"),
         }
     }
 }
@@ -78,13 +78,13 @@ fn listed<T: fmt::Display>(all: &[T], between: &str) -> String {
     all.iter().map(T::to_string).collect::<Vec<_>>().join(between)
 }
 
-fn sufficient_relief(relief: &[Relief]) -> String {
+fn sufficient_relief(relief: &[LimitRelaxation]) -> String {
     if relief.is_empty() { String::new() } else { format!("; {} would do", listed(relief, " and ")) }
 }
 
 /// Why a machine cannot be kept balanced.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NotKept {
+pub enum RebalanceError {
     /// A number that is out of range.
     #[error("{what} {value}: want {want}")]
     OutOfRange {
@@ -120,9 +120,9 @@ pub enum NotKept {
     #[error("no balance within these limits: {}{}", listed(.limits, "; "), sufficient_relief(.relief))]
     Conflict {
         /// The limits; without any one of them the others do not contradict each other.
-        limits: Vec<Limit>,
+        limits: Vec<ParameterLimit>,
         /// Relaxed limits, of these and all others, with which there is a solution: those with the least Σ p |change|.
-        relief: Vec<Relief>,
+        relief: Vec<LimitRelaxation>,
     },
     /// The solver failed.
     #[error("the solver found no answer: {0}")]

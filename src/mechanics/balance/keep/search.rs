@@ -1,4 +1,4 @@
-//! [`Search`]: minimises Σ (p Δ)² if a mass and a position of one body may change.
+//! [`RebalanceSearch`]: minimises Σ (p Δ)² if a mass and a position of one body may change.
 //!
 //! In y the conditions and all limits are linear, but a position changes by y m₀/(p m). So the objective
 //! F(y) = Σ y_m² + Σ (y_l m₀/m)² is not convex. Newton's method minimises F from several starts. Each step goes
@@ -16,8 +16,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::super::distance::nearest;
-use super::super::plane::{Equation, Plane};
-use crate::convex::Row;
+use super::super::plane::{LinearEquation, SolutionSpace};
+use crate::convex::LinearRow;
 
 /// Maximum number of Newton steps from one start.
 const MAX_NEWTON_STEPS: usize = 60;
@@ -39,7 +39,7 @@ const MAX_SEARCHES: usize = 6;
 const VALUE_TOLERANCE: f64 = 1e-9;
 
 /// A mass that may change.
-pub(super) struct Mass {
+pub(super) struct MassVariable {
     /// Its index in y.
     pub at: usize,
     /// Reference mass m₀, kg.
@@ -53,18 +53,18 @@ pub(super) struct Mass {
 }
 
 /// The minimisation problem.
-pub(super) struct Search<'a> {
-    pub equations: &'a [Equation],
+pub(super) struct RebalanceSearch<'a> {
+    pub equations: &'a [LinearEquation],
     /// For each component of y whether it enters F: fixed ones do not.
     pub counts: Vec<bool>,
-    pub masses: Vec<Mass>,
+    pub masses: Vec<MassVariable>,
     /// The limits, a · y ≤ right.
-    pub bounds: &'a [Row],
+    pub bounds: &'a [LinearRow],
 }
 
-impl Search<'_> {
+impl RebalanceSearch<'_> {
     /// Returns the results of all searches, the best first; empty if no point is feasible.
-    pub fn least(&self, plane: &Plane) -> Vec<DVector<f64>> {
+    pub fn least(&self, plane: &SolutionSpace) -> Vec<DVector<f64>> {
         let mut starts = self.starts(plane);
         starts.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
         starts.truncate(MAX_SEARCHES);
@@ -81,7 +81,7 @@ impl Search<'_> {
     }
 
     /// Returns m₀/m of a body.
-    fn ratio(&self, mass: &Mass, y: &DVector<f64>) -> f64 {
+    fn ratio(&self, mass: &MassVariable, y: &DVector<f64>) -> f64 {
         mass.from / (mass.from + y[mass.at] / mass.penalty)
     }
 
@@ -95,7 +95,7 @@ impl Search<'_> {
         c.iter().zip(&self.counts).filter(|(_, counts)| **counts).map(|(c, _)| c * c).sum()
     }
 
-    fn starts(&self, plane: &Plane) -> Vec<DVector<f64>> {
+    fn starts(&self, plane: &SolutionSpace) -> Vec<DVector<f64>> {
         let all = START_MASS_RATIOS.map(|by| vec![by; self.masses.len()]);
         let several = self.masses.len() > 1;
         let mixed = (1..=(MIXED_STARTS_PER_MASS * self.masses.len()).min(MAX_MIXED_STARTS)).filter(|_| several);
@@ -110,17 +110,17 @@ impl Search<'_> {
             let mut a = vec![0.0; self.counts.len()];
             a[mass.at] = 1.0;
             let value = value.clamp(mass.ends[0], mass.ends[1]);
-            Equation { a, right: mass.penalty * (value - mass.from), tolerance: 1e-9 * mass.penalty * mass.from }
+            LinearEquation { a, right: mass.penalty * (value - mass.from), tolerance: 1e-9 * mass.penalty * mass.from }
         });
-        let equations: Vec<Equation> = self.equations.iter().cloned().chain(held).collect();
-        let plane = Plane::of(&equations, self.counts.len());
+        let equations: Vec<LinearEquation> = self.equations.iter().cloned().chain(held).collect();
+        let plane = SolutionSpace::of(&equations, self.counts.len());
         let y = plane.exists.then(|| plane.nearest(self.bounds).ok()).flatten()?;
         Some(self.descend(&plane, y))
     }
 
     /// Returns the minimum of the quadratic model of F in which m/m₀ has given ratios, and in which changes of masses
     /// are measured from those; `None` if it is not feasible.
-    fn start(&self, plane: &Plane, ratios: &[f64]) -> Option<DVector<f64>> {
+    fn start(&self, plane: &SolutionSpace, ratios: &[f64]) -> Option<DVector<f64>> {
         let mut h =
             DMatrix::from_diagonal(&DVector::from_iterator(self.counts.len(), self.counts.iter().map(curvature)));
         let mut from = DVector::zeros(self.counts.len());
@@ -136,7 +136,7 @@ impl Search<'_> {
     }
 
     /// Minimises F from a start by Newton's method with a backtracking line search.
-    fn descend(&self, plane: &Plane, start: DVector<f64>) -> DVector<f64> {
+    fn descend(&self, plane: &SolutionSpace, start: DVector<f64>) -> DVector<f64> {
         let (m, c) = plane.cut(self.bounds);
         let place = |z: &DVector<f64>| &plane.start + &plane.free * z;
         let mut z = plane.free.tr_mul(&(&start - &plane.start));

@@ -1,4 +1,4 @@
-//! [`Joints`]: joint space of any machine that has a b. Its axes are drive angles, and constant b is a surface in it: a
+//! [`JointSpace`]: joint space of any machine that has a b. Its axes are drive angles, and constant b is a surface in it: a
 //! plane, or a line with two axes.
 //!
 //! | subject | file |
@@ -15,27 +15,27 @@ mod section;
 pub use items::SYMBOLS;
 
 use prism::Prism;
-use section::Section;
+use section::JointSection;
 
 use super::Scene;
 use super::camera::Camera;
 use super::options::ViewOptions;
-use super::pick::{Aim, Pick};
+use super::pick::{DragAction, Pick};
 use super::pointer::Pointer;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
 /// Joint space of a run. The unit of the scene is the radian.
 #[derive(Clone, Debug)]
-pub struct Joints(Kind);
+pub struct JointSpace(Kind);
 
 #[derive(Clone, Debug)]
 enum Kind {
     Prism(Box<Prism>),
-    Section(Box<Section>),
+    Section(Box<JointSection>),
 }
 
-impl Joints {
+impl JointSpace {
     /// Prepares a run for drawing; to be repeated when its machine or plan changes. `None` without a b, or with a
     /// single drive.
     pub fn of(run: &Run) -> Option<Self> {
@@ -52,7 +52,7 @@ impl Joints {
         let space = run.pose_space().ok()?;
         match Prism::of(run, all) {
             Some(prism) => Some(Self(Kind::Prism(Box::new(prism)))),
-            None => Section::of(run, space, all).map(|section| Self(Kind::Section(Box::new(section)))),
+            None => JointSection::of(run, space, all).map(|section| Self(Kind::Section(Box::new(section)))),
         }
     }
 
@@ -155,7 +155,7 @@ impl Joints {
     }
 
     /// Returns the change that dragging an item to the pointer requests.
-    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         match &self.0 {
             Kind::Prism(prism) => prism.aim(pick, frame, pointer),
             Kind::Section(section) => section.aim(pick, frame, pointer),

@@ -10,16 +10,16 @@
 use std::sync::Arc;
 
 use super::items;
-use super::range::Range;
+use super::range::ShownRange;
 use crate::picture::numbers::degrees;
 use crate::picture::scene::camera::{Camera, Orbit};
 use crate::picture::scene::course::stations;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded, palette};
-use crate::picture::scene::pick::{Aim, NEAR, Pick};
+use crate::picture::scene::pick::{DragAction, PICK_RADIUS, Pick};
 use crate::picture::scene::pointer::{Pointer, dot};
 use crate::picture::scene::{
-    Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips, axes, place,
+    Anchor, IN_PLACE, ItemChanges, Label, Marker, Mesh, MeshSet, Polyline, Scene, Solid, Strips, Transform, axes, place,
 };
 use crate::planning::pose_space::Planes;
 use crate::planning::reactionless::PlanePoint;
@@ -38,7 +38,7 @@ const MARGIN_RAD: f64 = 0.25;
 pub(super) struct Prism {
     planes: Arc<Planes>,
     /// Meshes of the parallelogram of one plane and of the sides of the prism.
-    model: Arc<Model>,
+    model: Arc<MeshSet>,
     /// Index of the drive along each axis of the scene, from 0.
     drives: [usize; 3],
     /// Outline of the parallelogram.
@@ -48,7 +48,7 @@ pub(super) struct Prism {
     /// The planned motion along the axes of the scene, with origin q = 0; empty without a plan.
     course: Strips,
     /// Interval of b that is shown.
-    range: Range,
+    range: ShownRange,
     /// Whether b changes so much that the camera looks across the prism.
     b_varies: bool,
 }
@@ -57,7 +57,7 @@ impl Prism {
     /// Prepares a run with planes. With an interval `all` of b, rad, the shown interval is constant and contains it,
     /// and coordinates of the scene are q itself.
     pub fn of(run: &Run, all: Option<[f64; 2]>) -> Option<Self> {
-        let range = all.map_or_else(|| Range::sliding(HOME_B_RAD), |all| Range::over(all, HOME_B_RAD));
+        let range = all.map_or_else(|| ShownRange::sliding(HOME_B_RAD), |all| ShownRange::over(all, HOME_B_RAD));
         let planes = run.planes()?.clone();
         let map = planes.map();
         let lambda = map.lambda();
@@ -89,7 +89,7 @@ impl Prism {
         });
         let faces = [[own[0], own[1], own[2]], [own[0], own[2], own[3]]];
         let meshes = vec![shell(faces), shell(sides)];
-        space.model = Arc::new(Model { meshes });
+        space.model = Arc::new(MeshSet { meshes });
         space.outline = [space.polygon(HOME_B_RAD, HOME_B_RAD)].into();
         Some(space)
     }
@@ -192,7 +192,7 @@ impl Prism {
     /// Returns the item under the pointer that can be dragged: the dot of the pose, or the plane.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let (b, dot) = (frame.b_reference, self.pose(frame));
-        if pointer.distance(dot).is_some_and(|d| d < NEAR) {
+        if pointer.distance(dot).is_some_and(|d| d < PICK_RADIUS) {
             return Some(Pick::of(Handle::Target, dot));
         }
         let at = self.on_plane(b, pointer)?;
@@ -203,20 +203,20 @@ impl Prism {
     }
 
     /// Returns the change that dragging an item requests: the dot moves in its plane, the plane along its normal.
-    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let (b, map) = (frame.b_reference, self.planes.map());
         match pick.handle {
             Handle::Target => {
                 let at = self.on_plane(b, pointer)?;
                 let p = map.forward(map.clamp(map.project(&self.angles(at, b)).a), b);
-                Some(Aim::Target([p.re, p.im]))
+                Some(DragAction::Target([p.re, p.im]))
             }
             Handle::Plane => {
                 let normal = self.normal();
                 let s = pointer.ray()?.along_line(pick.at, normal)?;
                 let at = [0, 1, 2].map(|i| pick.at[i] + s * normal[i]);
                 let [low, high] = self.range.about(b);
-                Some(Aim::B(self.b_at(at, b).clamp(low, high)))
+                Some(DragAction::B(self.b_at(at, b).clamp(low, high)))
             }
             _ => None,
         }
@@ -238,8 +238,8 @@ impl Prism {
         // The meshes have the coordinates of the scene for b = HOME_B_RAD.
         let plane = shifted(self.point(&self.middle(b), b), self.point(&self.middle(HOME_B_RAD), HOME_B_RAD));
         scene.solids = vec![
-            solid("prism", 1, IN_PLACE, faded(palette.dim, 0.07), Changes::Nothing),
-            solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
+            solid("prism", 1, IN_PLACE, faded(palette.dim, 0.07), ItemChanges::Nothing),
+            solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), ItemChanges::Pose),
         ];
         let eye = camera.eye_direction().map(f64::from);
         let axes = items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b));
@@ -262,17 +262,17 @@ impl Prism {
     fn prism(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let [bottom, top] = self.range.about(b).map(|edge| self.polygon(edge, b));
         let edges: Vec<_> = bottom.iter().zip(&top).take(4).map(|(from, to)| vec![*from, *to]).collect();
-        let line = Line::new("limits", edges, 1.0, faded(palette.dim, 0.6));
-        scene.lines.push(Line { changes: self.range.changes(), ..line });
+        let line = Polyline::new("limits", edges, 1.0, faded(palette.dim, 0.6));
+        scene.lines.push(Polyline { changes: self.range.changes(), ..line });
     }
 
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let outlines: Vec<_> = self.range.neighbours(b).map(|of| self.polygon(of, b)).collect();
-        let line = Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top();
-        scene.lines.push(Line { changes: self.range.changes(), ..line });
+        let line = Polyline::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top();
+        scene.lines.push(Polyline { changes: self.range.changes(), ..line });
     }
 
-    fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Pose, hot: bool) {
+    fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Transform, hot: bool) {
         let b = frame.b_reference;
         let polygon = self.polygon(b, b);
         // Outside a corner that is not near the pose.
@@ -282,7 +282,7 @@ impl Prism {
         let text = items::named(b, self.planes.is_reactionless());
         scene.labels.push(Label::new("plane/label", at, [0.0; 2], text, palette.amber, 12.5, Anchor::Centre));
         self.limits(scene, palette, &polygon);
-        let outline = Line::new("plane/boundary", self.outline.clone(), if hot { 3.2 } else { 2.0 }, palette.amber);
+        let outline = Polyline::new("plane/boundary", self.outline.clone(), if hot { 3.2 } else { 2.0 }, palette.amber);
         scene.lines.push(outline.on_top().moving(pose));
     }
 
@@ -308,7 +308,7 @@ impl Prism {
             foot[i] = bounds[i][usize::from(eye[i] < 0.0)];
             let colour = palette.drive(self.drives[i]);
             let ends = [at, foot].map(|p| p.map(|x| x as f32));
-            let drop = Line::new(NAMES[i], [ends.to_vec()], 1.3, faded(colour, 0.75));
+            let drop = Polyline::new(NAMES[i], [ends.to_vec()], 1.3, faded(colour, 0.75));
             scene.lines.push(drop.dashed(3.0, 3.0));
             scene.markers.push(Marker::disc("pose/feet", ends[1], 2.5, colour));
         }
@@ -317,9 +317,9 @@ impl Prism {
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let Some(points) = self.course.first().filter(|points| points.len() > 1) else { return };
         let pose = shifted(self.point(&[0.0; 3], b), [0.0; 3]);
-        let path = Line::new("path", self.course.clone(), 2.0, palette.ink).dashed(2.0, 3.5).on_top();
-        let changes = if self.range.is_fixed() { Changes::Nothing } else { Changes::Pose };
-        scene.lines.push(Line { world_from_item: pose, changes, ..path });
+        let path = Polyline::new("path", self.course.clone(), 2.0, palette.ink).dashed(2.0, 3.5).on_top();
+        let changes = if self.range.is_fixed() { ItemChanges::Nothing } else { ItemChanges::Pose };
+        scene.lines.push(Polyline { world_from_item: pose, changes, ..path });
         let [first, last] = [points[0], points[points.len() - 1]].map(|p| place(&pose, p));
         items::draw_ends(scene, palette, [first, last]);
     }
@@ -332,7 +332,7 @@ impl Prism {
 }
 
 /// Returns the translation from one point of the scene to another.
-fn shifted(to: [f64; 3], from: [f64; 3]) -> Pose {
+fn shifted(to: [f64; 3], from: [f64; 3]) -> Transform {
     let mut pose = IN_PLACE;
     for i in 0..3 {
         pose[3][i] = (to[i] - from[i]) as f32;

@@ -1,6 +1,6 @@
-//! [`Range`]: the interval of b that joint space shows.
+//! [`ShownRange`]: the interval of b that joint space shows.
 
-use crate::picture::scene::{Changes, axes};
+use crate::picture::scene::{ItemChanges, axes};
 
 /// Minimum length of the interval, rad.
 const MIN_LENGTH_RAD: f64 = 3.0;
@@ -13,14 +13,14 @@ const MAX_SURFACES: i32 = 80;
 
 /// The interval of b that is shown: constant for a whole run, or following the present b.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
+pub(super) struct ShownRange {
     /// Centre of the interval while the present b is well inside, rad.
     home: f64,
     /// Constant interval of a whole run, rad.
     fixed: Option<[f64; 2]>,
 }
 
-impl Range {
+impl ShownRange {
     /// Returns an interval that follows the present b.
     pub fn sliding(home: f64) -> Self {
         Self { home, fixed: None }
@@ -29,7 +29,7 @@ impl Range {
     /// Returns the constant interval for a run whose b lie between `low` and `high`, rad.
     pub fn over([low, high]: [f64; 2], home: f64) -> Self {
         let width = MIN_LENGTH_RAD.max(high - low + 2.0 * MARGIN_RAD);
-        Self { home, fixed: Some(axes::covering([low, high], home, width, MARGIN_RAD)) }
+        Self { home, fixed: Some(axes::covering_range([low, high], home, width, MARGIN_RAD)) }
     }
 
     /// Whether the interval is constant.
@@ -39,7 +39,7 @@ impl Range {
 
     /// Returns the interval that is shown, rad; `b` is the present pose constant.
     pub fn about(&self, b: f64) -> [f64; 2] {
-        self.fixed.unwrap_or_else(|| axes::sliding(b, self.home, MIN_LENGTH_RAD, MARGIN_RAD))
+        self.fixed.unwrap_or_else(|| axes::sliding_range(b, self.home, MIN_LENGTH_RAD, MARGIN_RAD))
     }
 
     /// Returns the pose constants of neighbouring surfaces, rad; `b` is the present pose constant.
@@ -50,7 +50,7 @@ impl Range {
     }
 
     /// Returns which parts may change of the items around the present surface.
-    pub fn changes(&self) -> Changes {
-        if self.is_fixed() { Changes::Nothing } else { Changes::Shape }
+    pub fn changes(&self) -> ItemChanges {
+        if self.is_fixed() { ItemChanges::Nothing } else { ItemChanges::Shape }
     }
 }

@@ -1,4 +1,4 @@
-//! [`Section`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a line.
+//! [`JointSection`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a line.
 //! With four or more drives it is a three-dimensional section, at the present angles of the drives without an axis. In
 //! this section constant b is a plane.
 //!
@@ -7,17 +7,17 @@
 use std::sync::Arc;
 
 use super::items::{self, TITLES};
-use super::range::Range;
+use super::range::ShownRange;
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::picture::numbers::{degrees, round_up, signed};
-use crate::picture::scene::camera::{Camera, Flat, Orbit};
+use crate::picture::scene::camera::{Camera, FlatCamera, Orbit};
 use crate::picture::scene::course::stations;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded, palette};
-use crate::picture::scene::pick::{Aim, NEAR, Pick};
+use crate::picture::scene::pick::{DragAction, PICK_RADIUS, Pick};
 use crate::picture::scene::pointer::{Pointer, dot};
-use crate::picture::scene::{Anchor, Changes, IN_PLACE, Label, Line, Mesh, Model, Scene, Solid, axes};
-use crate::planning::pose_space::{Joint, PoseSpace};
+use crate::picture::scene::{Anchor, IN_PLACE, ItemChanges, Label, Mesh, MeshSet, Polyline, Scene, Solid, axes};
+use crate::planning::pose_space::{PoseSpace, RelativeJoint};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
@@ -28,7 +28,7 @@ const MARGIN_RAD: f64 = 0.2;
 
 /// The parts of joint space that do not change from frame to frame.
 #[derive(Clone, Debug)]
-pub(super) struct Section {
+pub(super) struct JointSection {
     space: Arc<PoseSpace>,
     /// Indices of the two or three drives along the axes, from 0.
     shown: Vec<usize>,
@@ -37,14 +37,14 @@ pub(super) struct Section {
     /// Bounds of the box along the axes of the scene.
     bounds: [[f64; 2]; 3],
     /// Interval of b that is shown.
-    range: Range,
+    range: ShownRange,
 }
 
-impl Section {
+impl JointSection {
     /// Prepares a run without planes that has a b. With an interval `all` of b, rad, the shown interval is constant and
     /// contains it, and coordinates of the scene are q itself.
     pub fn of(run: &Run, space: &Arc<PoseSpace>, all: Option<[f64; 2]>) -> Option<Self> {
-        let range = all.map_or_else(|| Range::sliding(HOME_B_RAD), |all| Range::over(all, HOME_B_RAD));
+        let range = all.map_or_else(|| ShownRange::sliding(HOME_B_RAD), |all| ShownRange::over(all, HOME_B_RAD));
         let n = space.drives();
         let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
         let shown = (0..n.min(3)).collect();
@@ -134,7 +134,7 @@ impl Section {
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
         let [x, y, z] = ends.map(|[from, to]| if self.range.is_fixed() { 0.5 * (from + to) } else { 0.0 });
         if self.is_flat() {
-            return Camera::Flat(Flat { centre: [x, y], half_height: 0.5 * size });
+            return Camera::Flat(FlatCamera { centre: [x, y], half_height: 0.5 * size });
         }
         // With a fixed interval, the camera is nearer.
         let near = if self.range.is_fixed() { 1.05 } else { 1.85 };
@@ -207,16 +207,16 @@ impl Section {
     /// Returns the item under the pointer that can be dragged: the dot of the pose, or the line or plane.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let dot = self.pose(frame);
-        if pointer.distance(dot).is_some_and(|d| d < NEAR) {
+        if pointer.distance(dot).is_some_and(|d| d < PICK_RADIUS) {
             return Some(Pick::of(Handle::Target, dot));
         }
         let at = self.under(frame, pointer)?;
         let part = self.surface(frame.b_reference, frame);
         let on = match (self.is_flat(), part.as_slice()) {
-            (true, [from, to, ..]) => pointer.distance_to_segment([*from, *to]).is_some_and(|d| d < 0.5 * NEAR),
+            (true, [from, to, ..]) => pointer.distance_to_segment([*from, *to]).is_some_and(|d| d < 0.5 * PICK_RADIUS),
             (true, _) => false,
             _ => {
-                let within = |joint: &Joint| {
+                let within = |joint: &RelativeJoint| {
                     let ([low, high], a) = (joint.bounds(), joint.of(&self.angles(at, frame)));
                     (low..=high).contains(&a)
                 };
@@ -228,13 +228,13 @@ impl Section {
     }
 
     /// Returns the change that dragging an item requests: the dot moves at constant b, the line or plane changes b.
-    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let (b, space) = (frame.b_reference, &self.space);
         match pick.handle {
             Handle::Target => {
                 let a = space.clamped(&space.angles(&self.angles(self.under(frame, pointer)?, frame)));
                 let p = space.place(&space.lift(&a, b));
-                Some(Aim::Target([p.re, p.im]))
+                Some(DragAction::Target([p.re, p.im]))
             }
             Handle::Plane => {
                 let at = if self.is_flat() {
@@ -245,7 +245,7 @@ impl Section {
                     [0, 1, 2].map(|i| pick.at[i] + s * normal[i])
                 };
                 let [low, high] = self.range.about(b);
-                Some(Aim::B(space.b(&self.angles(at, frame)).clamp(low, high)))
+                Some(DragAction::B(space.b(&self.angles(at, frame)).clamp(low, high)))
             }
             _ => None,
         }
@@ -257,13 +257,13 @@ impl Section {
         let b = frame.b_reference;
         let hot = options.hot == Some(Handle::Plane);
         let part = self.surface(b, frame);
-        let mut scene = Scene::new(palette.background, Arc::new(Model { meshes: vec![fan(&part)] }));
+        let mut scene = Scene::new(palette.background, Arc::new(MeshSet { meshes: vec![fan(&part)] }));
         if self.is_flat() {
             self.grid(&mut scene, &palette, frame);
             self.limits(&mut scene, &palette, frame);
         } else {
             let colour = faded(palette.amber, if hot { 0.42 } else { 0.34 });
-            let (name, changes) = ("plane".into(), Changes::Shape);
+            let (name, changes) = ("plane".into(), ItemChanges::Shape);
             scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
             let eye = camera.eye_direction().map(f64::from);
             let drives = [0, 1, 2].map(|i| self.shown[i]);
@@ -272,7 +272,7 @@ impl Section {
         }
         self.neighbours(&mut scene, &palette, frame);
         let width = if hot { 3.4 } else { 2.2 };
-        scene.lines.push(Line::new("plane/boundary", [closed(&part)], width, palette.amber).on_top());
+        scene.lines.push(Polyline::new("plane/boundary", [closed(&part)], width, palette.amber).on_top());
         if let Some(at) = self.label(&part, self.pose(frame)) {
             let text = items::named(b, self.space.is_reactionless());
             let label = Label::new("plane/label", at, [0.0, -14.0], text, palette.amber, 12.5, Anchor::Centre);
@@ -322,13 +322,13 @@ impl Section {
             scene.labels.push(label);
             let drop = vec![pose.map(|x| x as f32), foot];
             let name = ["pose/drop/1", "pose/drop/2"][i];
-            scene.lines.push(Line::new(name, [drop], 1.3, faded(tone, 0.75)).dashed(3.0, 3.0));
+            scene.lines.push(Polyline::new(name, [drop], 1.3, faded(tone, 0.75)).dashed(3.0, 3.0));
             let end = flat(at(i, to, low));
             let offset = if i == 0 { [12.0, 13.0] } else { [-8.0, -14.0] };
             let anchor = if i == 0 { Anchor::Left } else { Anchor::Right };
             scene.labels.push(Label::new("axes/titles", end, offset, TITLES[k], tone, 12.5, anchor));
         }
-        scene.lines.insert(0, Line::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));
+        scene.lines.insert(0, Polyline::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));
     }
 
     /// Draws, for two drives, the lines on which the relative angle is at a limit.
@@ -346,7 +346,7 @@ impl Section {
                 continue;
             }
             let ends = [from, to].map(|x| [x as f32, (x + lift) as f32, 0.0]);
-            scene.lines.push(Line::new("limits", [ends.to_vec()], 1.2, faded(palette.dim, 0.8)));
+            scene.lines.push(Polyline::new("limits", [ends.to_vec()], 1.2, faded(palette.dim, 0.8)));
             let (text, offset) = (format!("a₁ = {}°", degrees(limit)), [10.0, 0.0]);
             let label = Label::new("plane/limits", ends[1], offset, text, palette.dim, 10.5, Anchor::Left);
             scene.labels.push(label);
@@ -356,14 +356,14 @@ impl Section {
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let others = self.range.neighbours(frame.b_reference);
         let outlines: Vec<_> = others.map(|of| closed(&self.surface(of, frame))).filter(|o| o.len() > 1).collect();
-        scene.lines.push(Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top());
+        scene.lines.push(Polyline::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top());
     }
 
     /// Draws the planned motion along the shown drives.
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
-        let path = Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top();
+        let path = Polyline::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top();
         scene.lines.push(if self.range.is_fixed() { path.still() } else { path });
         items::draw_ends(scene, palette, [first, last]);
     }

@@ -4,14 +4,14 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{Pose2, Units, Vector, unit};
+use crate::mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 use crate::picture::numbers::{signed, three_digits};
 use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::{Linkage, PLATE};
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded, mix};
-use crate::picture::scene::{Anchor, Label, Line, Marker, Pose, Scene, point, posed};
+use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Transform, point, posed};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use crate::simulation::plant::{Base, BaseKind, Load};
@@ -30,14 +30,14 @@ pub struct BaseStage {
 }
 
 /// Applied force per distance that the pointer is dragged from the end effector, N/m.
-pub const PULL: f64 = 20.0;
+pub const PULL_STIFFNESS: f64 = 20.0;
 
 /// Motion of the base below this counts as rest, m and rad.
 const REST_THRESHOLD: f64 = 1e-12;
 
 impl BaseStage {
     /// Prepares base and payload of a run; `plant` is the machine with the lengths of the plant.
-    pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
+    pub fn of(run: &Run, plant: &Machine, linkage: &LinkageModel) -> Self {
         let scenario = run.scenario();
         let holder = &plant.resolved_links()[plant.end_link()];
         Self {
@@ -71,11 +71,11 @@ impl BaseStage {
     }
 
     /// Draws the symbols of the base: panels of a spacecraft, or springs between the plate and the ground.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
+    pub fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, shown: &DrawnFrame<'_>) {
         let reach = linkage.reach();
         let (z, top) = (linkage.bottom(), linkage.top());
         let place = |p: Vector| shown.base.at + p * unit(shown.base.angle);
-        let [length, width] = PLATE.map(|part| part * reach);
+        let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
         match self.base.kind {
             BaseKind::Fixed => {}
             BaseKind::Free => {
@@ -83,7 +83,7 @@ impl BaseStage {
                 let with_base = posed(shown.base.at, unit(shown.base.angle), 0.0);
                 let [outlines, ribs] = &self.panels;
                 let line = |name: &'static str, strips: &[Vec<[f32; 3]>], width, colour| {
-                    Line::new(name, strips, width, colour).moving(with_base)
+                    Polyline::new(name, strips, width, colour).moving(with_base)
                 };
                 scene.lines.push(line("machine/base/panels", outlines, 1.6, edge));
                 scene.lines.push(line("machine/base/panels/ribs", ribs, 1.0, faded(edge, 0.7)));
@@ -106,9 +106,9 @@ impl BaseStage {
                         vec![point(at, z), point(at + (out - across * (4.0 / reach)) * (0.014 * reach), z)]
                     }));
                 }
-                scene.lines.push(Line::new("springs", springs, 1.6, colour));
-                scene.lines.push(Line::new("springs/feet", walls, 2.2, colour).still());
-                scene.lines.push(Line::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).still());
+                scene.lines.push(Polyline::new("springs", springs, 1.6, colour));
+                scene.lines.push(Polyline::new("springs/feet", walls, 2.2, colour).still());
+                scene.lines.push(Polyline::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).still());
             }
         }
         if self.base.moves() {
@@ -122,18 +122,18 @@ impl BaseStage {
         }
     }
 
-    fn wheel(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
+    fn wheel(&self, scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, shown: &DrawnFrame<'_>) {
         let (z, radius, frame) = (linkage.top(), 0.082 * linkage.reach(), shown.frame);
         let colour = if frame.wheel.saturated { palette.reaction } else { palette.dim };
         let spun = unit(frame.totals.wheel_turn.rem_euclid(TAU));
-        let pose: Pose = posed(shown.base.at, spun, z);
+        let pose: Transform = posed(shown.base.at, spun, z);
         let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
         let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
         let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
         // The colour shows whether the wheel is saturated.
-        let line = |name: &'static str, strips: Vec<_>, width| Line {
+        let line = |name: &'static str, strips: Vec<_>, width| Polyline {
             world_from_item: pose,
-            ..Line::new(name, strips, width, colour).on_top()
+            ..Polyline::new(name, strips, width, colour).on_top()
         };
         scene.lines.push(line("wheel", vec![rim], 2.0));
         scene.lines.push(line("wheel/spokes", spokes.collect(), 1.6));
@@ -142,14 +142,14 @@ impl BaseStage {
     }
 
     /// Returns the drawn position of the payload, m, while the machine holds it.
-    pub fn load_at(&self, shown: &Shown<'_>) -> Option<Vector> {
+    pub fn load_at(&self, shown: &DrawnFrame<'_>) -> Option<Vector> {
         let (drive, sign) = self.holder;
         let [x, y] = self.load.offset;
         shown.frame.loaded.then(|| shown.end_effector + shown.q.units()[drive] * Vector::new(x, y) * sign)
     }
 
     /// Converts a drawn position of the payload, m, to offsets along and across the link that holds it, m.
-    pub fn offset_at(&self, shown: &Shown<'_>, at: Vector) -> [f64; 2] {
+    pub fn offset_at(&self, shown: &DrawnFrame<'_>, at: Vector) -> [f64; 2] {
         let (drive, sign) = self.holder;
         let off = (at - shown.end_effector) * shown.q.units()[drive].conj() * sign;
         [off.re, off.im]
@@ -159,16 +159,16 @@ impl BaseStage {
     pub fn load(
         &self,
         scene: &mut Scene,
-        linkage: &Linkage,
+        linkage: &LinkageModel,
         palette: &Palette,
-        shown: &Shown<'_>,
+        shown: &DrawnFrame<'_>,
         options: &ViewOptions,
     ) {
         let z = linkage.top();
         if let Some(at) = self.load_at(shown) {
             if (at - shown.end_effector).norm() > 1e-9 {
                 let stem = vec![point(shown.end_effector, z), point(at, z)];
-                scene.lines.push(Line::new("payload/stem", [stem], 2.0, palette.ink).on_top());
+                scene.lines.push(Polyline::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
             let hot = options.hot == Some(Handle::Payload);
             let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
@@ -194,16 +194,23 @@ impl BaseStage {
         }
         let reach = linkage.reach();
         let along = force / size;
-        let to = shown.end_effector + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
+        let to = shown.end_effector + along * (size / PULL_STIFFNESS).clamp(0.03 * reach, 0.6 * reach);
         let arrow = [vec![point(shown.end_effector, z), point(to, z)], head(to, along, 0.025 * reach, z)];
-        scene.lines.push(Line::new("push", arrow, 2.6, palette.amber).on_top());
+        scene.lines.push(Polyline::new("push", arrow, 2.6, palette.amber).on_top());
         let words = format!("{size:.2} N");
         let (aside, anchor) = if along.re < 0.0 { (-8.0, Anchor::Right) } else { (8.0, Anchor::Left) };
         scene.labels.push(Label::new("push/size", point(to, z), [aside, 0.0], words, palette.amber, 12.5, anchor));
     }
 
     /// Draws base and machine as if the base had not moved, if it has moved visibly, and writes its motion.
-    pub fn unmoved(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>, times: f64) {
+    pub fn unmoved(
+        &self,
+        scene: &mut Scene,
+        linkage: &LinkageModel,
+        palette: &Palette,
+        shown: &DrawnFrame<'_>,
+        times: f64,
+    ) {
         let Pose2 { at, angle } = shown.base;
         let reach = linkage.reach();
         if !self.base.moves() {
@@ -211,10 +218,10 @@ impl BaseStage {
         }
         if at.norm() + angle.abs() * reach > 0.002 * reach {
             let (z, colour) = (linkage.floor(), faded(palette.dim, 0.75));
-            let mut e: Units = shown.q.units();
+            let mut e: UnitVectors = shown.q.units();
             e.iter_mut().for_each(|e| *e *= unit(-angle));
             let mut strips: Vec<_> = linkage.outlines(&e).map(|ends| ends.map(|p| point(p, z)).to_vec()).collect();
-            let [length, width] = PLATE.map(|part| part * reach);
+            let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
             let straight = length - width;
             let cap = |side: f64| {
                 (0..=16).map(move |i| {
@@ -225,7 +232,7 @@ impl BaseStage {
             let mut outline: Vec<_> = cap(1.0).chain(cap(-1.0)).map(|p| point(p, linkage.bottom())).collect();
             outline.extend(outline.first().copied());
             strips.push(outline);
-            scene.lines.push(Line::new("unmoved", strips, 1.2, colour).dashed(3.0, 3.0));
+            scene.lines.push(Polyline::new("unmoved", strips, 1.2, colour).dashed(3.0, 3.0));
         }
         let exaggerated = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
         let text = format!("{}{exaggerated}", motion(shown.frame));
@@ -251,14 +258,14 @@ fn motion(frame: &Frame) -> String {
 }
 
 /// Returns outlines and ribs of the panels of a floating base, in the frame of the base.
-fn panels(linkage: &Linkage) -> [Vec<Vec<[f32; 3]>>; 2] {
+fn panels(linkage: &LinkageModel) -> [Vec<Vec<[f32; 3]>>; 2] {
     let (reach, z) = (linkage.reach(), linkage.bottom());
-    let (near, far, half) = (PLATE[0] + 0.035, PLATE[0] + 0.19, 0.075);
+    let (near, far, half) = (PLATE_HALF_SIZE[0] + 0.035, PLATE_HALF_SIZE[0] + 0.19, 0.075);
     let (mut outlines, mut ribs) = (Vec::new(), Vec::new());
     for side in [-1.0, 1.0] {
         let at = |x: f64, y: f64| point(Vector::new(side * x * reach, y * reach), z);
         outlines.push(vec![at(near, -half), at(far, -half), at(far, half), at(near, half), at(near, -half)]);
-        outlines.push(vec![at(PLATE[0], 0.0), at(far, 0.0)]);
+        outlines.push(vec![at(PLATE_HALF_SIZE[0], 0.0), at(far, 0.0)]);
         ribs.extend((1..3).map(|i| {
             let x = near + f64::from(i) * (far - near) / 3.0;
             vec![at(x, -half), at(x, half)]

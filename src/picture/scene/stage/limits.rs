@@ -5,13 +5,13 @@ use std::f64::consts::{PI, TAU};
 use crate::mechanics::kinematics::closest_turn;
 use crate::mechanics::machine::{MAX_ANGLE, Machine, RelativeAngle};
 use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::pick::{Grip, Pick, Pivot};
 use crate::picture::scene::pointer::Pointer;
-use crate::picture::scene::{Line, Marker, Name, Pose, Scene, Strips, place, point, posed};
+use crate::picture::scene::{Marker, Name, Polyline, Scene, Strips, Transform, place, point, posed};
 
 /// Radius of the innermost arc, as a fraction of the reach.
 const ARC_RADIUS: f64 = 0.062;
@@ -26,12 +26,12 @@ const MARK_WITHIN_RAD: f64 = 5.0 * PI / 180.0;
 
 /// The arcs of the joint limits of a machine.
 #[derive(Clone, Debug)]
-pub struct Limits {
-    arcs: Vec<Arc>,
+pub struct LimitArcs {
+    arcs: Vec<LimitArc>,
 }
 
 #[derive(Clone, Debug)]
-struct Arc {
+struct LimitArc {
     name: Name,
     /// Index of the relative angle, from 0.
     k: usize,
@@ -44,12 +44,12 @@ struct Arc {
     strips: Strips,
 }
 
-impl Limits {
+impl LimitArcs {
     /// Returns the arcs of a machine. A relative angle has no arc if it has no limits, or if no pin connects its links.
-    pub fn of(machine: &Machine, linkage: &Linkage) -> Self {
+    pub fn of(machine: &Machine, linkage: &LinkageModel) -> Self {
         let e = [Vector::new(1.0, 0.0); MAX_DRIVES];
         let pins: Vec<Vec<usize>> = linkage.joints(&e).map(|(_, links)| links.to_vec()).collect();
-        let mut arcs: Vec<Arc> = Vec::new();
+        let mut arcs: Vec<LimitArc> = Vec::new();
         for (k, angle) in machine.angles().iter().enumerate() {
             let span = angle.limits.end() - angle.limits.start();
             if !span.is_finite() || span >= TAU {
@@ -72,7 +72,7 @@ impl Limits {
             let others = arcs.iter().filter(|arc| arc.pin == pin).count();
             let sign = linkage.bars()[outer].sign();
             let radius = (ARC_RADIUS + ARC_SPACING * others as f64) * linkage.reach();
-            let mut arc = Arc {
+            let mut arc = LimitArc {
                 name: format!("machine/limits/{}", angle.name).into(),
                 k,
                 angle: angle.clone(),
@@ -96,9 +96,9 @@ impl Limits {
     pub fn draw(
         &self,
         scene: &mut Scene,
-        linkage: &Linkage,
+        linkage: &LinkageModel,
         palette: &Palette,
-        shown: &Shown<'_>,
+        shown: &DrawnFrame<'_>,
         hot: Option<Handle>,
     ) {
         for arc in &self.arcs {
@@ -106,8 +106,8 @@ impl Limits {
             let lit = matches!(hot, Some(Handle::Limit(k, _)) if k == arc.k)
                 || matches!(hot, Some(Handle::Joint(pin)) if pin == arc.pin);
             let colour = if lit { palette.ink } else { faded(palette.dim, 0.55) };
-            let line = Line::new(arc.name.clone(), arc.strips.clone(), if lit { 1.8 } else { 1.2 }, colour);
-            scene.lines.push(Line { world_from_item: pose, ..line });
+            let line = Polyline::new(arc.name.clone(), arc.strips.clone(), if lit { 1.8 } else { 1.2 }, colour);
+            scene.lines.push(Polyline { world_from_item: pose, ..line });
             for end in 0..2 {
                 let limit = arc.limit(end);
                 let held = hot == Some(Handle::Limit(arc.k, end));
@@ -123,7 +123,7 @@ impl Limits {
     }
 
     /// Returns the picks of the ends of all arcs at their drawn positions.
-    pub fn ends<'a>(&'a self, linkage: &'a Linkage, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
+    pub fn ends<'a>(&'a self, linkage: &'a LinkageModel, shown: &'a DrawnFrame<'a>) -> impl Iterator<Item = Pick> + 'a {
         self.arcs.iter().flat_map(move |arc| {
             let pivot = arc.pivot(linkage, shown);
             (0..2).filter_map(move |end| {
@@ -152,7 +152,7 @@ impl Limits {
     }
 }
 
-impl Arc {
+impl LimitArc {
     fn limit(&self, end: usize) -> f64 {
         if end == 0 { *self.angle.limits.start() } else { *self.angle.limits.end() }
     }
@@ -163,13 +163,13 @@ impl Arc {
     }
 
     /// Returns the centre of the arc with the angle of the inner drive, and the height, m.
-    fn pivot(&self, linkage: &Linkage, shown: &Shown<'_>) -> Option<(Pivot, f64)> {
+    fn pivot(&self, linkage: &LinkageModel, shown: &DrawnFrame<'_>) -> Option<(Pivot, f64)> {
         let ([x, y, _], _) = linkage.joints(&shown.q.units()).nth(self.pin)?;
         let at = shown.base.at + Vector::new(x, y);
         Some((Pivot { at: [at.re, at.im], inner: shown.q[self.angle.from] }, linkage.top()))
     }
 
-    fn pose(&self, linkage: &Linkage, shown: &Shown<'_>) -> Option<Pose> {
+    fn pose(&self, linkage: &LinkageModel, shown: &DrawnFrame<'_>) -> Option<Transform> {
         let (Pivot { at: [x, y], inner }, z) = self.pivot(linkage, shown)?;
         Some(posed(Vector::new(x, y), unit(inner), z))
     }

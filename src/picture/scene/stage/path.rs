@@ -1,30 +1,30 @@
 //! The planned path with its points, curves drawn with the pointer, and refused curves.
 
 use crate::mechanics::machine::place_of;
-use crate::mechanics::planar::{Units, Vector};
+use crate::mechanics::planar::{UnitVectors, Vector};
 use crate::picture::scene::course::{stations, waypoints};
-use crate::picture::scene::options::{Handle, Refused, ViewOptions};
+use crate::picture::scene::options::{Handle, RefusedCurve, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point};
-use crate::session::{Run, Waiting};
+use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point};
+use crate::session::{Run, WaitReason};
 
 /// A planned motion for drawing.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct PlannedPath {
     /// Height of the handles, m.
     z: f64,
     /// Start of the path, m.
     pub begins: Option<Vector>,
     path: Strips,
     /// Pose at the start.
-    pub start: Units,
+    pub start: UnitVectors,
     /// Points of the task: index, name and position, m.
     pub waypoints: Vec<(usize, String, Vector)>,
     /// Reason why the run waits, and the curve that cannot be followed, if that is the reason.
-    waiting: Option<(Waiting, Option<Refused>)>,
+    waiting: Option<(WaitReason, Option<RefusedCurve>)>,
 }
 
-impl Plan {
+impl PlannedPath {
     /// Returns the planned motion of a run, if it has a plan; it is drawn at height `z`, m.
     pub fn of(run: &Run, z: f64) -> Option<Self> {
         let (tip, motion) = (*run.scenario().machine.end_effector(), run.motion()?);
@@ -40,7 +40,7 @@ impl Plan {
             path: [points.into_iter().map(|p| point(p, z)).collect()].into(),
             start: motion.path.at(0.0).q.units(),
             waypoints: waypoints(run),
-            waiting: run.waiting().map(|waiting| (waiting.clone(), Refused::of(&waiting.why))),
+            waiting: run.waiting().map(|waiting| (waiting.clone(), RefusedCurve::of(&waiting.why))),
         })
     }
 
@@ -51,7 +51,7 @@ impl Plan {
 
     /// Draws the path and its points.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
-        let path = Line::new("plan/path", self.path.clone(), 1.6, faded(palette.ink, 0.75));
+        let path = Polyline::new("plan/path", self.path.clone(), 1.6, faded(palette.ink, 0.75));
         scene.lines.push(path.dashed(2.0, 4.0).on_top().still());
         for (i, name, at) in &self.waypoints {
             let hot = options.hot == Some(Handle::Waypoint(*i));
@@ -78,20 +78,20 @@ impl Plan {
     }
 
     /// Returns the curve that cannot be followed, if that is why the run waits.
-    pub fn blocked(&self) -> Option<&Refused> {
+    pub fn blocked(&self) -> Option<&RefusedCurve> {
         self.waiting.as_ref().and_then(|(_, curve)| curve.as_ref())
     }
 }
 
 /// Draws the curve that the user is drawing, and a refused curve, at height `z`, m.
-pub fn by_hand(scene: &mut Scene, palette: &Palette, options: &ViewOptions, blocked: Option<&Refused>, z: f64) {
+pub fn by_hand(scene: &mut Scene, palette: &Palette, options: &ViewOptions, blocked: Option<&RefusedCurve>, z: f64) {
     let drawn = |points: &[Vector]| [points.iter().map(|p| point(*p, z)).collect()];
     if options.stroke.len() > 1 {
         let stroke: Vec<Vector> = options.stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
-        scene.lines.push(Line::new("stroke", drawn(&stroke), 1.8, palette.ink).on_top());
+        scene.lines.push(Polyline::new("stroke", drawn(&stroke), 1.8, palette.ink).on_top());
     }
     if let Some(refused) = options.refused.as_deref().or(blocked) {
-        let curve = Line::new("refused", drawn(&refused.curve), 1.8, palette.reaction);
+        let curve = Polyline::new("refused", drawn(&refused.curve), 1.8, palette.reaction);
         scene.lines.push(curve.dashed(4.0, 4.0).on_top());
         let at = point(refused.at, z);
         scene.markers.push(Marker::disc("refused/at", at, 5.5, palette.background).edged(palette.reaction, 2.2));

@@ -5,10 +5,10 @@ use crate::mechanics::machine::{Chain, Machine, place_of};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_number, round_up, signed};
 use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::{Anchor, Label, Line, Name, Scene, point};
+use crate::picture::scene::{Anchor, Label, Name, Polyline, Scene, point};
 
 /// The pins of a machine; empty if their forces are statically indeterminate.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl Pins {
     /// Draws the force of each pin, from its first link on its second. The largest force has the colour of reactions
     /// and a label. The scale depends on the largest force of the instant, because near a change point forces are
     /// unbounded.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
+    pub fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, shown: &DrawnFrame<'_>) {
         let Self(pins) = self;
         if pins.is_empty() {
             return;
@@ -51,7 +51,7 @@ impl Pins {
             let size = (0.3 * arrow.norm()).min(0.025 * reach);
             let to = from + arrow;
             let strips = [vec![point(from, z), point(to, z)], head(to, arrow / arrow.norm(), size, z)];
-            scene.lines.push(Line::new(pin.item.clone(), strips, 2.2, colour).on_top());
+            scene.lines.push(Polyline::new(pin.item.clone(), strips, 2.2, colour).on_top());
             if worst {
                 let text = format!("{} {} N", pin.name, signed(force.norm(), 1));
                 let at = point(to, z);

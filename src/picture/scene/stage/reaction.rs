@@ -5,33 +5,33 @@ use std::f64::consts::FRAC_PI_2;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_number;
 use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::reaction::{ARROW, RADIUS, Reaction, Scale};
-use crate::picture::scene::{Anchor, Label, Line, Scene, Strips, point, posed};
+use crate::picture::scene::reaction::{ARC_RADIUS, FULL_ARROW, ReactionGlyph, Scale};
+use crate::picture::scene::{Anchor, Label, Polyline, Scene, Strips, point, posed};
 use crate::simulation::frame::Frame;
 
 /// Draws the reaction on the base and the centre of mass; `rest` is the name of the constant force.
 pub fn draw(
     scene: &mut Scene,
-    linkage: &Linkage,
+    linkage: &LinkageModel,
     palette: &Palette,
-    shown: &Shown<'_>,
+    shown: &DrawnFrame<'_>,
     options: &ViewOptions,
     rest: &str,
 ) {
     let (z, reach, frame) = (linkage.top(), linkage.reach(), shown.frame);
-    let (b, felt) = (shown.base.at, Reaction::of(frame));
+    let (b, felt) = (shown.base.at, ReactionGlyph::of(frame));
     let so_far = || Scale::of(frame.peaks.force.max(felt.force.norm()), frame.peaks.moment);
     let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
     // An invisible arrow or arc is a line without points.
     let mut line = |name: &'static str, own: Handle, strips: Vec<Vec<[f32; 3]>>| {
         let width = if options.hot == Some(own) { 5.0 } else { 3.0 };
-        let line = Line::new(name, Strips::from(strips), width, palette.reaction).on_top();
-        scene.lines.push(Line { world_from_item: at_b, ..line });
+        let line = Polyline::new(name, Strips::from(strips), width, palette.reaction).on_top();
+        scene.lines.push(Polyline { world_from_item: at_b, ..line });
     };
     let arrow = felt.arrow(newtons).map(|parts| parts * reach);
     line(
@@ -42,7 +42,7 @@ pub fn draw(
             vec![shaft, head(arrow, arrow / arrow.norm(), 0.025 * reach, 0.0)]
         }),
     );
-    let (sweep, radius) = (felt.sweep(newton_metres), RADIUS * reach);
+    let (sweep, radius) = (felt.sweep(newton_metres), ARC_RADIUS * reach);
     line(
         "reaction/moment",
         Handle::Moment,
@@ -57,9 +57,9 @@ pub fn draw(
     let arm = (0.014 * reach) as f32;
     let cross = [vec![[-arm, 0.0, 0.0], [arm, 0.0, 0.0]], vec![[0.0, -arm, 0.0], [0.0, arm, 0.0]]];
     let at_com = posed(shown.com, Vector::new(1.0, 0.0), z);
-    scene.lines.push(Line::new("com", cross, 1.8, palette.ink).on_top().moving(at_com));
+    scene.lines.push(Polyline::new("com", cross, 1.8, palette.ink).on_top().moving(at_com));
     let scale: Vec<String> = [
-        arrow.map(|_| format!("arrow: {:.3} m = {} N", ARROW * reach, round_number(newtons))),
+        arrow.map(|_| format!("arrow: {:.3} m = {} N", FULL_ARROW * reach, round_number(newtons))),
         sweep.map(|_| format!("arc: 135° = {} N m", round_number(newton_metres))),
     ]
     .into_iter()

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use crate::mechanics::kinematics::closest_turn;
 use crate::mechanics::planar::{Vector, unit};
-use crate::picture::scene::exaggeration::Shown;
+use crate::picture::scene::exaggeration::DrawnFrame;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
+use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point, posed};
 use crate::planning::pose_space::PoseSpace;
 
 /// Number of vertices of the circle.
@@ -15,7 +15,7 @@ const CIRCLE_VERTICES: u32 = 96;
 
 /// The ring in the frame of the base.
 #[derive(Clone, Debug)]
-pub struct Ring {
+pub struct BaseRing {
     circle: Strips,
     /// Radius, m.
     radius: f64,
@@ -23,7 +23,7 @@ pub struct Ring {
     lambda_sum: f64,
 }
 
-impl Ring {
+impl BaseRing {
     /// Returns the ring of a machine with a b; `radius` in m.
     pub fn of(space: &PoseSpace, radius: f64) -> Self {
         let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * radius, 0.0);
@@ -32,31 +32,31 @@ impl Ring {
     }
 
     /// Direction of the knob at the present b, rad.
-    fn turn(&self, shown: &Shown<'_>) -> f64 {
+    fn turn(&self, shown: &DrawnFrame<'_>) -> f64 {
         shown.frame.b_reference / self.lambda_sum + shown.base.angle
     }
 
     /// Returns the position of the knob, m.
-    pub fn knob(&self, shown: &Shown<'_>) -> Vector {
+    pub fn knob(&self, shown: &DrawnFrame<'_>) -> Vector {
         shown.base.at + unit(self.turn(shown)) * self.radius
     }
 
     /// Returns the b of a position of the knob, rad; of all full turns, the b nearest to `near`.
-    pub fn b(&self, at: Vector, near: f64, shown: &Shown<'_>) -> f64 {
+    pub fn b(&self, at: Vector, near: f64, shown: &DrawnFrame<'_>) -> f64 {
         closest_turn(shown.in_base(at).arg(), near / self.lambda_sum) * self.lambda_sum
     }
 
     /// Draws the ring at height `z`, m.
-    pub fn draw(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+    pub fn draw(&self, scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions, z: f64) {
         let (at, base, turn) = (shown.base.at, shown.base.angle, self.turn(shown));
         let pose = posed(at, unit(base), z);
-        let ring = Line::new("b_ring", self.circle.clone(), 3.0, faded(palette.line, 0.9)).on_top();
+        let ring = Polyline::new("b_ring", self.circle.clone(), 3.0, faded(palette.line, 0.9)).on_top();
         scene.lines.push(ring.moving(pose));
         let swept = (turn - base).rem_euclid(TAU);
         let n = ((swept / TAU * 48.0).ceil() as usize).max(2);
         let along = |i: usize| point(at + unit(base + swept * i as f64 / n as f64) * self.radius, z);
         let arc = (0..=n).map(along).collect();
-        scene.lines.push(Line::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
+        scene.lines.push(Polyline::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
         let hot = options.hot == Some(Handle::Ring);
         let disc = Marker::disc("b_ring/knob", point(self.knob(shown), z), if hot { 9.0 } else { 7.0 }, palette.amber);
         scene.markers.push(disc.edged(palette.background, 2.0));

@@ -3,10 +3,10 @@
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::course::target_handle;
-use crate::picture::scene::exaggeration::Shown;
+use crate::picture::scene::exaggeration::DrawnFrame;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, point};
+use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, point};
 use crate::simulation::frame::{Frame, Reach};
 
 /// Text at the target while it can be dragged.
@@ -20,7 +20,7 @@ fn place(p: Vector) -> String {
 }
 
 /// Draws the end effector and its target at height `z`, m.
-pub fn draw(scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions, z: f64) {
     let frame = shown.frame;
     let hot = options.hot == Some(Handle::Target);
     let outside = matches!(frame.target.reach, Reach::Outside { .. });
@@ -32,7 +32,7 @@ pub fn draw(scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &V
     let ring = Marker::disc("target", point(at, z), if hot { 15.0 } else { 12.5 }, inside);
     scene.markers.push(ring.edged(ink, 2.2));
     let between = |name: &'static str, from: Vector| {
-        Line::new(name, [vec![point(from, z), point(at, z)]], 1.4, dim).dashed(4.0, 4.0).on_top()
+        Polyline::new(name, [vec![point(from, z), point(at, z)]], 1.4, dim).dashed(4.0, 4.0).on_top()
     };
     let (first, anchor) = match frame.target.reach {
         Reach::Outside { nearest, .. } => {

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, dot};
-use crate::picture::scene::exaggeration::Shown;
+use crate::picture::scene::exaggeration::DrawnFrame;
 use crate::picture::scene::linkage::Bar;
 use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{Aim, Grip, Hold, Hook, Pick, ROUND_ANGLE};
+use crate::picture::scene::pick::{ANGLE_SNAP, DragAction, GrabPoint, Grip, LinkHold, Pick};
 use crate::picture::scene::pointer::Pointer;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 use crate::simulation::frame::Frame;
@@ -16,7 +16,7 @@ use crate::simulation::frame::Frame;
 const SEARCH_STEP_RAD: f64 = 0.02;
 
 /// Returns the position of the pointer in the plane of a link, in the frame of the base, m.
-fn place(bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Vector> {
+fn place(bar: &Bar, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Vector> {
     let (.., z) = bar.pose(&shown.frame.q_reference.units());
     let [x, y] = pointer.ray()?.at_height(z)?;
     Some(shown.in_base(Vector::new(x, y)))
@@ -34,47 +34,53 @@ fn off(bar: &Bar, q: &DriveAngles, at: Vector) -> f64 {
 }
 
 /// Picks a link for rotation.
-pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
     let at = place(bar, shown, pointer)?;
     // Actual, not reference angles: the user picks the link at its drawn position.
     let angle = off(bar, &relative(shown.frame), at);
     let from = map.project(&shown.frame.q_reference).a;
     let (.., z) = bar.pose(&shown.q.units());
-    let grip = Some(Grip::Link(Hold { angle, from, snaps: false }));
+    let grip = Some(Grip::Link(LinkHold { angle, from, snaps: false }));
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
 /// Picks a link for a drag while the end effector stays.
-pub fn hook(link: usize, bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+pub fn hook(link: usize, bar: &Bar, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
     let at = place(bar, shown, pointer)?;
     let q = relative(shown.frame);
     let (root, direction, z) = bar.pose(&q.units());
     let along = dot(at - root, direction).clamp(0.0, bar.length());
     let off = root + direction * along - at;
-    let grip = Some(Grip::Pull(Hook { along, off: [off.re, off.im] }));
+    let grip = Some(Grip::Pull(GrabPoint { along, off: [off.re, off.im] }));
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
 /// Returns the change requested by dragging a link while the end effector stays.
-pub fn pulled(link: usize, bar: &Bar, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
+pub fn pulled(
+    link: usize,
+    bar: &Bar,
+    hook: &GrabPoint,
+    shown: &DrawnFrame<'_>,
+    pointer: &Pointer,
+) -> Option<DragAction> {
     let at = place(bar, shown, pointer)?;
-    Some(Aim::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
+    Some(DragAction::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
 }
 
 /// Returns the angles (a_1, a_2), rad, on the plane b for which the link follows the pointer. The search starts at the
 /// present angle of the drive, goes in the direction of the pointer, and ends at the joint limits.
 pub fn turned(
     bar: &Bar,
-    grip: &Hold,
+    grip: &LinkHold,
     map: &PlaneMap,
-    shown: &Shown<'_>,
+    shown: &DrawnFrame<'_>,
     pointer: &Pointer,
     b: f64,
 ) -> Option<[f64; 2]> {
     let at = place(bar, shown, pointer)?;
     let pose = |angle: f64| map.turned(bar.drive, angle, b, grip.from);
     let stops = |angle: f64| match grip.snaps {
-        true => pose((angle / ROUND_ANGLE).round() * ROUND_ANGLE),
+        true => pose((angle / ANGLE_SNAP).round() * ANGLE_SNAP),
         false => pose(angle),
     };
     let residual = |angle: f64| {

@@ -2,12 +2,12 @@
 
 use super::reaction;
 use crate::mechanics::planar::Vector;
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::{Linkage, PLATE};
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::pointer::Pointer;
-use crate::picture::scene::{Line, Scene, Solid, place};
+use crate::picture::scene::{Polyline, Scene, Solid, place};
 
 /// Distances within which the pointer picks a link, a line, a pin and a payload, px.
 const LINK_PICK_PX: f64 = 6.0;
@@ -23,7 +23,7 @@ fn seen_near(pointer: &Pointer, at: [f64; 3], most: f64) -> bool {
 }
 
 /// Returns the index of the link under the pointer; the uppermost of several.
-pub fn link(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+pub fn link(linkage: &LinkageModel, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<usize> {
     let (e, at) = (shown.q.units(), shown.base.at);
     let near = |ends: [[f64; 3]; 2]| {
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
@@ -34,26 +34,26 @@ pub fn link(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<u
 }
 
 /// Returns the index of the pin under the pointer.
-pub fn joint(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+pub fn joint(linkage: &LinkageModel, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<usize> {
     let (e, at) = (shown.q.units(), shown.base.at);
     linkage.joints(&e).position(|([x, y, z], _)| seen_near(pointer, [x + at.re, y + at.im, z], PIN_PICK_PX))
 }
 
 /// Whether the payload at a position, m, is under the pointer.
-pub fn payload(at: Vector, linkage: &Linkage, pointer: &Pointer) -> bool {
+pub fn payload(at: Vector, linkage: &LinkageModel, pointer: &Pointer) -> bool {
     seen_near(pointer, [at.re, at.im, linkage.top()], PAYLOAD_PICK_PX)
 }
 
 /// Whether the base is under the pointer.
-pub fn base(linkage: &Linkage, moves: bool, shown: &Shown<'_>, pointer: &Pointer) -> bool {
+pub fn base(linkage: &LinkageModel, moves: bool, shown: &DrawnFrame<'_>, pointer: &Pointer) -> bool {
     let Some([x, y]) = pointer.ray().and_then(|ray| ray.at_height(linkage.bottom())) else { return false };
     let at = shown.in_base(Vector::new(x, y));
-    let [length, width] = PLATE.map(|part| part * linkage.reach());
+    let [length, width] = PLATE_HALF_SIZE.map(|part| part * linkage.reach());
     at.norm() < linkage.foot() || (moves && at.re.abs() < length && at.im.abs() < width)
 }
 
 /// Returns the arrow or the arc of the reaction, if it is under the pointer.
-pub fn reaction(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
+pub fn reaction(linkage: &LinkageModel, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Handle> {
     let palette = palette(Theme::Dark);
     let mut drawn = Scene::new(palette.background, linkage.model.clone());
     reaction::draw(&mut drawn, linkage, &palette, shown, &ViewOptions::default(), "");
@@ -63,14 +63,14 @@ pub fn reaction(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Opti
 }
 
 /// Whether a line is under the pointer.
-pub fn line(line: &Line, pointer: &Pointer) -> bool {
+pub fn line(line: &Polyline, pointer: &Pointer) -> bool {
     let placed = |p: [f32; 3]| place(&line.world_from_item, p).map(f64::from);
     let near = |ends: [[f64; 3]; 2]| pointer.distance_to_segment(ends).is_some_and(|d| d < LINE_PICK_PX);
     line.strips.iter().any(|strip| strip.windows(2).any(|pair| near([placed(pair[0]), placed(pair[1])])))
 }
 
 /// Highlights the item under the pointer.
-pub fn light(solids: &mut [Solid], linkage: &Linkage, hot: Option<Handle>, palette: &Palette) {
+pub fn light(solids: &mut [Solid], linkage: &LinkageModel, hot: Option<Handle>, palette: &Palette) {
     let of = |solid: &Solid| match hot {
         Some(Handle::Link(i)) => linkage.bars().get(i).is_some_and(|bar| *bar.item() == solid.name),
         Some(Handle::Base) => solid.name.starts_with("machine/base"),

@@ -4,17 +4,17 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use crate::mechanics::planar::{Pose2, Vector, unit};
-use crate::picture::scene::exaggeration::Shown;
-use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::exaggeration::DrawnFrame;
+use crate::picture::scene::linkage::LinkageModel;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{
-    Anchor, Area, Changes, Label, Line, Marker, Measure, Mesh, Name, Rgba, Scene, Shade, Solid, Strips, dexterity,
-    fill, point, posed,
+    Anchor, Area, ItemChanges, Label, Marker, Measure, Mesh, Name, Polyline, Rgba, Scene, Shade, Solid, Strips,
+    dexterity, fill, point, posed,
 };
 use crate::planning::pose_space::{Planes, PoseSpace};
 use crate::planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
-use crate::query::{Portion, Query, Shared, Watch};
+use crate::query::{Portion, ProgressCallback, Query, Shared};
 use crate::simulation::frame::Frame;
 
 /// Maximum distance of chords from the boundary, m for an arm of 1 m: less than a pixel.
@@ -73,9 +73,9 @@ fn held(noun: &str, is_reactionless: bool) -> String {
 
 /// Query for the outline of the workspace of a pose space for constant b.
 #[derive(Debug)]
-pub struct Outlining(Shared<PoseSpace>);
+pub struct OutlineQuery(Shared<PoseSpace>);
 
-impl Query for Outlining {
+impl Query for OutlineQuery {
     type Input = Shared<PoseSpace>;
     /// `None` if the workspace is a single point.
     type Answer = Option<Arc<Workspace>>;
@@ -84,7 +84,7 @@ impl Query for Outlining {
         Self(space)
     }
 
-    fn go_on(&mut self, goes_on: Watch<'_>) -> Portion<Self::Answer> {
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         let mut stopped = false;
         let mut watched = |share: f64| {
             stopped = !goes_on(share);
@@ -135,7 +135,7 @@ impl Workspace {
 
     /// Computes the workspace of any other machine with a pose constant. `goes_on` is called with the completed
     /// fraction. Returns `None` if the workspace is a single point, or if `goes_on` returns false.
-    fn outlined(space: &Arc<PoseSpace>, goes_on: Watch<'_>) -> Option<Self> {
+    fn outlined(space: &Arc<PoseSpace>, goes_on: ProgressCallback<'_>) -> Option<Self> {
         let outline = space.outline_within(0.0, CHORD_TOLERANCE, goes_on)?;
         let curve = vectors(&outline.curve);
         let (lines, words, middle) = if curve.len() > 1 {
@@ -213,8 +213,8 @@ impl Workspace {
     }
 
     /// Returns its drawn boundary at height `z`, m.
-    pub fn edge(&self, shown: &Shown<'_>, z: f64) -> Line {
-        let line = Line::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
+    pub fn edge(&self, shown: &DrawnFrame<'_>, z: f64) -> Polyline {
+        let line = Polyline::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
         line.moving(posed(shown.base.at, unit(self.turn(shown.frame.b_reference, shown.base)), z))
     }
 
@@ -239,9 +239,9 @@ impl Workspace {
     pub fn draw(
         &self,
         scene: &mut Scene,
-        (linkage, fill): (&Linkage, Option<usize>),
+        (linkage, fill): (&LinkageModel, Option<usize>),
         palette: &Palette,
-        shown: &Shown<'_>,
+        shown: &DrawnFrame<'_>,
         (options, compared): (&ViewOptions, Option<f64>),
     ) {
         let floor = linkage.floor();
@@ -252,8 +252,8 @@ impl Workspace {
         self.own(scene, palette, shown, options, floor);
         if let (Some(b), Some(_)) = (options.preview_b, self.sheets()) {
             let pose = posed(Vector::default(), unit(self.space.turn(b)), floor);
-            let outline = Line::new("workspace/preview", self.boundary.clone(), 1.2, faded(palette.amber, 0.8));
-            scene.lines.push(Line { world_from_item: pose, ..outline.dashed(5.0, 4.0) });
+            let outline = Polyline::new("workspace/preview", self.boundary.clone(), 1.2, faded(palette.amber, 0.8));
+            scene.lines.push(Polyline { world_from_item: pose, ..outline.dashed(5.0, 4.0) });
         }
     }
 
@@ -264,7 +264,7 @@ impl Workspace {
             scene.areas.push(area(sheets.planes.map(), (turn, base.at), "workspace/compared", z, colour));
         }
         let name = "workspace/compared/boundary";
-        let edge = Line::new(name, self.boundary.clone(), 1.2, faded(palette.dim, 0.55)).dashed(5.0, 4.0);
+        let edge = Polyline::new(name, self.boundary.clone(), 1.2, faded(palette.dim, 0.55)).dashed(5.0, 4.0);
         scene.lines.push(edge.moving(posed(base.at, unit(turn), z)));
         if let Some(middle) = self.middle {
             let at = point(base.at + middle * unit(turn), z);
@@ -277,9 +277,9 @@ impl Workspace {
     fn fill_own(
         &self,
         scene: &mut Scene,
-        (linkage, fill): (&Linkage, Option<usize>),
+        (linkage, fill): (&LinkageModel, Option<usize>),
         palette: &Palette,
-        shown: &Shown<'_>,
+        shown: &DrawnFrame<'_>,
         options: &ViewOptions,
     ) {
         let (turn, z) = (self.turn(shown.frame.b_reference, shown.base), linkage.floor());
@@ -291,7 +291,7 @@ impl Workspace {
                 mesh,
                 world_from_item: below,
                 colour: faded(palette.amber, FILL_OPACITY),
-                changes: Changes::Pose,
+                changes: ItemChanges::Pose,
             }));
             return;
         };
@@ -306,13 +306,13 @@ impl Workspace {
         scene.areas.push(area);
     }
 
-    fn own(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+    fn own(&self, scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions, z: f64) {
         let (b, base) = (shown.frame.b_reference, shown.base);
         let turn = unit(self.turn(b, base));
         let pose = posed(base.at, turn, z);
         let mut line = |name: &'static str, strips: &Strips, width, colour, dash: Option<[f32; 2]>| {
             if !strips.is_empty() {
-                scene.lines.push(Line { dash, ..Line::new(name, strips.clone(), width, colour).moving(pose) });
+                scene.lines.push(Polyline { dash, ..Polyline::new(name, strips.clone(), width, colour).moving(pose) });
             }
         };
         let width = if options.hot == Some(Handle::Boundary) { 3.0 } else { 1.8 };

@@ -1,8 +1,8 @@
 //! Following curves, or the reason why not.
 
 use super::remedy::blocked;
-use super::rule::{Blocked, Halt, Rule, Stop};
-use super::walk::{starts, tables};
+use super::rule::{Blocked, Rule, SheetEnd, TraceEnd};
+use super::walk::{starting_poses, tables};
 use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::PlaneMap;
 
@@ -19,8 +19,8 @@ pub fn follow(
     rule: Rule,
 ) -> Result<Vec<PathTable>, Box<Blocked>> {
     let Some(first) = curves.first() else { return Ok(Vec::new()) };
-    let mut farthest: Option<Halt> = None;
-    for start in starts(map, first.at(0.0).p, b, prefer) {
+    let mut farthest: Option<TraceEnd> = None;
+    for start in starting_poses(map, first.at(0.0).p, b, prefer) {
         match tables(map, curves, b, start, rule) {
             Ok(tables) => return Ok(tables),
             Err(stopped) => {
@@ -30,6 +30,6 @@ pub fn follow(
             }
         }
     }
-    let (s, _, stop) = farthest.unwrap_or((0.0, [0.0; 2], Stop::Start));
+    let (s, _, stop) = farthest.unwrap_or((0.0, [0.0; 2], SheetEnd::Start));
     Err(Box::new(blocked(map, curves, b, rule, s, stop)))
 }

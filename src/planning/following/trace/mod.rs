@@ -10,5 +10,5 @@ mod track;
 mod walk;
 
 pub use follow::follow;
-pub use rule::{Blocked, Halt, Rule, Stop};
+pub use rule::{Blocked, Rule, SheetEnd, TraceEnd};
 pub use walk::{common_b, is_feasible, part, walk};

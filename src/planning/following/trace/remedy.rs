@@ -1,8 +1,8 @@
 //! Remedies for a curve that cannot be followed: another b, or a part of the curve.
 
-use super::rule::{Blocked, Rule, Stop};
-use super::track::Track;
-use super::walk::{STATIONS, at, common_b, is_feasible, part, starts, tables, whole};
+use super::rule::{Blocked, Rule, SheetEnd};
+use super::track::PlaneTrack;
+use super::walk::{TRIAL_STATIONS, at, common_b, is_feasible, part, starting_poses, tables, whole_s};
 use crate::mechanics::planar::unit;
 use crate::planning::curves::curve::Curve;
 use crate::planning::reactionless::{BSet, Decimal, PlaneMap};
@@ -10,9 +10,9 @@ use crate::planning::reactionless::{BSet, Decimal, PlaneMap};
 /// Number of intervals of the curve that is drawn.
 const DRAWN_INTERVALS: i32 = 160;
 
-pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: Stop) -> Blocked {
-    let common = common_b(map, curves, 2 * STATIONS + 1);
-    let beyond = at(curves, if stop == Stop::Start { 0.0 } else { (s + 1e-6).min(1.0) });
+pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: SheetEnd) -> Blocked {
+    let common = common_b(map, curves, 2 * TRIAL_STATIONS + 1);
+    let beyond = at(curves, if stop == SheetEnd::Start { 0.0 } else { (s + 1e-6).min(1.0) });
     let (nearest_b, shown_b) = nearest_b(map, curves, b, rule, &common).unzip();
     Blocked {
         b,
@@ -60,7 +60,8 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     }
     // Between stations the curve may still leave the workspace slightly: then take a b further inside.
     let start = curves.first().map(|curve| curve.at(0.0).p)?;
-    let follows = |b: f64| starts(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
+    let follows =
+        |b: f64| starting_poses(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
     let mut further = [good, first, common.inwards(first, 0.5)].into_iter().chain(tries[found..].iter().copied());
     let mut inner = further.find(|b| follows(*b))?;
     if inner != good {
@@ -83,7 +84,7 @@ fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64;
     };
     // Parts that can be followed up to the present station: the s where they began, and the pose at this station.
     let mut runs: Vec<(f64, [f64; 2])> = Vec::new();
-    let n = 2 * STATIONS;
+    let n = 2 * TRIAL_STATIONS;
     for i in 0..n {
         let (s, t) = (i as f64 / n as f64, (i + 1) as f64 / n as f64);
         let (which, from) = part(curves, s);
@@ -95,16 +96,16 @@ fn longest(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> Option<[f64;
             }
         }
         runs.retain_mut(|(began, a)| {
-            let track = |curve| Track { map, b, turn, curve, rule };
+            let track = |curve| PlaneTrack { map, b, turn, curve, rule };
             let (next, to) = part(curves, t);
             let end = if next == which { to } else { 1.0 };
             let stepped = track(&curves[which]).advance(*a, from, end);
             let stepped = match stepped {
                 Ok(x) if next != which => {
-                    track(&curves[next]).advance(x, 0.0, to).map_err(|(s, ..)| whole(curves, next, s))
+                    track(&curves[next]).advance(x, 0.0, to).map_err(|(s, ..)| whole_s(curves, next, s))
                 }
                 Ok(x) => Ok(x),
-                Err((s, ..)) => Err(whole(curves, which, s)),
+                Err((s, ..)) => Err(whole_s(curves, which, s)),
             };
             match stepped {
                 Ok(x) => {

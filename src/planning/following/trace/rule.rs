@@ -4,11 +4,11 @@ use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::mechanics::planar::Vector;
-use crate::planning::reactionless::{Decimal, PAIRS, PlaneMap};
+use crate::planning::reactionless::{DRIVE_PAIRS, Decimal, PlaneMap};
 
 /// Why a curve cannot be followed further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum SheetEnd {
     /// A relative angle at its limit.
     Limit {
         /// Which angle: 0 for a_1, 1 for a_2.
@@ -41,7 +41,7 @@ pub struct Blocked {
     pub at: Vector,
     /// What stops it there.
     #[serde(rename = "reason")]
-    pub stop: Stop,
+    pub stop: SheetEnd,
     /// Whether no pose of this plane reaches the curve just beyond, so that it leaves the workspace, not only the
     /// sheet.
     pub leaves_workspace: bool,
@@ -63,7 +63,7 @@ pub struct Blocked {
     pub curve: Vec<Vector>,
 }
 
-impl std::fmt::Display for Stop {
+impl std::fmt::Display for SheetEnd {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Limit { angle, upper } => {
@@ -79,7 +79,7 @@ impl std::fmt::Display for Stop {
 }
 
 /// In words.
-impl Serialize for Stop {
+impl Serialize for SheetEnd {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
@@ -126,8 +126,8 @@ impl Rule {
 /// Returns the pair of drives that becomes parallel between two poses, counted from 0.
 pub(super) fn crossed(map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
     let (x, y) = (map.sines(from), map.sines(to));
-    PAIRS.into_iter().zip(x.into_iter().zip(y)).find(|(_, (x, y))| x * y < 0.0).map(|(pair, _)| pair)
+    DRIVE_PAIRS.into_iter().zip(x.into_iter().zip(y)).find(|(_, (x, y))| x * y < 0.0).map(|(pair, _)| pair)
 }
 
 /// Where following a curve stops: s, the pose (a_1, a_2), rad, and the reason.
-pub type Halt = (f64, [f64; 2], Stop);
+pub type TraceEnd = (f64, [f64; 2], SheetEnd);

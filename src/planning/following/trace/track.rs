@@ -1,12 +1,12 @@
 //! Following a curve on a plane step by step: poses with derivatives, and the reason for a stop.
 
-use super::rule::{Halt, Rule, Stop, crossed};
+use super::rule::{Rule, SheetEnd, TraceEnd, crossed};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::inverse::rates;
-use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
+use crate::planning::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint};
 
 /// Minimum step of s; if even this fails, the curve cannot be followed further.
 const MIN_STEP: f64 = 1e-11;
@@ -31,7 +31,7 @@ const MAX_NODES: usize = 20_000;
 
 /// A curve on a plane.
 #[derive(Clone, Copy)]
-pub(super) struct Track<'a> {
+pub(super) struct PlaneTrack<'a> {
     pub map: &'a PlaneMap,
     pub b: f64,
     pub turn: Vector,
@@ -39,9 +39,9 @@ pub(super) struct Track<'a> {
     pub rule: Rule,
 }
 
-impl Track<'_> {
+impl PlaneTrack<'_> {
     /// Follows the curve from the pose at one s to that at another and returns the latter, rad.
-    pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
+    pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], TraceEnd> {
         let (mut s, mut step) = (from, to - from);
         let mut here = self.jet(a, s);
         while s < to {
@@ -75,26 +75,26 @@ impl Track<'_> {
     }
 
     /// Returns why a pose cannot be left along a tangent.
-    fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> Stop {
+    fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> SheetEnd {
         let length = tangent[0].hypot(tangent[1]);
         let ahead = [0, 1].map(|i| a[i] + 1e-5 * tangent[i] / length);
         if let (true, Some(drives)) = (self.rule.keep_off_change_points, crossed(self.map, a, ahead)) {
-            return Stop::ChangePoint { drives };
+            return SheetEnd::ChangePoint { drives };
         }
         let limits = self.map.limits();
         for (angle, limit) in limits.iter().enumerate() {
             let out = [(a[angle] - limit.min, false, -tangent[angle]), (limit.max - a[angle], true, tangent[angle])];
             for (room, upper, outwards) in out {
                 if room < 1e-6 && outwards > 0.0 {
-                    return Stop::Limit { angle, upper };
+                    return SheetEnd::Limit { angle, upper };
                 }
             }
         }
-        Stop::Fold
+        SheetEnd::Fold
     }
 
     /// Returns nodes along the curve; intervals are halved until their quintics meet the tolerance.
-    pub fn table(&self, start: [f64; 2]) -> Result<PathTable, Halt> {
+    pub fn table(&self, start: [f64; 2]) -> Result<PathTable, TraceEnd> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
@@ -117,7 +117,7 @@ impl Track<'_> {
                     ahead.pop();
                 } else if next - s < MIN_INTERVAL * run || nodes.len() > MAX_NODES + 4 * pieces {
                     // Too close to a fold for any node density.
-                    return Err((s, here.a, Stop::Fold));
+                    return Err((s, here.a, SheetEnd::Fold));
                 } else {
                     ahead.push(0.5 * (s + next));
                 }
@@ -126,7 +126,7 @@ impl Track<'_> {
         let lifted = nodes.iter().map(|jet| self.lifted(jet)).collect();
         let last = stations.len() - 1;
         stations[last] = 1.0;
-        PathTable::new(stations, lifted).ok_or((0.0, start, Stop::Start))
+        PathTable::new(stations, lifted).ok_or((0.0, start, SheetEnd::Start))
     }
 
     /// Returns the error of the quintic halfway between two nodes, rad.
@@ -140,7 +140,7 @@ impl Track<'_> {
     }
 
     /// Checks that no angle exceeds its limit between two nodes, where it may have an extremum.
-    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), Halt> {
+    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), TraceEnd> {
         const PROBES: i32 = 16;
         let limits = self.map.limits();
         for (i, limit) in limits.iter().enumerate() {
@@ -158,7 +158,7 @@ impl Track<'_> {
             if shift.is_finite() && past(bad + shift) > here {
                 bad += shift;
             }
-            if past(bad) <= SLACK {
+            if past(bad) <= LIMIT_SLACK {
                 continue;
             }
             // A long interval has an inaccurate quintic: it counts only if the pose there is infeasible.
@@ -173,7 +173,7 @@ impl Track<'_> {
             }
             let end = s + (t - s) * good;
             let a = self.map.follow(self.curve.at(end).p, self.b, x.a).unwrap_or(x.a);
-            return Err((end, a, Stop::Limit { angle: i, upper }));
+            return Err((end, a, SheetEnd::Limit { angle: i, upper }));
         }
         Ok(())
     }

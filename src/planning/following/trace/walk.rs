@@ -1,13 +1,13 @@
 //! Following curves from a pose, and whether they can be followed.
 
-use super::rule::{Halt, Rule};
-use super::track::Track;
+use super::rule::{Rule, TraceEnd};
+use super::track::PlaneTrack;
 use crate::mechanics::planar::{Vector, unit};
 use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::{BSet, PlaneMap};
 
 /// Number of stations at which a curve is checked for other b, or for its longest part.
-pub(super) const STATIONS: usize = 96;
+pub(super) const TRIAL_STATIONS: usize = 96;
 
 /// Follows a curve on the plane b, rad, from a pose at its start in `stations` steps and returns the last pose, rad.
 ///
@@ -20,8 +20,8 @@ pub fn walk(
     start: [f64; 2],
     rule: Rule,
     stations: usize,
-) -> Result<[f64; 2], Halt> {
-    let track = Track { map, b, turn: unit(-map.turn(b)), curve, rule };
+) -> Result<[f64; 2], TraceEnd> {
+    let track = PlaneTrack { map, b, turn: unit(-map.turn(b)), curve, rule };
     let mut a = start;
     for i in 0..stations {
         let s = |i: usize| i as f64 / stations as f64;
@@ -31,7 +31,7 @@ pub fn walk(
 }
 
 /// Returns the poses of a point on a plane, those nearest to `prefer` first.
-pub(super) fn starts(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(super) fn starting_poses(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut starts: Vec<[f64; 2]> = map.poses(p, b).iter().map(|x| x.a).collect();
     if let Some(wanted) = prefer {
         let far = |a: &[f64; 2]| (a[0] - wanted[0]).hypot(a[1] - wanted[1]);
@@ -46,13 +46,13 @@ pub(super) fn tables(
     b: f64,
     start: [f64; 2],
     rule: Rule,
-) -> Result<Vec<PathTable>, Halt> {
+) -> Result<Vec<PathTable>, TraceEnd> {
     let turn = unit(-map.turn(b));
     let mut a = start;
     let mut tables = Vec::with_capacity(curves.len());
     for (i, curve) in curves.iter().enumerate() {
-        let track = Track { map, b, turn, curve, rule };
-        let table = track.table(a).map_err(|(s, a, stop)| (whole(curves, i, s), a, stop))?;
+        let track = PlaneTrack { map, b, turn, curve, rule };
+        let table = track.table(a).map_err(|(s, a, stop)| (whole_s(curves, i, s), a, stop))?;
         a = table.nodes().last().map_or(a, |last| map.project(&last.q).a);
         tables.push(table);
     }
@@ -60,7 +60,7 @@ pub(super) fn tables(
 }
 
 /// Converts s on curve i to s over all curves, by length.
-pub(super) fn whole(curves: &[Curve], i: usize, s: f64) -> f64 {
+pub(super) fn whole_s(curves: &[Curve], i: usize, s: f64) -> f64 {
     let length = |c: &Curve| c.length();
     let before: f64 = curves[..i].iter().map(length).sum();
     (before + s * curves[i].length()) / curves.iter().map(length).sum::<f64>()
@@ -87,8 +87,8 @@ pub(super) fn at(curves: &[Curve], s: f64) -> Vector {
 /// Returns whether curves can be followed on a plane from any pose at their start.
 pub fn is_feasible(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> bool {
     let Some(first) = curves.first() else { return true };
-    let stations = (STATIONS / curves.len()).max(8);
-    starts(map, first.at(0.0).p, b, None)
+    let stations = (TRIAL_STATIONS / curves.len()).max(8);
+    starting_poses(map, first.at(0.0).p, b, None)
         .into_iter()
         .any(|start| curves.iter().try_fold(start, |a, curve| walk(map, curve, b, a, rule, stations).ok()).is_some())
 }

@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::balance::{self, Course};
+use super::balance::{self, CurveEdge};
 use super::cycle::Cycle;
-use super::span::{Span, Surface};
+use super::span::{BoundarySpan, Surface};
 use crate::mechanics::planar::{Vector, cross, dot};
 
 /// Intersections on a span are equal if their parameters differ by less than this.
@@ -25,7 +25,7 @@ const ON_CURVE_TOLERANCE: f64 = 1e-11;
 
 /// A part of a span.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Portion {
+pub(super) struct SpanPart {
     pub span: usize,
     pub from: f64,
     pub to: f64,
@@ -34,7 +34,7 @@ pub(super) struct Portion {
 /// A curve between two intersections, with a constant number of poses on each side.
 #[derive(Clone, Debug)]
 pub(super) struct Strand {
-    pub parts: Vec<Portion>,
+    pub parts: Vec<SpanPart>,
     /// Number of poses of the points on its left.
     pub left: i32,
     /// Number of poses of the points on its right.
@@ -51,7 +51,7 @@ impl Strand {
 pub(super) struct Arrangement<'a> {
     on: &'a Surface,
     cycle: &'a Cycle,
-    spans: &'a [Span],
+    spans: &'a [BoundarySpan],
     /// Distance from a common end within which crossings are ignored, m.
     tip: f64,
     /// Unit of the map, m.
@@ -65,15 +65,15 @@ struct Part {
 }
 
 impl Part {
-    fn of(span: &Span) -> Self {
+    fn of(span: &BoundarySpan) -> Self {
         Self { range: [0.0, 1.0], at: span.at }
     }
 
-    fn deviation(&self, span: &Span, unit: f64) -> f64 {
+    fn deviation(&self, span: &BoundarySpan, unit: f64) -> f64 {
         span.deviation * (self.range[1] - self.range[0]).powi(2) + 1e-16 * unit
     }
 
-    fn halves(&self, on: &Surface, span: &Span) -> [Self; 2] {
+    fn halves(&self, on: &Surface, span: &BoundarySpan) -> [Self; 2] {
         let middle = 0.5 * (self.range[0] + self.range[1]);
         let at = on.at(span, middle);
         [
@@ -91,9 +91,9 @@ impl<'a> Arrangement<'a> {
 
     /// Returns all curves, split at their intersections.
     pub fn strands(&self) -> Vec<Strand> {
-        let strand = |parts: Vec<Portion>| {
+        let strand = |parts: Vec<SpanPart>| {
             // The longest parts first: short ones may lie in a sliver that is too narrow to separate its sides.
-            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (self.chord(p), p)).collect();
+            let mut order: Vec<(f64, &SpanPart)> = parts.iter().map(|p| (self.chord(p), p)).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0));
             let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
             let first = verdicts.next().unwrap_or(Err([0; 2]));
@@ -115,7 +115,7 @@ impl<'a> Arrangement<'a> {
             return;
         }
         let mut nodes: Vec<Vector> = Vec::new();
-        let mut node = |p: &Portion, t: f64| {
+        let mut node = |p: &SpanPart, t: f64| {
             let at = self.on.at(&self.spans[p.span], t);
             nodes.iter().position(|n| (n - at).norm() < JOIN_TOLERANCE * self.unit).unwrap_or_else(|| {
                 nodes.push(at);
@@ -124,28 +124,28 @@ impl<'a> Arrangement<'a> {
         };
         let mut course = |s: &Strand| {
             let (first, last) = (s.parts[0], s.parts[s.parts.len() - 1]);
-            Course {
+            CurveEdge {
                 ends: [node(&first, first.from), node(&last, last.to)],
                 weight: weight(s),
                 sides: [s.left, s.right],
                 length: s.parts.iter().map(|p| self.chord(p)).sum(),
             }
         };
-        let mut courses: Vec<Course> = strands.iter().map(&mut course).collect();
-        balance::settle(&mut courses);
+        let mut courses: Vec<CurveEdge> = strands.iter().map(&mut course).collect();
+        balance::resolve_sides(&mut courses);
         for (strand, course) in strands.iter_mut().zip(courses) {
             [strand.left, strand.right] = course.sides;
         }
     }
 
-    fn chord(&self, p: &Portion) -> f64 {
+    fn chord(&self, p: &SpanPart) -> f64 {
         let span = &self.spans[p.span];
         (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
     }
 
     /// Splits all curves at their intersections.
-    fn uncrossed(&self) -> Vec<Vec<Portion>> {
-        let mut strands: Vec<Vec<Portion>> = Vec::new();
+    fn uncrossed(&self) -> Vec<Vec<SpanPart>> {
+        let mut strands: Vec<Vec<SpanPart>> = Vec::new();
         let mut open = false;
         for (i, mut intersections) in self.intersections().into_iter().enumerate() {
             let span = &self.spans[i];
@@ -164,7 +164,7 @@ impl<'a> Arrangement<'a> {
                 *last = 1.0;
             }
             for (n, w) in intersections.windows(2).enumerate() {
-                let portion = Portion { span: i, from: w[0], to: w[1] };
+                let portion = SpanPart { span: i, from: w[0], to: w[1] };
                 match strands.last_mut() {
                     Some(strand) if n == 0 && joined => strand.push(portion),
                     _ => strands.push(vec![portion]),
@@ -177,7 +177,7 @@ impl<'a> Arrangement<'a> {
 
     /// Returns the number of poses on the left and on the right of a part; an error with the last sample if another
     /// curve is too close.
-    fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
+    fn sides(&self, portion: &SpanPart) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
         let (mut unresolved, mut alike) = ([0; 2], 0);
         // Offsets small enough that no other curve lies between, even near a tangency. If one does, other offsets and
@@ -206,18 +206,18 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Returns the parts of strands that bound the points with at least `n` poses.
-    pub fn level(&self, strands: &[Strand], n: i32) -> Vec<Portion> {
+    pub fn level(&self, strands: &[Strand], n: i32) -> Vec<SpanPart> {
         self.without_doubles(strands.iter().filter(|s| s.bounds(n)).flat_map(|s| &s.parts))
     }
 
     /// Removes duplicates: coinciding curves count once.
-    fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
-        let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
+    fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b SpanPart>) -> Vec<SpanPart> {
+        let ends = |p: &SpanPart| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
         let near = |a: Vector, b: Vector| (a - b).norm() < JOIN_TOLERANCE * self.unit;
-        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
+        let mut kept: Vec<(SpanPart, [Vector; 2])> = Vec::new();
         for &portion in portions {
             let [from, to] = ends(&portion);
-            let middle = |p: &Portion| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
+            let middle = |p: &SpanPart| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
             let double = kept.iter().any(|(other, [f, t])| {
                 near(*f, from) && near(*t, to) && near(middle(other), middle(&portion)) && !near(from, to)
             });
@@ -303,7 +303,7 @@ impl<'a> Arrangement<'a> {
 
     /// Solves P_A(t) = P_B(s) by Newton's iteration from the intersection of the chords; `None` if the solution is
     /// outside either part.
-    fn meet(&self, a: &Span, b: &Span, pa: &Part, pb: &Part) -> Option<[f64; 2]> {
+    fn meet(&self, a: &BoundarySpan, b: &BoundarySpan, pa: &Part, pb: &Part) -> Option<[f64; 2]> {
         let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
         let (ta, tb) = (pa.range[1] - pa.range[0], pb.range[1] - pb.range[0]);
         let gap = pb.at[0] - pa.at[0];
@@ -360,7 +360,7 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Returns the parameter of the nearest point of a span, and its distance from p, m.
-    fn foot(&self, span: &Span, p: Vector) -> (f64, f64) {
+    fn foot(&self, span: &BoundarySpan, p: Vector) -> (f64, f64) {
         let mut t = 0.5;
         for _ in 0..40 {
             let jet = self.on.jet(span, t);
@@ -379,8 +379,8 @@ impl<'a> Arrangement<'a> {
 
     /// Joins parts end to start. Of several continuations it takes the leftmost turn, so that loops do not cross
     /// themselves.
-    pub fn chain(&self, portions: Vec<Portion>) -> Vec<Vec<Portion>> {
-        let at = |p: &Portion, share: f64| self.on.at(&self.spans[p.span], p.from + share * (p.to - p.from));
+    pub fn chain(&self, portions: Vec<SpanPart>) -> Vec<Vec<SpanPart>> {
+        let at = |p: &SpanPart, share: f64| self.on.at(&self.spans[p.span], p.from + share * (p.to - p.from));
         let starts: Vec<Vector> = portions.iter().map(|p| at(p, 0.0)).collect();
         let ends: Vec<Vector> = portions.iter().map(|p| at(p, 1.0)).collect();
         let mut used = vec![false; portions.len()];

@@ -12,7 +12,7 @@ const MAX_CHOICES: usize = 20_000;
 
 /// A curve between two nodes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
+pub(super) struct CurveEdge {
     pub ends: [usize; 2],
     /// Number of poses on its left minus that on its right.
     pub weight: i32,
@@ -21,7 +21,7 @@ pub(super) struct Course {
     pub length: f64,
 }
 
-impl Course {
+impl CurveEdge {
     fn is_unclear(&self) -> bool {
         self.sides[0] - self.sides[1] != self.weight
     }
@@ -35,7 +35,7 @@ impl Course {
 
 /// Resolves the sides of unclear courses such that the curves of every level close; leaves them unchanged if that is
 /// impossible.
-pub(super) fn settle(courses: &mut [Course]) {
+pub(super) fn resolve_sides(courses: &mut [CurveEdge]) {
     let mut unclear: Vec<usize> = (0..courses.len()).filter(|&i| courses[i].is_unclear()).collect();
     if unclear.is_empty() || unclear.len() > MAX_UNCLEAR {
         return;
@@ -63,7 +63,7 @@ pub(super) fn settle(courses: &mut [Course]) {
     if (0..nodes).any(|node| !touched(node) && !search.closes(node)) {
         return;
     }
-    let list: Vec<Course> = unclear.iter().map(|&i| courses[i]).collect();
+    let list: Vec<CurveEdge> = unclear.iter().map(|&i| courses[i]).collect();
     search.from(&list, 0, 0.0);
     if let Some((_, rights)) = search.best {
         for (&i, right) in unclear.iter().zip(rights) {
@@ -85,7 +85,7 @@ struct Search {
 }
 
 impl Search {
-    fn put(&mut self, course: &Course, right: i32, sign: i32) {
+    fn put(&mut self, course: &CurveEdge, right: i32, sign: i32) {
         for level in right.max(0)..(right + course.weight).min(self.levels as i32) {
             self.net[course.ends[0] * self.levels + level as usize] += sign;
             self.net[course.ends[1] * self.levels + level as usize] -= sign;
@@ -96,7 +96,7 @@ impl Search {
         self.net[node * self.levels..(node + 1) * self.levels].iter().all(|&n| n == 0)
     }
 
-    fn from(&mut self, list: &[Course], place: usize, change: f64) {
+    fn from(&mut self, list: &[CurveEdge], place: usize, change: f64) {
         if self.remaining_choices == 0 || self.best.as_ref().is_some_and(|(least, _)| change >= *least) {
             return;
         }

@@ -1,6 +1,6 @@
 //! The weighted cycle of all spans, whose winding number about a point is its number of poses.
 
-use super::span::{Span, Surface};
+use super::span::{BoundarySpan, Surface};
 use crate::mechanics::planar::Vector;
 
 /// Number of rows in y into which spans are sorted, so that a ray is tested against few of them.
@@ -15,7 +15,7 @@ pub(super) struct CycleBounds {
 
 #[derive(Clone, Debug)]
 pub(super) struct Cycle {
-    pub spans: Vec<Span>,
+    pub spans: Vec<BoundarySpan>,
     pub bounds: Vec<CycleBounds>,
     /// Index in `members` at which each row begins, and the end of the last row.
     rows: Vec<u32>,
@@ -27,7 +27,7 @@ pub(super) struct Cycle {
 
 impl Cycle {
     /// Returns the cycle of spans; `unit` is that of the map, m.
-    pub fn of(spans: Vec<Span>, unit: f64) -> Self {
+    pub fn of(spans: Vec<BoundarySpan>, unit: f64) -> Self {
         let bounds: Vec<CycleBounds> = spans
             .iter()
             .map(|s| {

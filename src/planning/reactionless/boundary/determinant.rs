@@ -10,7 +10,7 @@ use crate::mechanics::planar::{Vector, cross};
 use crate::planning::reactionless::PlaneMap;
 
 /// Limits that coincide with a straight fold are moved inwards by this, rad, so that a sheet lies beside them.
-pub(super) const INSET: f64 = 4e-10;
+pub(super) const FOLD_INSET: f64 = 4e-10;
 
 #[derive(Clone, Copy, Debug)]
 struct Sine {
@@ -85,7 +85,7 @@ impl Determinant {
 
     /// Whether the determinant is 0 all along a line.
     pub fn vanishes(&self, from: [f64; 2], way: [f64; 2]) -> bool {
-        self.along(from, way).iter().all(|x| x.abs() < INSET * self.scale())
+        self.along(from, way).iter().all(|x| x.abs() < FOLD_INSET * self.scale())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Distance of a point from the boundary.
 
-use super::arrangement::Portion;
+use super::arrangement::SpanPart;
 use super::{Boundary, from_chord};
 use crate::mechanics::planar::{Vector, unit};
 
@@ -31,7 +31,7 @@ impl Boundary {
 
     /// Returns for each chord its portion, its ends, its distance from p, and the maximum deviation of the curve from
     /// it, m.
-    fn gaps(&self, p: Vector) -> impl Iterator<Item = (Portion, [Vector; 2], f64, f64)> {
+    fn gaps(&self, p: Vector) -> impl Iterator<Item = (SpanPart, [Vector; 2], f64, f64)> {
         self.loops.iter().flat_map(move |l| {
             l.portions().iter().enumerate().map(move |(i, &portion)| {
                 let ends = l.chord(i);
@@ -40,12 +40,12 @@ impl Boundary {
         })
     }
 
-    fn slack(&self, portion: &Portion) -> f64 {
+    fn slack(&self, portion: &SpanPart) -> f64 {
         self.cycle.spans[portion.span].deviation * (portion.to - portion.from).powi(2) + 1e-15 * self.on.map.unit()
     }
 
     /// Branch and bound: only halves that may be nearer than the known distance are refined.
-    fn refine(&self, p: Vector, portion: Portion, ends: [Vector; 2], depth: usize, least: &mut f64) {
+    fn refine(&self, p: Vector, portion: SpanPart, ends: [Vector; 2], depth: usize, least: &mut f64) {
         let (gap, slack) = (from_chord(ends, p).sqrt(), self.slack(&portion));
         if gap - slack >= *least {
             return;
@@ -58,8 +58,8 @@ impl Boundary {
         let half = 0.5 * (portion.from + portion.to);
         let middle = self.on.at(&self.cycle.spans[portion.span], half);
         let halves = [
-            (Portion { to: half, ..portion }, [ends[0], middle]),
-            (Portion { from: half, ..portion }, [middle, ends[1]]),
+            (SpanPart { to: half, ..portion }, [ends[0], middle]),
+            (SpanPart { from: half, ..portion }, [middle, ends[1]]),
         ];
         let nearer = usize::from((ends[1] - p).norm_sqr() < (ends[0] - p).norm_sqr());
         for i in [nearer, 1 - nearer] {

@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::determinant::upright;
-use super::span::{BoundaryCurve, Span, Surface};
+use super::span::{BoundaryCurve, BoundarySpan, Surface};
 
 /// Maximum size of cells and spans, rad.
 const MAX_STEP_RAD: f64 = 0.35;
@@ -36,8 +36,8 @@ struct Cell {
 
 /// The curves det = 0.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Folds {
-    pub spans: Vec<Span>,
+pub(super) struct FoldCurves {
+    pub spans: Vec<BoundarySpan>,
     /// (a_1, a_2) of the cusps of the image.
     pub cusps: Vec<[f64; 2]>,
 }
@@ -74,7 +74,7 @@ fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
 }
 
 /// Returns all curves det = 0 within the limits as spans in order, split at the cusps of their images.
-pub(super) fn spans(on: &Surface) -> Folds {
+pub(super) fn spans(on: &Surface) -> FoldCurves {
     let range = on.map.limits().map(|l| [l.min, l.max]);
     let grid = [0, 1].map(|axis| lines(axis, range[axis]));
     // crossings[axis][line]: zeros on the line where that axis is fixed.
@@ -82,7 +82,7 @@ pub(super) fn spans(on: &Surface) -> Folds {
         [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
     let between =
         |list: &[f64], low: f64, high: f64| Side(list.iter().copied().filter(|y| (low..high).contains(y)).collect());
-    let mut folds = Folds::default();
+    let mut folds = FoldCurves::default();
     for (i, a1) in grid[0].windows(2).enumerate() {
         for (j, a2) in grid[1].windows(2).enumerate() {
             let mut cell = Cell {
@@ -104,7 +104,7 @@ pub(super) fn spans(on: &Surface) -> Folds {
 }
 
 /// Orders spans such that each precedes the one that begins at its end.
-fn in_order(spans: &[Span]) -> Vec<Span> {
+fn in_order(spans: &[BoundarySpan]) -> Vec<BoundarySpan> {
     let key = |a: [f64; 2]| a.map(f64::to_bits);
     let begins: HashMap<_, usize> = spans.iter().enumerate().map(|(i, s)| (key(s.ends[0]), i)).collect();
     let ends: HashSet<_> = spans.iter().map(|s| key(s.ends[1])).collect();
@@ -123,14 +123,14 @@ fn in_order(spans: &[Span]) -> Vec<Span> {
     ordered
 }
 
-impl Folds {
+impl FoldCurves {
     /// Adds a span, split at its cusps so that no piece turns back.
-    fn push(&mut self, on: &Surface, span: Span) {
+    fn push(&mut self, on: &Surface, span: BoundarySpan) {
         let cusps: Vec<[f64; 2]> = on.cusps(&span).into_iter().map(|t| on.point(&span, t)).collect();
         let mut stops = vec![span.ends[0]];
         stops.extend(&cusps);
         stops.push(span.ends[1]);
-        let pieces: Option<Vec<Span>> = stops.windows(2).map(|w| on.fold([w[0], w[1]])).collect();
+        let pieces: Option<Vec<BoundarySpan>> = stops.windows(2).map(|w| on.fold([w[0], w[1]])).collect();
         match pieces {
             Some(pieces) if !cusps.is_empty() => {
                 self.spans.extend(pieces);
@@ -170,7 +170,7 @@ impl Cell {
         level(bottom, low[1]).chain(level(top, high[1])).chain(upright(left, low[0])).chain(upright(right, high[0]))
     }
 
-    fn trace(&self, on: &Surface, depth: usize, folds: &mut Folds) {
+    fn trace(&self, on: &Surface, depth: usize, folds: &mut FoldCurves) {
         let count = self.count();
         if count == 0 {
             return;
@@ -191,7 +191,7 @@ impl Cell {
     }
 
     /// Pairs the zeros of a very small cell: each inwards crossing with any outwards one.
-    fn join(&self, on: &Surface, spans: &mut Vec<Span>) {
+    fn join(&self, on: &Surface, spans: &mut Vec<BoundarySpan>) {
         // Whether det > 0 on the left of the way from a to b, by the gradient at a given point.
         let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
             let [g1, g2] = on.det.gradient(at);

@@ -1,8 +1,8 @@
 //! The interior of a workspace: the number of poses of a point, and the curves across which it changes.
 
 use super::Boundary;
-use super::arrangement::{Arrangement, Portion};
-use super::line::{BoundaryLine, Vertex};
+use super::arrangement::{Arrangement, SpanPart};
+use super::line::{BoundaryLine, BoundaryVertex};
 use super::span::BoundaryCurve;
 use crate::mechanics::planar::{Vector, unit};
 
@@ -34,7 +34,7 @@ impl Boundary {
     /// proportions make whole curves coincide.
     pub fn areas_by_poses(&self) -> Vec<f64> {
         let arrangement = Arrangement::of(&self.on, &self.cycle);
-        let swept = |p: &Portion| self.on.swept(&self.cycle.spans[p.span], p.from, p.to);
+        let swept = |p: &SpanPart| self.on.swept(&self.cycle.spans[p.span], p.from, p.to);
         let area = |n: i32| arrangement.level(&self.strands, n).iter().map(swept).sum();
         (1..=self.sheets() as i32).map(area).collect()
     }
@@ -43,10 +43,10 @@ impl Boundary {
     /// inside. Two poses merge on them; they turn back at [`cusps`](Self::cusps).
     pub fn fold_curves(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
-        let mut chains: Vec<Vec<Portion>> = Vec::new();
+        let mut chains: Vec<Vec<SpanPart>> = Vec::new();
         for (i, span) in spans.iter().enumerate().filter(|(_, s)| s.curve == BoundaryCurve::Fold && !self.flat) {
-            let portion = Portion { span: i, from: 0.0, to: 1.0 };
-            let follows = |last: &Portion| last.span + 1 == i && spans[last.span].ends[1] == span.ends[0];
+            let portion = SpanPart { span: i, from: 0.0, to: 1.0 };
+            let follows = |last: &SpanPart| last.span + 1 == i && spans[last.span].ends[1] == span.ends[0];
             match chains.last_mut() {
                 Some(chain) if chain.last().is_some_and(follows) => chain.push(portion),
                 _ => chains.push(vec![portion]),
@@ -56,7 +56,7 @@ impl Boundary {
     }
 
     /// Returns the cusps of the folds, at which three poses merge.
-    pub fn cusps(&self) -> &[Vertex] {
+    pub fn cusps(&self) -> &[BoundaryVertex] {
         &self.cusps
     }
 
@@ -64,7 +64,7 @@ impl Boundary {
     /// intersections.
     pub fn inner_limits(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
-        let is_limit = |p: &Portion| spans[p.span].curve != BoundaryCurve::Fold;
+        let is_limit = |p: &SpanPart| spans[p.span].curve != BoundaryCurve::Fold;
         let inner = self.strands.iter().filter(|s| s.right > 0 && s.parts.iter().all(is_limit));
         inner.map(|s| BoundaryLine::of(&self.on, spans, &s.parts)).collect()
     }

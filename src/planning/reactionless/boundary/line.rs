@@ -1,7 +1,7 @@
 //! Curves as vertices and chords within a tolerance.
 
-use super::arrangement::Portion;
-use super::span::{BoundaryCurve, Span, Surface};
+use super::arrangement::SpanPart;
+use super::span::{BoundaryCurve, BoundarySpan, Surface};
 use crate::mechanics::planar::{Vector, cross, unit};
 use crate::planning::reactionless::PlaneMap;
 
@@ -19,7 +19,7 @@ pub(super) fn near(map: &PlaneMap) -> f64 {
 
 /// A point of a curve; `curve` and `a` belong to the piece that begins here.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex {
+pub struct BoundaryVertex {
     /// Plane coordinates (a_1, a_2), rad.
     pub a: [f64; 2],
     /// Position at b = 0, m.
@@ -31,9 +31,9 @@ pub struct Vertex {
 /// A closed curve with the workspace on its left. The last vertex is joined to the first.
 #[derive(Clone, Debug)]
 pub struct BoundaryLoop {
-    vertices: Vec<Vertex>,
+    vertices: Vec<BoundaryVertex>,
     /// The portion of a span between each vertex and the next.
-    portions: Vec<Portion>,
+    portions: Vec<SpanPart>,
     area: f64,
 }
 
@@ -41,14 +41,14 @@ pub struct BoundaryLoop {
 /// left.
 #[derive(Clone, Debug)]
 pub struct BoundaryLine {
-    vertices: Vec<Vertex>,
+    vertices: Vec<BoundaryVertex>,
     closed: bool,
 }
 
 impl BoundaryLoop {
     /// Returns the points of the curve; chords deviate by at most 1e-5 m, by at most 1e-5 of the reach below a metre,
     /// and 1e-8 of it above a kilometre.
-    pub fn vertices(&self) -> &[Vertex] {
+    pub fn vertices(&self) -> &[BoundaryVertex] {
         &self.vertices
     }
 
@@ -57,12 +57,12 @@ impl BoundaryLoop {
         self.area
     }
 
-    pub(super) fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
+    pub(super) fn of(on: &Surface, spans: &[BoundarySpan], chain: &[SpanPart]) -> Self {
         let (vertices, portions) = chords(on, spans, chain);
         let swept: f64 = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
         // Slivers too thin to separate their sides leave gaps. The area that a gap sweeps about the base is much larger
         // than that of the sliver.
-        let [starts, ends] = [0, 1].map(|end| move |p: &Portion| on.at(&spans[p.span], [p.from, p.to][end]));
+        let [starts, ends] = [0, 1].map(|end| move |p: &SpanPart| on.at(&spans[p.span], [p.from, p.to][end]));
         let after = chain.iter().cycle().skip(1);
         let gaps: f64 = chain.iter().zip(after).map(|(p, next)| 0.5 * cross(ends(p), starts(next))).sum();
         Self { vertices, portions, area: swept + gaps }
@@ -72,7 +72,7 @@ impl BoundaryLoop {
         Self { area: 0.0, ..self }
     }
 
-    pub(super) fn portions(&self) -> &[Portion] {
+    pub(super) fn portions(&self) -> &[SpanPart] {
         &self.portions
     }
 
@@ -83,7 +83,7 @@ impl BoundaryLoop {
 
 impl BoundaryLine {
     /// Returns the points of the curve from end to end; a closed one ends at its first point.
-    pub fn vertices(&self) -> &[Vertex] {
+    pub fn vertices(&self) -> &[BoundaryVertex] {
         &self.vertices
     }
 
@@ -98,11 +98,11 @@ impl BoundaryLine {
     }
 
     /// Returns the line of consecutive portions.
-    pub(super) fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
+    pub(super) fn of(on: &Surface, spans: &[BoundarySpan], chain: &[SpanPart]) -> Self {
         let (mut vertices, _) = chords(on, spans, chain);
         if let Some(last) = chain.last() {
             let span = &spans[last.span];
-            vertices.push(Vertex { a: on.point(span, last.to), at: on.at(span, last.to), curve: span.curve });
+            vertices.push(BoundaryVertex { a: on.point(span, last.to), at: on.at(span, last.to), curve: span.curve });
         }
         let ends = vertices.first().zip(vertices.last());
         let closed = chain.len() > 1 && ends.is_some_and(|(first, last)| first.a == last.a);
@@ -111,9 +111,9 @@ impl BoundaryLine {
 }
 
 /// Returns vertices turned by an angle, rad.
-pub(super) fn turned(vertices: &[Vertex], turn: f64) -> Vec<[f64; 2]> {
+pub(super) fn turned(vertices: &[BoundaryVertex], turn: f64) -> Vec<[f64; 2]> {
     let turn = unit(turn);
-    let point = |v: &Vertex| {
+    let point = |v: &BoundaryVertex| {
         let p = v.at * turn;
         [p.re, p.im]
     };
@@ -121,7 +121,7 @@ pub(super) fn turned(vertices: &[Vertex], turn: f64) -> Vec<[f64; 2]> {
 }
 
 /// Returns the start vertex of each chord, and its portion of a span.
-fn chords(on: &Surface, spans: &[Span], chain: &[Portion]) -> (Vec<Vertex>, Vec<Portion>) {
+fn chords(on: &Surface, spans: &[BoundarySpan], chain: &[SpanPart]) -> (Vec<BoundaryVertex>, Vec<SpanPart>) {
     let (mut vertices, mut portions) = (Vec::new(), Vec::new());
     for part in chain {
         let span = &spans[part.span];
@@ -131,8 +131,8 @@ fn chords(on: &Surface, spans: &[Span], chain: &[Portion]) -> (Vec<Vertex>, Vec<
         for i in 0..n {
             let a = on.point(span, t(i));
             let at = if t(i) <= 0.0 { span.at[0] } else { on.map.forward_unturned(a) };
-            vertices.push(Vertex { a, at, curve: span.curve });
-            portions.push(Portion { span: part.span, from: t(i), to: t(i + 1) });
+            vertices.push(BoundaryVertex { a, at, curve: span.curve });
+            portions.push(SpanPart { span: part.span, from: t(i), to: t(i + 1) });
         }
     }
     (vertices, portions)

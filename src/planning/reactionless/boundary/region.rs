@@ -1,8 +1,8 @@
 //! A convex region of (a_1, a_2): the limits, or the part of them on one side of change points.
 
-use super::determinant::INSET;
-use super::fold::{self, Folds};
-use super::span::{BoundaryCurve, Span, Surface};
+use super::determinant::FOLD_INSET;
+use super::fold::{self, FoldCurves};
+use super::span::{BoundaryCurve, BoundarySpan, Surface};
 use crate::mechanics::planar::{Vector, dot};
 
 /// Maximum length of a span along an edge, rad.
@@ -49,7 +49,7 @@ impl HalfPlane {
     fn off_folds(mut self, on: &Surface) -> Self {
         let [from, way] = self.line();
         if on.det.vanishes(from, way) {
-            self.level += 4.0 * INSET;
+            self.level += 4.0 * FOLD_INSET;
         }
         self
     }
@@ -135,7 +135,7 @@ impl Region {
     }
 
     /// Returns the edges as spans, each with the side of more poses on its left.
-    pub fn edge_spans(&self, on: &Surface) -> Vec<Span> {
+    pub fn edge_spans(&self, on: &Surface) -> Vec<BoundarySpan> {
         let mut spans = Vec::new();
         for edge in &self.edges {
             let mut stops = vec![edge.ends[0]];
@@ -152,7 +152,7 @@ impl Region {
     }
 
     /// Returns the parts of the folds inside the region.
-    pub fn keep(&self, on: &Surface, folds: Folds) -> Folds {
+    pub fn keep(&self, on: &Surface, folds: FoldCurves) -> FoldCurves {
         if self.half_planes.is_empty() {
             return folds;
         }
@@ -179,12 +179,12 @@ impl Region {
                 }
             }
         }
-        Folds { spans, cusps: folds.cusps.into_iter().filter(|&a| inside(a)).collect() }
+        FoldCurves { spans, cusps: folds.cusps.into_iter().filter(|&a| inside(a)).collect() }
     }
 
     /// Returns the outline as spans without orientation by poses, for a region without area.
-    pub fn outline(&self, on: &Surface) -> Vec<Span> {
-        let mut spans: Vec<Span> = self.edges.iter().flat_map(|e| along(on, e.curve, e.ends)).collect();
+    pub fn outline(&self, on: &Surface) -> Vec<BoundarySpan> {
+        let mut spans: Vec<BoundarySpan> = self.edges.iter().flat_map(|e| along(on, e.curve, e.ends)).collect();
         if let (true, Some(edge)) = (spans.is_empty(), self.edges.first()) {
             spans.push(on.straight(edge.curve, edge.ends));
         }
@@ -224,7 +224,11 @@ fn side(edge: usize) -> BoundaryCurve {
 }
 
 /// Returns spans along a straight part of an edge.
-pub(super) fn along(on: &Surface, curve: BoundaryCurve, [from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = Span> {
+pub(super) fn along(
+    on: &Surface,
+    curve: BoundaryCurve,
+    [from, to]: [[f64; 2]; 2],
+) -> impl Iterator<Item = BoundarySpan> {
     let run = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
     let n = (run / MAX_STEP_RAD).ceil() as usize;
     let point = move |i: usize| match i {

@@ -2,18 +2,18 @@
 
 use std::ops::RangeInclusive;
 
-use super::arrangement::Portion;
+use super::arrangement::SpanPart;
 use super::line::BoundaryLine;
 use super::region::{HalfPlane, Region, along};
-use super::span::{BoundaryCurve, Span, Surface};
+use super::span::{BoundaryCurve, BoundarySpan, Surface};
 use super::{Boundary, MIN_WIDTH_RAD};
 use crate::planning::reactionless::PlaneMap;
-use crate::planning::reactionless::change::{Difference, PAIRS, TOUCH};
+use crate::planning::reactionless::change::{AngleDifference, CHANGE_POINT_MARGIN, DRIVE_PAIRS};
 
 /// The change points of a pair of drives within the limits: a straight line in (a_1, a_2), a curve in the workspace.
 #[derive(Clone, Debug)]
 pub struct ChangeCurve {
-    /// Index of the pair in [`PAIRS`].
+    /// Index of the pair in [`DRIVE_PAIRS`].
     pub pair: usize,
     /// m, where q_l − q_k = mπ.
     pub half_turns: i32,
@@ -25,7 +25,7 @@ pub struct ChangeCurve {
 
 impl Boundary {
     /// Returns the part of the workspace whose poses are on given sides of change points: mπ ≤ q_l − q_k ≤ (m + 1)π for
-    /// each pair of [`PAIRS`] with an m. `None` if there is no such pose, or only a line of them.
+    /// each pair of [`DRIVE_PAIRS`] with an m. `None` if there is no such pose, or only a line of them.
     ///
     /// The straight line in (a_1, a_2) between two such poses consists of such poses.
     pub fn on_sides(map: &PlaneMap, half_turns: [Option<i32>; 3]) -> Option<Self> {
@@ -33,7 +33,7 @@ impl Boundary {
         let mut region = Region::limits(&on);
         for (pair, m) in half_turns.into_iter().enumerate() {
             let Some(m) = m else { continue };
-            let difference = Difference::of(map, pair);
+            let difference = AngleDifference::of(map, pair);
             for sign in [1.0, -1.0] {
                 let at = if sign > 0.0 { f64::from(m) } else { f64::from(m) + 1.0 };
                 let half = HalfPlane {
@@ -50,26 +50,26 @@ impl Boundary {
     /// Returns the sides of the change points of a pair on which poses within the limits are. Side m is
     /// mπ ≤ q_l − q_k ≤ (m + 1)π. Empty if there is no such pair.
     pub fn sides(&self, pair: usize) -> RangeInclusive<i32> {
-        if pair >= PAIRS.len() {
+        if pair >= DRIVE_PAIRS.len() {
             return RangeInclusive::new(1, 0);
         }
-        let [least, most] = Difference::of(&self.on.map, pair).range(self.on.map.limits());
+        let [least, most] = AngleDifference::of(&self.on.map, pair).range(self.on.map.limits());
         let half_turns = |angle: f64| (angle / std::f64::consts::PI).floor() as i32;
-        let first = half_turns(least + TOUCH);
-        first..=half_turns(most - TOUCH).max(first)
+        let first = half_turns(least + CHANGE_POINT_MARGIN);
+        first..=half_turns(most - CHANGE_POINT_MARGIN).max(first)
     }
 
     /// Returns all change points strictly within the limits: sin(q_k − q_l) = 0, and the linkage is flat. Limits that
     /// are such lines are not included.
     pub fn change_curves(&self) -> Vec<ChangeCurve> {
         let mut curves = Vec::new();
-        for pair in 0..PAIRS.len() {
+        for pair in 0..DRIVE_PAIRS.len() {
             let sides = self.sides(pair);
             for half_turns in sides.clone().skip(1) {
-                let difference = Difference::of(&self.on.map, pair);
+                let difference = AngleDifference::of(&self.on.map, pair);
                 let Some(ends) = difference.segment(self.on.map.limits(), f64::from(half_turns)) else { continue };
-                let spans: Vec<Span> = along(&self.on, BoundaryCurve::Change { pair }, ends).collect();
-                let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
+                let spans: Vec<BoundarySpan> = along(&self.on, BoundaryCurve::Change { pair }, ends).collect();
+                let chain: Vec<SpanPart> = (0..spans.len()).map(|span| SpanPart { span, from: 0.0, to: 1.0 }).collect();
                 let line = BoundaryLine::of(&self.on, &spans, &chain);
                 curves.push(ChangeCurve { pair, half_turns, ends, line });
             }

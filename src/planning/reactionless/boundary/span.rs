@@ -4,7 +4,7 @@
 //! oriented with the side of more poses on its left: one more for a limit, two more for a fold. So all spans together
 //! are a weighted cycle whose winding number about p is the number of poses of p.
 
-use super::determinant::{Determinant, INSET, upright};
+use super::determinant::{Determinant, FOLD_INSET, upright};
 use crate::mechanics::planar::{Vector, cross, dot};
 use crate::planning::golden::golden;
 use crate::planning::reactionless::{AngleLimit, PlaneMap};
@@ -23,13 +23,13 @@ pub enum BoundaryCurve {
     Fold,
     /// A change point of a pair of drives: the boundary of the part of the workspace on one side of it.
     Change {
-        /// Index of the pair in [`PAIRS`](super::super::PAIRS).
+        /// Index of the pair in [`DRIVE_PAIRS`](super::super::DRIVE_PAIRS).
         pair: usize,
     },
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
+pub(super) struct BoundarySpan {
     pub curve: BoundaryCurve,
     /// Index of the coordinate that varies linearly.
     chart: usize,
@@ -45,7 +45,7 @@ pub(super) struct Span {
 
 /// A point of a span: plane coordinates, position, and derivative of the position by the parameter.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Jet {
+pub(super) struct SpanPoint {
     pub a: [f64; 2],
     pub at: Vector,
     pub rate: Vector,
@@ -65,9 +65,9 @@ impl Surface {
         for (i, limit) in limits.iter_mut().enumerate() {
             let [low, high] = [limit.min, limit.max].map(|x| {
                 let [from, way] = upright(i, x);
-                if det.vanishes(from, way) { INSET } else { 0.0 }
+                if det.vanishes(from, way) { FOLD_INSET } else { 0.0 }
             });
-            if limit.max - limit.min > 4.0 * INSET {
+            if limit.max - limit.min > 4.0 * FOLD_INSET {
                 *limit = AngleLimit { min: limit.min + low, max: limit.max - high };
             }
         }
@@ -76,7 +76,7 @@ impl Surface {
     }
 
     /// Returns a straight span between two points.
-    pub fn straight(&self, curve: BoundaryCurve, ends: [[f64; 2]; 2]) -> Span {
+    pub fn straight(&self, curve: BoundaryCurve, ends: [[f64; 2]; 2]) -> BoundarySpan {
         let [from, to] = ends;
         let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
         let run = to[chart] - from[chart];
@@ -94,7 +94,7 @@ impl Surface {
             (k..3).filter(together).for_each(|l| seen[l] = true);
             jerk += arm.norm() * rates[k].abs().powi(3);
         }
-        Span {
+        BoundarySpan {
             curve,
             chart,
             ends,
@@ -106,7 +106,7 @@ impl Surface {
     }
 
     /// Returns the span of det = 0 between two of its points, det > 0 on its left; `None` if it is not clearly a graph.
-    pub fn fold(&self, ends: [[f64; 2]; 2]) -> Option<Span> {
+    pub fn fold(&self, ends: [[f64; 2]; 2]) -> Option<BoundarySpan> {
         let [from, to] = ends;
         let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
         let run = (to[chart] - from[chart]).abs();
@@ -117,7 +117,8 @@ impl Surface {
         }
         let slopes = gradients.map(|g| -g[chart] / g[1 - chart]);
         let at = ends.map(|a| self.map.forward_unturned(a));
-        let mut span = Span { curve: BoundaryCurve::Fold, chart, ends, at, slopes, solved: true, deviation: 0.0 };
+        let mut span =
+            BoundarySpan { curve: BoundaryCurve::Fold, chart, ends, at, slopes, solved: true, deviation: 0.0 };
         let middle = self.jet(&span, 0.5).a;
         let gradient = self.det.gradient(middle);
         let smooth = (slopes[1] - slopes[0]).abs() < 0.5
@@ -142,12 +143,12 @@ impl Surface {
     }
 
     /// Returns the part of a span over a parameter range, whose ends have the given plane coordinates.
-    pub fn part(&self, span: &Span, range: [f64; 2], ends: [[f64; 2]; 2]) -> Span {
+    pub fn part(&self, span: &BoundarySpan, range: [f64; 2], ends: [[f64; 2]; 2]) -> BoundarySpan {
         let slope = |a: [f64; 2]| {
             let g = self.det.gradient(a);
             -g[span.chart] / g[1 - span.chart]
         };
-        Span {
+        BoundarySpan {
             ends,
             at: ends.map(|a| self.map.forward_unturned(a)),
             slopes: if span.solved { ends.map(slope) } else { span.slopes },
@@ -157,7 +158,7 @@ impl Surface {
     }
 
     /// Returns the parameter of a point on a span; `None` if the point is not on it.
-    pub fn locate(&self, span: &Span, a: [f64; 2]) -> Option<f64> {
+    pub fn locate(&self, span: &BoundarySpan, a: [f64; 2]) -> Option<f64> {
         let [from, to] = span.ends.map(|e| e[span.chart]);
         let t = (a[span.chart] - from) / (to - from);
         let there = (0.0..=1.0).contains(&t) && (self.point(span, t)[1 - span.chart] - a[1 - span.chart]).abs() < 1e-8;
@@ -165,7 +166,7 @@ impl Surface {
     }
 
     /// Returns the parameters of the cusps of a fold's image: the null vector of the Jacobian is tangent to the curve.
-    pub fn cusps(&self, span: &Span) -> Vec<f64> {
+    pub fn cusps(&self, span: &BoundarySpan) -> Vec<f64> {
         // On the fold both columns are parallel, so that the component along one of them gives the sense of motion.
         let columns = |t: f64| self.map.columns(&self.map.arms(self.point(span, t)));
         let [start, end] = [columns(0.0), columns(1.0)];
@@ -206,7 +207,7 @@ impl Surface {
     }
 
     /// Returns the plane coordinates at t from 0 to 1.
-    pub fn point(&self, span: &Span, t: f64) -> [f64; 2] {
+    pub fn point(&self, span: &BoundarySpan, t: f64) -> [f64; 2] {
         if t <= 0.0 {
             return span.ends[0];
         }
@@ -233,7 +234,7 @@ impl Surface {
     }
 
     /// Returns the position at t, m.
-    pub fn at(&self, span: &Span, t: f64) -> Vector {
+    pub fn at(&self, span: &BoundarySpan, t: f64) -> Vector {
         if t <= 0.0 {
             span.at[0]
         } else if t >= 1.0 {
@@ -244,7 +245,7 @@ impl Surface {
     }
 
     /// Returns the position and its derivative at t.
-    pub fn jet(&self, span: &Span, t: f64) -> Jet {
+    pub fn jet(&self, span: &BoundarySpan, t: f64) -> SpanPoint {
         let a = self.point(span, t);
         let (chart, other) = (span.chart, 1 - span.chart);
         let arms = self.map.arms(a);
@@ -256,11 +257,11 @@ impl Surface {
         } else {
             span.slopes[0]
         };
-        Jet { a, at: arms.iter().sum(), rate: run * (columns[chart] + slope * columns[other]) }
+        SpanPoint { a, at: arms.iter().sum(), rate: run * (columns[chart] + slope * columns[other]) }
     }
 
     /// Returns ½ ∫ p × dp over a part of a span, m².
-    pub fn swept(&self, span: &Span, from: f64, to: f64) -> f64 {
+    pub fn swept(&self, span: &BoundarySpan, from: f64, to: f64) -> f64 {
         let whole = self.gauss(span, from, to);
         match span.curve {
             BoundaryCurve::Limit { .. } | BoundaryCurve::Change { .. } => whole,
@@ -268,7 +269,7 @@ impl Surface {
         }
     }
 
-    fn refined(&self, span: &Span, from: f64, to: f64, whole: f64, depth: usize) -> f64 {
+    fn refined(&self, span: &BoundarySpan, from: f64, to: f64, whole: f64, depth: usize) -> f64 {
         let middle = 0.5 * (from + to);
         let (first, second) = (self.gauss(span, from, middle), self.gauss(span, middle, to));
         if depth == 0 || (first + second - whole).abs() < 1e-16 * self.map.unit().powi(2) {
@@ -277,7 +278,7 @@ impl Surface {
         self.refined(span, from, middle, first, depth - 1) + self.refined(span, middle, to, second, depth - 1)
     }
 
-    fn gauss(&self, span: &Span, from: f64, to: f64) -> f64 {
+    fn gauss(&self, span: &BoundarySpan, from: f64, to: f64) -> f64 {
         const NODES: [(f64, f64); 4] = [
             (0.183_434_642_495_649_8, 0.362_683_783_378_362),
             (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -293,7 +294,7 @@ impl Surface {
     }
 }
 
-impl Span {
+impl BoundarySpan {
     /// Returns the number of poses on the left minus that on the right.
     pub fn weight(&self) -> i32 {
         match self.curve {

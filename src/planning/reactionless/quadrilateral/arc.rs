@@ -1,4 +1,4 @@
-//! [`Arc`]: a part of the curve along which b is monotone.
+//! [`MonotoneArc`]: a part of the curve along which b is monotone.
 
 use std::f64::consts::PI;
 
@@ -12,17 +12,17 @@ pub struct Site {
 
 /// A part of the curve along which b is monotone; a single point if both ends are equal.
 #[derive(Clone, Copy, Debug)]
-pub struct Arc {
+pub struct MonotoneArc {
     pub from: Site,
     pub to: Site,
     /// Parameter at the two ends, in [0, π].
     pub s: [f64; 2],
-    pub(super) path: Path,
+    pub(super) path: ArcSource,
 }
 
 /// The curve that an arc is part of.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Path {
+pub(super) enum ArcSource {
     /// A graph, and the whole turns, rad, that are added to its β.
     Graph(Graph, f64),
     /// A straight line: α, β and b are linear in s between the ends.
@@ -34,18 +34,18 @@ pub(super) enum Path {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Graph {
     pub sigma: f64,
-    pub piece: Piece,
+    pub piece: FeasibleInterval,
 }
 
 /// An interval of α in which the quadrilateral closes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct FeasibleInterval {
     pub ends: [f64; 2],
     /// cos γ = ±1 at the ends, where the curve turns back to the other elbow; `None` if it does not turn back.
     pub turning: Option<[f64; 2]>,
 }
 
-impl Piece {
+impl FeasibleInterval {
     /// Returns α of a parameter s.
     pub fn alpha(&self, s: f64) -> f64 {
         let [from, to] = self.ends;

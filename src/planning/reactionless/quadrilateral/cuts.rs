@@ -1,8 +1,8 @@
-//! [`Cut`]: points at which the graphs are split into arcs.
+//! [`GraphCut`]: points at which the graphs are split into arcs.
 
 use std::f64::consts::PI;
 
-use super::few::Few;
+use super::few::SmallList;
 use super::lifts::lifts;
 use super::{Quadrilateral, bend};
 use crate::mechanics::planar::{Vector, unit};
@@ -15,7 +15,7 @@ pub(super) const CUTS: usize = 36;
 
 /// A point at which a graph is split, α modulo 2π. Superfluous ones do no harm.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+pub(super) struct GraphCut {
     pub alpha: f64,
     /// β modulo 2π; `None` to take it from the graph.
     pub beta: Option<f64>,
@@ -25,23 +25,23 @@ pub(super) struct Cut {
 
 impl Quadrilateral {
     /// Returns all of them.
-    pub(super) fn cuts(&self) -> Few<Cut, CUTS> {
-        let mut cuts = Few::new(Cut { alpha: 0.0, beta: None, edge: false });
-        self.limit_crossings(|alpha, beta| cuts.push(Cut { alpha, beta: Some(beta), edge: true }));
+    pub(super) fn cuts(&self) -> SmallList<GraphCut, CUTS> {
+        let mut cuts = SmallList::new(GraphCut { alpha: 0.0, beta: None, edge: false });
+        self.limit_crossings(|alpha, beta| cuts.push(GraphCut { alpha, beta: Some(beta), edge: true }));
         // Where an end of the feasible α is a flat pose, both graphs touch and have a corner.
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * self.size();
         if near(self.r + self.y, self.m + self.x) {
-            cuts.push(Cut { alpha: 0.0, beta: None, edge: false });
+            cuts.push(GraphCut { alpha: 0.0, beta: None, edge: false });
         }
         if near((self.r - self.y).abs(), (self.m - self.x).abs()) {
-            cuts.push(Cut { alpha: PI, beta: None, edge: false });
+            cuts.push(GraphCut { alpha: PI, beta: None, edge: false });
         }
         // Folds outside the limits need no split.
         let AngleLimit { min, max } = self.limits[1];
         let wide = AngleLimit { min: min - BOUND_MARGIN_RAD, max: max + BOUND_MARGIN_RAD };
         self.folds(|alpha, beta| {
             if beta.is_none_or(|beta| lifts(beta, wide).next().is_some()) {
-                cuts.push(Cut { alpha, beta, edge: false });
+                cuts.push(GraphCut { alpha, beta, edge: false });
             }
         });
         cuts

@@ -1,12 +1,12 @@
-//! [`Few`]: a list of fixed capacity on the stack.
+//! [`SmallList`]: a list of fixed capacity on the stack.
 
 /// A list of fixed capacity on the stack: items beyond the capacity are dropped.
-pub(super) struct Few<T, const N: usize> {
+pub(super) struct SmallList<T, const N: usize> {
     pub len: usize,
     pub items: [T; N],
 }
 
-impl<T: Copy, const N: usize> Few<T, N> {
+impl<T: Copy, const N: usize> SmallList<T, N> {
     /// Returns an empty list; the filler is never read.
     pub fn new(filler: T) -> Self {
         Self { len: 0, items: [filler; N] }

@@ -1,7 +1,7 @@
 //! Folds of the self-motion: where det = 0 and b turns back.
 
 use super::Quadrilateral;
-use super::few::Few;
+use super::few::SmallList;
 use crate::mechanics::planar::{Vector, cross, unit};
 
 impl Quadrilateral {
@@ -90,10 +90,10 @@ impl Quadrilateral {
 
 /// Returns the roots in [−1, 1] of Σ c_i x^i, and those extrema and ends of the interval at which |value| ≤ `near`:
 /// there two roots may have merged.
-fn cubic_roots(c: [f64; 4], near: f64) -> Few<f64, 7> {
+fn cubic_roots(c: [f64; 4], near: f64) -> SmallList<f64, 7> {
     let value = |x: f64| c[0] + x * (c[1] + x * (c[2] + x * c[3]));
     let slope = |x: f64| c[1] + x * (2.0 * c[2] + x * 3.0 * c[3]);
-    let mut nodes = Few::<f64, 4>::new(1.0);
+    let mut nodes = SmallList::<f64, 4>::new(1.0);
     nodes.push(-1.0);
     let root = (c[2] * c[2] - 3.0 * c[3] * c[1]).max(0.0).sqrt();
     let sum = -(c[2] + root.copysign(c[2]));
@@ -102,7 +102,7 @@ fn cubic_roots(c: [f64; 4], near: f64) -> Few<f64, 7> {
     extrema.into_iter().filter(|x| x.abs() < 1.0).for_each(|x| nodes.push(x));
     nodes.push(1.0);
 
-    let mut roots = Few::new(0.0);
+    let mut roots = SmallList::new(0.0);
     for x in nodes.as_slice() {
         if value(*x).abs() <= near {
             roots.push(*x);

@@ -2,20 +2,20 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::arc::{Arc, Graph, Path, Piece, Site};
-use super::cuts::{CUTS, Cut};
-use super::few::Few;
+use super::arc::{ArcSource, FeasibleInterval, Graph, MonotoneArc, Site};
+use super::cuts::{CUTS, GraphCut};
+use super::few::SmallList;
 use super::lifts::lifts;
-use super::{Quadrilateral, ROUNDING, bend};
+use super::{Quadrilateral, REACH_ROUNDING, bend};
 use crate::mechanics::planar::{cross, unit};
 use crate::planning::reactionless::plane::AngleLimit;
 
 impl Quadrilateral {
     /// Returns the point of an arc at a parameter s.
-    pub fn on(&self, arc: &Arc, s: f64) -> Site {
+    pub fn on(&self, arc: &MonotoneArc, s: f64) -> Site {
         match arc.path {
-            Path::Graph(Graph { sigma, piece }, turns) => self.turned(self.at(piece.alpha(s), sigma, None), turns),
-            Path::Line => {
+            ArcSource::Graph(Graph { sigma, piece }, turns) => self.turned(self.at(piece.alpha(s), sigma, None), turns),
+            ArcSource::Line => {
                 let t = (s - arc.s[0]) / (arc.s[1] - arc.s[0]);
                 let mix = |from: f64, to: f64| from + t * (to - from);
                 Site {
@@ -34,7 +34,7 @@ impl Quadrilateral {
 
     /// Returns the point of an arc with a given b between those of the ends: bracketing with inverse quadratic
     /// interpolation (Chandrupatla).
-    pub fn solve(&self, arc: &Arc, b: f64) -> Site {
+    pub fn solve(&self, arc: &MonotoneArc, b: f64) -> Site {
         let gaps = [arc.from.b - b, arc.to.b - b];
         if gaps[0] * gaps[1] >= 0.0 {
             return if gaps[0].abs() < gaps[1].abs() { arc.from } else { arc.to };
@@ -68,7 +68,7 @@ impl Quadrilateral {
     }
 
     /// Visits the whole curve within the limits, arc by arc. Consecutive arcs share an end.
-    pub fn arcs(&self, mut visit: impl FnMut(&Arc)) {
+    pub fn arcs(&self, mut visit: impl FnMut(&MonotoneArc)) {
         if self.is_rhombus() {
             return self.lines(visit);
         }
@@ -80,7 +80,7 @@ impl Quadrilateral {
             let last = ((max - from) / TAU).floor();
             let mut turn = ((min - to) / TAU).ceil();
             while turn <= last {
-                let piece = Piece { ends: [from + TAU * turn, to + TAU * turn], turning: piece.turning };
+                let piece = FeasibleInterval { ends: [from + TAU * turn, to + TAU * turn], turning: piece.turning };
                 let span = [piece.ends[0].max(min), piece.ends[1].min(max)];
                 if span[0] <= span[1] {
                     self.arcs_over(Graph { sigma: 1.0, piece }, span, cuts.as_slice(), &mut visit);
@@ -92,11 +92,11 @@ impl Quadrilateral {
     }
 
     /// Returns the feasible intervals of α modulo 2π; `None` if the quadrilateral never closes.
-    fn pieces(&self) -> Option<([Piece; 2], usize)> {
+    fn pieces(&self) -> Option<([FeasibleInterval; 2], usize)> {
         let Self { m, x, y, r, .. } = *self;
         let (inner, outer) = (r + y, (r - y).abs());
         // Rounding must not make full stretch infeasible.
-        let rounding = ROUNDING * self.size();
+        let rounding = REACH_ROUNDING * self.size();
         let closes = y > 0.0 && inner >= (m - x).abs() - rounding && outer <= m + x + rounding;
         if !closes {
             return None;
@@ -106,7 +106,7 @@ impl Quadrilateral {
         let alpha = [if straight { 0.0 } else { bend(m, x, inner) }, if folded { PI } else { bend(m, x, outer) }];
         // At ρ = r + y, cos γ = −1; at ρ = |r − y|, cos γ = 1 if y ≤ r, else −1.
         let cos = [-1.0, if r >= y { 1.0 } else { -1.0 }];
-        let piece = |from: f64, to: f64, turning| Piece { ends: [from, to], turning };
+        let piece = |from: f64, to: f64, turning| FeasibleInterval { ends: [from, to], turning };
         let whole = piece(-PI, PI, None);
         Some(match (straight, folded) {
             (true, true) => ([whole; 2], 1),
@@ -119,11 +119,11 @@ impl Quadrilateral {
         })
     }
 
-    fn arcs_over(&self, graph: Graph, span: [f64; 2], cuts: &[Cut], visit: &mut impl FnMut(&Arc)) {
+    fn arcs_over(&self, graph: Graph, span: [f64; 2], cuts: &[GraphCut], visit: &mut impl FnMut(&MonotoneArc)) {
         let Graph { sigma, piece } = graph;
         // β and b of a place are computed only where an arc can begin or end within the limits.
-        let end = |alpha: f64| Cut { alpha, beta: None, edge: false };
-        let mut places = Few::<Cut, { CUTS + 2 }>::new(end(span[0]));
+        let end = |alpha: f64| GraphCut { alpha, beta: None, edge: false };
+        let mut places = SmallList::<GraphCut, { CUTS + 2 }>::new(end(span[0]));
         places.push(end(span[0]));
         for cut in cuts {
             let alpha = cut.alpha + TAU * ((span[0] - cut.alpha) / TAU).ceil();
@@ -137,13 +137,13 @@ impl Quadrilateral {
             if cut.beta.is_some_and(other_elbow) {
                 continue;
             }
-            places.push(Cut { alpha, ..*cut });
+            places.push(GraphCut { alpha, ..*cut });
         }
         places.items[1..places.len].sort_unstable_by(|a, b| a.alpha.total_cmp(&b.alpha));
         places.push(end(span[1]));
         let places = places.as_slice();
         let site = |i: usize| {
-            let Cut { alpha, beta, .. } = places[i];
+            let GraphCut { alpha, beta, .. } = places[i];
             match beta {
                 _ if i == 0 || i + 1 == places.len() => self.at(alpha, sigma, piece.turning_at(alpha)),
                 None => self.at(alpha, sigma, None),
@@ -169,7 +169,7 @@ impl Quadrilateral {
                 visit(&self.arc(ends, s, graph, beta - middle));
             }
             // Where the curve touches a bound from outside, or both bounds coincide, it meets them in a single point.
-            if let Cut { edge: true, beta: Some(edge), .. } = places[i] {
+            if let GraphCut { edge: true, beta: Some(edge), .. } = places[i] {
                 let from = *from.get_or_insert_with(|| site(i));
                 let turns = TAU * ((edge - from.beta) / TAU).round();
                 let misses = |middle: f64| !bound.contains(middle + turns, 0.0);
@@ -181,17 +181,22 @@ impl Quadrilateral {
         }
     }
 
-    fn arc(&self, [from, to]: [Site; 2], s: [f64; 2], graph: Graph, turns: f64) -> Arc {
-        Arc { from: self.turned(from, turns), to: self.turned(to, turns), s, path: Path::Graph(graph, turns) }
+    fn arc(&self, [from, to]: [Site; 2], s: [f64; 2], graph: Graph, turns: f64) -> MonotoneArc {
+        MonotoneArc {
+            from: self.turned(from, turns),
+            to: self.turned(to, turns),
+            s,
+            path: ArcSource::Graph(graph, turns),
+        }
     }
 
     /// Whether all four sides are equal. Then the curve consists of straight lines, on which one pair of arms cancels.
     fn is_rhombus(&self) -> bool {
-        [self.x, self.y, self.r].iter().all(|side| (side - self.m).abs() <= ROUNDING * self.size())
+        [self.x, self.y, self.r].iter().all(|side| (side - self.m).abs() <= REACH_ROUNDING * self.size())
     }
 
     /// Visits the curve of a rhombus: α = π, β = π, α − β = π, modulo 2π.
-    fn lines(&self, mut visit: impl FnMut(&Arc)) {
+    fn lines(&self, mut visit: impl FnMut(&MonotoneArc)) {
         let [first, second] = self.limits;
         let [by_turn, by_alpha, by_beta] = [-self.lambda_sum, self.lambda[1], self.lambda[2]];
         let mut line = |[from, to]: [[f64; 2]; 2], arg_w: [f64; 2]| {
@@ -199,7 +204,7 @@ impl Quadrilateral {
                 |i: usize, [alpha, beta]: [f64; 2]| self.b_0 + by_turn * arg_w[i] + by_alpha * alpha + by_beta * beta;
             let site = |i: usize, at: [f64; 2]| Site { alpha: at[0], beta: at[1], b: b(i, at) };
             let s = [0.0, if from == to { 0.0 } else { PI }];
-            visit(&Arc { from: site(0, from), to: site(1, to), s, path: Path::Line });
+            visit(&MonotoneArc { from: site(0, from), to: site(1, to), s, path: ArcSource::Line });
         };
         for alpha in lifts(PI, first) {
             line([[alpha, second.min], [alpha, second.max]], [second.min, second.max]);

@@ -20,7 +20,7 @@ const END_INTERVALS: usize = 4;
 /// A two-sided limit at a point: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk, where c are three
 /// coefficients from the point's first.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Side {
+pub(super) struct TwoSidedLimit {
     /// v.
     pub v: [f64; 3],
     /// g or k.
@@ -37,7 +37,7 @@ pub(super) struct Side {
     pub next: [f64; 2],
 }
 
-impl Side {
+impl TwoSidedLimit {
     /// Accepts the slacks of the trial step.
     pub fn accept(&mut self) {
         self.slack = self.next;
@@ -46,7 +46,7 @@ impl Side {
 
 /// A point in an interval at which limits are imposed.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct LimitPoint {
     /// θ.
     pub theta: f64,
     /// Index of the first of its three coefficients.
@@ -62,8 +62,8 @@ pub(super) struct Place {
 /// The program on given nodes.
 pub struct JerkProgram {
     pub(super) nodes: Vec<f64>,
-    pub(super) places: Vec<Place>,
-    pub(super) sides: Vec<Side>,
+    pub(super) places: Vec<LimitPoint>,
+    pub(super) sides: Vec<TwoSidedLimit>,
     /// Number of sides of a point.
     pub(super) each: usize,
     /// Number of these for torque and acceleration; one for speed and those for jerk follow.
@@ -101,7 +101,7 @@ impl JerkProgram {
                 let (point, third) = by_theta(path, theta);
                 let cap = constraints.at(&point, rows, speeds).min(max_square);
                 let sum = |p: f64, q: f64, r: f64| [0, 1, 2].map(|k| p * bend[k] + q * slope[k] + r * y[k]);
-                let side = |v, g| Side { v, g, ..Side::default() };
+                let side = |v, g| TwoSidedLimit { v, g, ..TwoSidedLimit::default() };
                 sides.extend(rows.iter().map(|row| side(sum(0.0, row.a / 3.0, row.c), row.g)));
                 sides.push(side(y.map(|y| y / cap.powf(1.5)), 0.0));
                 let motors = constraints.motors();
@@ -111,7 +111,7 @@ impl JerkProgram {
                     let (a, b, c) = (per * first[*k], per * second[*k], per * third[*k]);
                     side(sum(a / 3.0, b, c), a / 9.0)
                 }));
-                places.push(Place { theta, first: i, y, slope, weight: weight * h });
+                places.push(LimitPoint { theta, first: i, y, slope, weight: weight * h });
             }
         }
         let count = nodes.len() + 1;

@@ -1,7 +1,7 @@
 //! Parts of an interior-point step: slacks, multipliers, and the matrix.
 
 use super::band::Band;
-use super::program::{JerkProgram, Side, dot};
+use super::program::{JerkProgram, TwoSidedLimit, dot};
 
 impl JerkProgram {
     /// Returns the complementarity gap, the sum of slacks times multipliers.
@@ -35,7 +35,7 @@ impl JerkProgram {
             }
         }
         if share == 0.0 {
-            self.sides.iter_mut().for_each(Side::accept);
+            self.sides.iter_mut().for_each(TwoSidedLimit::accept);
         }
         true
     }

@@ -1,7 +1,7 @@
 //! [`Timing`]: y as a quadratic spline over the nodes.
 
 use super::easing::eased;
-use crate::planning::timing::law::Progress;
+use crate::planning::timing::law::PathProgress;
 use crate::planning::timing::profile::Profile;
 
 /// Points and weights of Gaussian quadrature over an interval, for its time.
@@ -45,11 +45,12 @@ impl Timing {
             let [s, first, second, _] = eased(self.nodes[i]);
             let rate = y[0].cbrt();
             let turn = 2.0 * (y[1] - y[0]) / (3.0 * h * rate);
-            let jet = Progress { s, rate: first * rate, acceleration: second * rate * rate + first * turn, jerk: 0.0 };
+            let jet =
+                PathProgress { s, rate: first * rate, acceleration: second * rate * rate + first * turn, jerk: 0.0 };
             jets.push((t, jet));
             t += h * GAUSS_TIMES.map(|(at, weight)| weight / curved(y, at).cbrt()).iter().sum::<f64>();
         }
-        jets.push((t, Progress::still(1.0)));
+        jets.push((t, PathProgress::still(1.0)));
         Profile::through_jets(&jets)
     }
 }

@@ -1,15 +1,15 @@
-//! [`Doubting`]: the test of all faults, one after the other.
+//! [`DoubtSearch`]: the test of all faults, one after the other.
 
 use super::fault::Fault;
-use super::odds::{Tried, odds, shares, tried};
-use super::possible::impossible;
-use super::said::{Cause, Doubt, Said};
-use super::tolerances::{Tolerances, known};
+use super::odds::{FitTrial, likelihood_ratio, shares, try_fit};
+use super::possible::impossible_numbers;
+use super::said::{Cause, Doubt, MeasuredValue};
+use super::tolerances::{Tolerances, known_numbers};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::Vector;
 use crate::study::trim::error::TrimError;
-use crate::study::trim::recording::{Motion, Recording};
-use crate::study::trim::rows::Rows;
+use crate::study::trim::recording::{MeasuredMotion, MeasurementSet};
+use crate::study::trim::rows::Regressor;
 use crate::study::trim::unknowns::{Unknown, Unknowns};
 
 /// Threshold of ln Λ above which a fault is accepted: odds of 10⁴.
@@ -29,18 +29,18 @@ const MAX_WORK: usize = 4_000_000;
 ///
 /// # Errors
 /// Fails if the recording cannot be used.
-pub fn doubt(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Option<Doubt>, TrimError> {
-    let mut doubting = Doubting::begin(machine, recording, angles_only)?;
+pub fn doubt(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Option<Doubt>, TrimError> {
+    let mut doubting = DoubtSearch::begin(machine, recording, angles_only)?;
     while doubting.next(machine) {}
     Ok(doubting.doubt(machine))
 }
 
 /// A test for faults in progress.
-pub struct Doubting {
-    recording: Recording,
+pub struct DoubtSearch {
+    recording: MeasurementSet,
     angles_only: bool,
-    rows: Rows,
-    given: Tried,
+    rows: Regressor,
+    given: FitTrial,
     tolerances: Tolerances,
     /// Unknowns whose values no machine can have, by the measurement as given.
     infeasible: Vec<Unknown>,
@@ -57,22 +57,22 @@ struct Likely {
     /// ln Λ by which faults are ordered.
     ranks: f64,
     fault: Fault,
-    tried: Tried,
+    tried: FitTrial,
 }
 
-impl Doubting {
+impl DoubtSearch {
     /// Fits the measurement as given, before any fault is tested.
     ///
     /// # Errors
     /// Fails if the recording cannot be used.
-    pub fn begin(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+    pub fn begin(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Self, TrimError> {
         recording.check(machine.drives())?;
         let recording = shortened(machine, recording);
-        let rows = Rows::of(machine, &recording, angles_only)?;
-        let given = tried(machine, &rows, limit_violation(machine, &recording))?;
+        let rows = Regressor::of(machine, &recording, angles_only)?;
+        let given = try_fit(machine, &rows, limit_violation(machine, &recording))?;
         Ok(Self {
             tolerances: Tolerances::of(machine),
-            infeasible: impossible(machine, &given.fit),
+            infeasible: impossible_numbers(machine, &given.fit),
             faults: Fault::all(machine),
             done: 0,
             likely: Vec::new(),
@@ -103,23 +103,23 @@ impl Doubting {
         let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.leaves);
         if let Some(own) = &own {
             violation = limit_violation(machine, own);
-            let fresh = Rows::at_least(rows.half(), machine, own, self.angles_only).ok()?;
+            let fresh = Regressor::at_least(rows.half(), machine, own, self.angles_only).ok()?;
             // Residuals must be compared for the same windows.
             if fresh.half() > rows.half() {
-                let wide = Rows::at_least(fresh.half(), machine, &self.recording, self.angles_only);
-                as_given = wide.and_then(|rows| tried(machine, &rows, given.leaves)).ok();
+                let wide = Regressor::at_least(fresh.half(), machine, &self.recording, self.angles_only);
+                as_given = wide.and_then(|rows| try_fit(machine, &rows, given.leaves)).ok();
             }
             transformed = fresh;
         }
         transformed.transform(|force, moment| fault.undo(force, moment));
-        let other = tried(machine, &transformed, violation).ok()?;
-        let [decides, ranks] = odds(&self.tolerances, as_given.as_ref().unwrap_or(given), &other)?;
+        let other = try_fit(machine, &transformed, violation).ok()?;
+        let [decides, ranks] = likelihood_ratio(&self.tolerances, as_given.as_ref().unwrap_or(given), &other)?;
         // If the values as given are impossible, any fault with possible values and a positive rank explains them.
         let explains = match self.infeasible.as_slice() {
             [] => decides > MIN_LOG_ODDS,
             _ => ranks > 0.0,
         };
-        (explains && impossible(machine, &other.fit).is_empty()).then(|| Likely {
+        (explains && impossible_numbers(machine, &other.fit).is_empty()).then(|| Likely {
             odds: decides.max(ranks),
             ranks: ranks - LOG_ODDS_PER_MISTAKE * (fault.mistakes - 1) as f64,
             fault: fault.clone(),
@@ -135,8 +135,8 @@ impl Doubting {
         self.likely.sort_by(|a, b| b.ranks.total_cmp(&a.ranks));
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
         self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
-        let Self { given: Tried { fit, .. }, infeasible, likely, .. } = &self;
-        let said = |place: usize| Said {
+        let Self { given: FitTrial { fit, .. }, infeasible, likely, .. } = &self;
+        let said = |place: usize| MeasuredValue {
             name: fit.unknowns.at(place).name(machine),
             unit: fit.unknowns.at(place).unit(),
             value: fit.measured[place],
@@ -170,8 +170,8 @@ impl Doubting {
 
 /// Returns the identifiable unknown with the largest relative deviation from the other fit, or from the file if there
 /// is no other fit. Only momenta are compared, and those first moments and couplings that are not zero in the file.
-fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<usize> {
-    let (fit, known) = (&given.fit, known(machine));
+fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Option<usize> {
+    let (fit, known) = (&given.fit, known_numbers(machine));
     let off = |i: &usize| {
         let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
@@ -183,7 +183,7 @@ fn furthest(machine: &Machine, given: &Tried, other: Option<&Tried>) -> Option<u
 }
 
 /// Returns the largest violation of the limits of relative angles, modulo whole turns, rad; 0 if there is none.
-fn limit_violation(machine: &Machine, recording: &Recording) -> f64 {
+fn limit_violation(machine: &Machine, recording: &MeasurementSet) -> f64 {
     let mut most: f64 = 0.0;
     for angle in machine.angles() {
         let (low, high) = (*angle.limits.start(), *angle.limits.end());
@@ -201,7 +201,7 @@ fn limit_violation(machine: &Machine, recording: &Recording) -> f64 {
 }
 
 /// Returns a recording short enough for many fits: of a long one, some motions, each with its first samples.
-fn shortened(machine: &Machine, recording: &Recording) -> Recording {
+fn shortened(machine: &Machine, recording: &MeasurementSet) -> MeasurementSet {
     let unknowns = Unknowns::of(machine.drives()).count();
     let most = (MAX_WORK / unknowns.pow(2)).clamp(1_000, 20_000);
     let samples: usize = recording.motions.iter().map(|motion| motion.t.len()).sum();
@@ -210,10 +210,10 @@ fn shortened(machine: &Machine, recording: &Recording) -> Recording {
     }
     let count = recording.motions.len().min(most / 250);
     let each = most / count;
-    let truncated = |motion: &Motion| {
+    let truncated = |motion: &MeasuredMotion| {
         let rows = motion.t.len().min(each);
         let part = |all: &[_]| all.iter().copied().take(rows).collect();
-        Motion {
+        MeasuredMotion {
             t: motion.t[..rows].to_vec(),
             q: part(&motion.q),
             qd: part(&motion.qd),
@@ -223,10 +223,10 @@ fn shortened(machine: &Machine, recording: &Recording) -> Recording {
         }
     };
     let motions = (0..count).map(|i| truncated(&recording.motions[i * recording.motions.len() / count])).collect();
-    Recording { motions }
+    MeasurementSet { motions }
 }
 
-impl Rows {
+impl Regressor {
     /// Transforms the measured force and moment; the straight line over time stays removed.
     fn transform(&mut self, transformation: impl Fn(Vector, f64) -> (Vector, f64)) {
         let [fx, fy, n] = &mut self.channels;

@@ -9,7 +9,7 @@
 
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{PerDrive, Vector};
-use crate::study::trim::{Motion, Recording};
+use crate::study::trim::{MeasuredMotion, MeasurementSet};
 
 /// A fault: its description, the remedy, and the correction of the measurement.
 #[derive(Clone, Debug)]
@@ -46,14 +46,14 @@ impl Angles {
     }
 
     /// Returns the recording with corrected angles.
-    pub fn undo(&self, recording: &Recording) -> Recording {
-        let motion = |motion: &Motion| {
+    pub fn undo(&self, recording: &MeasurementSet) -> MeasurementSet {
+        let motion = |motion: &MeasuredMotion| {
             let each = |all: &[PerDrive]| all.iter().map(|x| self.of(x)).collect::<Vec<_>>();
             let mut q = each(&motion.q);
             q.iter_mut().for_each(|q| *q = q.plus(1.0, &self.offset));
-            Motion { q, qd: each(&motion.qd), qdd: each(&motion.qdd), ..motion.clone() }
+            MeasuredMotion { q, qd: each(&motion.qd), qdd: each(&motion.qdd), ..motion.clone() }
         };
-        Recording { motions: recording.motions.iter().map(motion).collect() }
+        MeasurementSet { motions: recording.motions.iter().map(motion).collect() }
     }
 }
 

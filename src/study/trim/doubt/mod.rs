@@ -19,7 +19,7 @@
 //! that is not balanced cannot. For it, d² covers the momenta and the first moments and couplings that are not zero in
 //! its file. Then the second term is p/2 ln(d₀²/(`MIN_IMPROVEMENT` d²)) if that is larger.
 //! The measurement as given is rejected if Λ exceeds 10⁴, or if no machine can have the values found ([`impossible`]).
-//! ([`impossible`]).
+//! ([`impossible_numbers`]).
 //! Some faults give the same residuals: a balanced machine does not show whether fx or fy is reversed. Then faults are
 //! ordered with d² of all unknowns, and the message names each that is not clearly less likely than the first.
 //! faults are ordered by all of d², and the message names each that is not clearly less likely than the first.
@@ -34,6 +34,6 @@ mod possible;
 mod said;
 mod tolerances;
 
-pub(super) use doubting::Doubting;
+pub(super) use doubting::DoubtSearch;
 pub use doubting::doubt;
-pub use said::{Cause, Doubt, Said};
+pub use said::{Cause, Doubt, MeasuredValue};

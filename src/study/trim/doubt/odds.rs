@@ -4,7 +4,7 @@ use super::tolerances::Tolerances;
 use crate::mechanics::machine::Machine;
 use crate::study::trim::error::TrimError;
 use crate::study::trim::fit::{Fit, estimate};
-use crate::study::trim::rows::Rows;
+use crate::study::trim::rows::Regressor;
 
 /// ln Λ for keeping joint limits instead of violating them: odds of 10⁶.
 const LIMITS_LOG_ODDS: f64 = 13.8;
@@ -12,9 +12,9 @@ const LIMITS_LOG_ODDS: f64 = 13.8;
 /// decrease it by less.
 const MIN_IMPROVEMENT: f64 = 30.0;
 /// Joint limits count as violated beyond this, rad.
-pub(super) const LEFT: f64 = 0.1;
+pub(super) const LIMIT_LEFT_BEYOND: f64 = 0.1;
 /// Joint limits count as kept up to this violation, rad.
-pub(super) const KEPT: f64 = 0.02;
+pub(super) const LIMIT_KEPT_WITHIN: f64 = 0.02;
 /// Fraction of the effective rows that is counted, because the correlation of few rows is uncertain.
 const COUNTED_FRACTION: f64 = 0.5;
 /// Residuals below this fraction of the largest possible reaction are rounding, also of written digits.
@@ -23,15 +23,15 @@ const ROUNDING_LEVEL: f64 = 1e-10;
 const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 
 /// A fit, and the violation of the joint limits, rad.
-pub(super) struct Tried {
+pub(super) struct FitTrial {
     pub fit: Fit,
     share: f64,
     pub leaves: f64,
 }
 
-pub(super) fn tried(machine: &Machine, rows: &Rows, leaves: f64) -> Result<Tried, TrimError> {
+pub(super) fn try_fit(machine: &Machine, rows: &Regressor, leaves: f64) -> Result<FitTrial, TrimError> {
     let estimate = estimate(machine, rows)?;
-    Ok(Tried { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), leaves })
+    Ok(FitTrial { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), leaves })
 }
 
 /// Returns the residuals of force and of moment as fractions of the measured values.
@@ -40,7 +40,7 @@ pub(super) fn shares(fit: &Fit) -> [f64; 2] {
 }
 
 /// Returns ln Λ for the decision, and ln Λ for the ranking; `None` if they cannot be computed.
-pub(super) fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Option<[f64; 2]> {
+pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other: &FitTrial) -> Option<[f64; 2]> {
     let (was, now) = (&given.fit, &other.fit);
     let residuals = |of: usize| {
         let [before, after] = [was, now].map(|fit| shares(fit)[of].max(MIN_RELATIVE_RESIDUAL));
@@ -55,8 +55,8 @@ pub(super) fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Opt
     let p = before.numbers.max(after.numbers);
     let scale = before.balance.max(after.balance) + p;
     let limits = match [given.leaves, other.leaves] {
-        [was, now] if was > LEFT && now < KEPT => LIMITS_LOG_ODDS,
-        [was, now] if was < KEPT && now > LEFT => -LIMITS_LOG_ODDS,
+        [was, now] if was > LIMIT_LEFT_BEYOND && now < LIMIT_KEPT_WITHIN => LIMITS_LOG_ODDS,
+        [was, now] if was < LIMIT_KEPT_WITHIN && now > LIMIT_LEFT_BEYOND => -LIMITS_LOG_ODDS,
         _ => 0.0,
     };
     let common = residuals(0) + residuals(1) + limits;

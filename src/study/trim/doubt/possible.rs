@@ -1,4 +1,4 @@
-//! [`impossible`]: finds identified values that no machine can have, whatever its masses.
+//! [`impossible_numbers`]: finds identified values that no machine can have, whatever its masses.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -27,7 +27,7 @@ const MAX_ITERATIONS: usize = 10_000;
 
 /// Returns the unknowns whose values are impossible together, the most involved first; empty if positive masses explain
 /// them.
-pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
+pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let unknowns = &fit.unknowns;
     let from = unknowns.of_balance();

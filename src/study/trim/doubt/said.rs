@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::odds::{KEPT, LEFT};
+use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
 use crate::settings::number::shown;
 
 /// Why a measurement is rejected.
@@ -11,9 +11,9 @@ pub struct Doubt {
     /// Possible faults, the most likely first; empty if no known fault explains the measurement.
     pub causes: Vec<Cause>,
     /// Values that no machine can have.
-    pub impossible: Vec<Said>,
+    pub impossible: Vec<MeasuredValue>,
     /// The unknown with the largest deviation from the file.
-    pub furthest: Option<Said>,
+    pub furthest: Option<MeasuredValue>,
     /// Root mean square residuals of force, N, and of moment, N m, as given.
     pub noise: [f64; 2],
     /// These residuals as fractions of the measured values.
@@ -43,7 +43,7 @@ pub struct Cause {
 
 /// Value of an unknown by the measurement as given.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
+pub struct MeasuredValue {
     /// Name of the unknown.
     pub name: String,
     /// Unit of the value.
@@ -73,11 +73,11 @@ impl fmt::Display for Doubt {
             }
         }
         let then = self.causes.first();
-        for Said { name, unit, value, half_width, file } in &self.impossible {
+        for MeasuredValue { name, unit, value, half_width, file } in &self.impossible {
             write!(f, "\n  As given, {name} = {} ± {} {unit}", number(*value), number(*half_width))?;
             write!(f, " (file: {}), which no masses above zero make.", number(*file))?;
         }
-        if let Some(Said { name, unit, value, half_width, file }) = &self.furthest {
+        if let Some(MeasuredValue { name, unit, value, half_width, file }) = &self.furthest {
             if !self.impossible.iter().any(|said| said.name == *name) {
                 write!(f, "\n  As given, {name} = {} ± {} {unit}", number(*value), number(*half_width))?;
                 write!(f, " (file: {}).", number(*file))?;
@@ -96,7 +96,7 @@ impl fmt::Display for Doubt {
                     write!(f, " without the fault {}.", number(then.noise[i]))?;
                 }
             }
-            if self.leaves > LEFT && then.leaves < KEPT {
+            if self.leaves > LIMIT_LEFT_BEYOND && then.leaves < LIMIT_KEPT_WITHIN {
                 write!(f, "\n  As given, angles leave their limits by {} rad;", number(self.leaves))?;
                 write!(f, " without the fault they keep them.")?;
             }

@@ -65,7 +65,7 @@ pub(super) struct Distance {
 
 /// Returns whether the file's value of each unknown differs from that of a balanced machine. That holds for each D, and
 /// for both parts of first moments and couplings above a thousandth of mass times reach, or mass times reach squared.
-pub(super) fn known(machine: &Machine) -> Vec<bool> {
+pub(super) fn known_numbers(machine: &Machine) -> Vec<bool> {
     let (unknowns, inertia) = (Unknowns::of(machine.drives()), Inertia::of(machine));
     let nominal = unknowns.nominal(&inertia);
     let is_known = |i: usize| {
@@ -123,7 +123,7 @@ impl Tolerances {
         columns.iter().for_each(|column| covariance.ger(1.0, column, column, 1.0));
         let least = 1e-12 * covariance.diagonal().amax();
         (0..unknowns.count()).for_each(|i| covariance[(i, i)] += INDEPENDENT_FRACTION * covariance[(i, i)] + least);
-        Self { covariance, balance: unknowns.of_balance(), known: known(machine) }
+        Self { covariance, balance: unknowns.of_balance(), known: known_numbers(machine) }
     }
 
     /// Returns the distance of a measured machine from its file; `None` if it cannot be computed.
