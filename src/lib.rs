@@ -151,21 +151,19 @@
 //!   commands are run as tests.
 //!
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
-#![warn(missing_docs)]
-
 #[cfg(feature = "ui")]
-pub mod app;
-mod convex;
-pub mod exchange;
-pub mod files;
-pub mod guide;
-pub mod mechanics;
-pub mod picture;
-pub mod planning;
-pub mod query;
+pub use stillbase_app as app;
+pub use stillbase_exchange as exchange;
+pub use stillbase_files as files;
+pub use stillbase_mechanics as mechanics;
+pub use stillbase_picture as picture;
+pub use stillbase_planning as planning;
+pub use stillbase_query as query;
 #[cfg(feature = "record")]
-pub mod recording;
-pub mod session;
-pub mod settings;
-pub mod simulation;
-pub mod study;
+pub use stillbase_recording as recording;
+pub use stillbase_session as session;
+pub use stillbase_settings as settings;
+pub use stillbase_simulation as simulation;
+pub use stillbase_study as study;
+
+pub mod guide;

@@ -1,10 +1,9 @@
 //! The program: a window on a scenario, and a command for everything else.
 
-mod commands;
-
 use std::process::ExitCode;
 
 use clap::Parser;
+use stillbase_commands as commands;
 
 /// Zero reaction manipulators: design, plan, simulate, see and record what a robot arm does to its base.
 ///

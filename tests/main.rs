@@ -1,10 +1,5 @@
 //! All tests that need no GPU, one binary: the folders are those of the sources. Those that draw are in `drawn.rs`.
 
-/// The program's own modules, so that what they read is tried in process.
-#[cfg(feature = "cli")]
-#[allow(dead_code, unused_imports, reason = "the tests use a few of them")]
-#[path = "../src/commands/mod.rs"]
-mod commands;
 mod exchange;
 #[cfg(feature = "tables")]
 mod files;

@@ -9,12 +9,12 @@ use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, PlotFile, SessionCommand, Switch, ViewChange, ViewState,
     WindowCommand, set_b,
 };
-use crate::picture::charts::choice::PlotChange;
-use crate::picture::scene::Measure;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::scenario::Scenario;
-use crate::session::{Edit, Session};
-use crate::simulation::signals::signals;
+use stillbase_picture::charts::choice::PlotChange;
+use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, Session};
+use stillbase_simulation::signals::signals;
 
 /// A command with a name.
 pub struct Action {

@@ -8,13 +8,13 @@ use super::change::SessionChange;
 use super::given::assess::AssessmentQuery;
 use super::waiting::{DeferredWorkers, DrawingGuard};
 use super::{Activity, SessionCommand};
-use crate::query::{InlineWorkers, Job, Poll, Queries, ShortJobs, Ticket, Workers};
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Session};
-use crate::study::comparison::AlternativeRuns;
-use crate::study::fronts::Fronts;
-use crate::study::lengths::LengthsQuery;
-use crate::study::tolerance::StudyQuery;
+use stillbase_query::{InlineWorkers, Job, Poll, Queries, ShortJobs, Ticket, Workers};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Refusal, Session};
+use stillbase_study::comparison::AlternativeRuns;
+use stillbase_study::fronts::Fronts;
+use stillbase_study::lengths::LengthsQuery;
+use stillbase_study::tolerance::StudyQuery;
 
 /// Work whose result changes the display.
 trait Pending<A> {

@@ -3,15 +3,15 @@
 use egui::{RichText, Ui};
 
 use super::theme::{bold, colour, plain};
-use crate::picture::numbers::{degrees, signed, three_digits};
-use crate::picture::scene::course::target_handle;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::Views;
-use crate::session::Session;
-use crate::settings::number::subscript;
-use crate::simulation::frame::Reach;
-use crate::simulation::plant::BaseKind;
+use stillbase_picture::numbers::{degrees, signed, three_digits};
+use stillbase_picture::scene::course::target_handle;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_picture::scene::views::Views;
+use stillbase_session::Session;
+use stillbase_settings::number::subscript;
+use stillbase_simulation::frame::Reach;
+use stillbase_simulation::plant::BaseKind;
 
 /// Information on an object of the scene.
 pub struct Card {
@@ -193,7 +193,7 @@ fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {
     let drives: Vec<usize> = joined.iter().map(|j| machine.resolved_links()[*j].drive).collect();
     let angles = machine.angles().iter().enumerate();
     let meets = angles.filter(|(_, angle)| drives.contains(&angle.to) && drives.contains(&angle.from));
-    let row = |(k, angle): (usize, &crate::mechanics::machine::RelativeAngle)| {
+    let row = |(k, angle): (usize, &stillbase_mechanics::machine::RelativeAngle)| {
         let now = degrees(frame.a[k]);
         let [low, high] = [*angle.limits.start(), *angle.limits.end()];
         match low.is_finite() && high.is_finite() {

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::given::assess::TableText;
 use super::{RefusedEdit, ResumePoint};
-use crate::files::FoundScenario;
-use crate::session::scenario::Scenario;
-use crate::session::{Edit, ProgressCallback, Refusal, Session};
-use crate::settings::text::shorten_message;
+use stillbase_files::FoundScenario;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, ProgressCallback, Refusal, Session};
+use stillbase_settings::text::shorten_message;
 
 /// A change of a session.
 #[derive(Clone, Debug)]
@@ -118,13 +118,13 @@ impl SessionSource {
     /// Reads, plans and replays the source. `watch` reports progress and can stop the work.
     pub fn open(self, watch: ProgressCallback<'_>) -> Result<Opened, NotOpened> {
         let read = |path: &Path| {
-            let found = crate::files::scenario(&path.display().to_string());
+            let found = stillbase_files::scenario(&path.display().to_string());
             found.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })
         };
         if let Self::File(path) = &self
             && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
         {
-            let text = crate::files::text::read(path);
+            let text = stillbase_files::text::read(path);
             let text =
                 text.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })?;
             return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
@@ -133,7 +133,7 @@ impl SessionSource {
             Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, made: None }, false, None),
             Self::File(path) => (read(&path)?, true, None),
             Self::Journal(path) => {
-                let text = crate::files::text::read(&path).unwrap_or_default();
+                let text = stillbase_files::text::read(&path).unwrap_or_default();
                 (read(&path)?, true, ResumePoint::of(&text))
             }
         };

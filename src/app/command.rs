@@ -6,16 +6,16 @@ use super::activity::Activity;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
 use super::layout::Layout;
-use crate::mechanics::counterweights::Objective;
-use crate::mechanics::machine::Machine;
-use crate::picture::charts::choice::PlotChange;
-use crate::picture::scene::Measure;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Theme;
-use crate::picture::scene::views::ViewKind;
-use crate::session::Edit;
-use crate::session::scenario::Scenario;
-use crate::study::front_point::FrontMeasure;
+use stillbase_mechanics::counterweights::Objective;
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::charts::choice::PlotChange;
+use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Edit;
+use stillbase_session::scenario::Scenario;
+use stillbase_study::front_point::FrontMeasure;
 
 /// A command of the user.
 #[derive(Clone, Debug)]

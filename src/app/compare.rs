@@ -3,12 +3,12 @@
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
-use crate::picture::charts::figure::dashes;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::session::scenario::Scenario;
-use crate::study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
+use stillbase_picture::charts::figure::dashes;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_session::scenario::Scenario;
+use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {

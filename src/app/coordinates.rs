@@ -5,10 +5,10 @@ use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewChange, ViewState};
-use crate::picture::numbers::signed;
-use crate::picture::scene::joints::{JointSpace, SYMBOLS};
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::Session;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::joints::{JointSpace, SYMBOLS};
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::Session;
 
 /// Returns the rectangle that it covers in a scene.
 pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {

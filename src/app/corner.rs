@@ -6,10 +6,10 @@ use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
 use super::{Command, ViewChange, ViewState};
-use crate::picture::scene::joints::JointSpace;
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::picture::scene::{Measure, dexterity};
+use stillbase_picture::scene::joints::JointSpace;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_picture::scene::{Measure, dexterity};
 
 /// Returns the rectangle that they cover in a scene.
 pub fn strip(rect: Rect) -> Rect {

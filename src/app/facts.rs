@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::machine::{Inertia, Machine, builtins};
-use crate::mechanics::planar::Vector;
-use crate::planning::pose_space::Planes;
-use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
-use crate::session::Session;
-use crate::session::scenario::{Scenario, Value};
-use crate::settings::change::{self, DEFAULT_WORD};
-use crate::settings::key::{Key, KeyType};
+use stillbase_mechanics::machine::{Inertia, Machine, builtins};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::pose_space::Planes;
+use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
+use stillbase_session::Session;
+use stillbase_session::scenario::{Scenario, Value};
+use stillbase_settings::change::{self, DEFAULT_WORD};
+use stillbase_settings::key::{Key, KeyType};
 
 /// A setting and its state.
 pub(super) struct Setting {

@@ -1,7 +1,7 @@
 //! [`FileDialog`]: the dialog for a file name.
 
-use crate::exchange::form;
-use crate::session::Session;
+use stillbase_exchange::form;
+use stillbase_session::Session;
 
 /// A dialog for a file name.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +85,7 @@ impl FileDialog {
     /// Returns a dialog with an unused file name as its start.
     pub fn suggest(session: &Session, purpose: FilePurpose) -> Self {
         let own = &session.scenario().name;
-        let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();
+        let free = |name: &str, ending: &str| stillbase_files::free_name(name, ending).display().to_string();
         let name = match &purpose {
             FilePurpose::Open => String::new(),
             FilePurpose::Save => free(own, "toml"),

@@ -10,10 +10,10 @@ use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, search};
-use crate::mechanics::machine;
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
-use crate::session::scenario::Scenario;
+use stillbase_mechanics::machine;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
 
 /// A line of the list.
 struct Entry<'a> {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use egui::Rect;
 
 use super::{Framing, ViewState};
-use crate::mechanics::planar::DriveAngles;
-use crate::picture::scene::framing::PictureArea;
-use crate::picture::scene::views::Views;
-use crate::session::Session;
+use stillbase_mechanics::planar::DriveAngles;
+use stillbase_picture::scene::framing::PictureArea;
+use stillbase_picture::scene::views::Views;
+use stillbase_session::Session;
 
 /// Frames the camera of the present view, if it is to show everything. `rect` is the scene on the screen, `covered` its
 /// covered parts.

@@ -6,9 +6,9 @@ use egui::{Align2, Key, RichText, Sense, Stroke, TextStyle, TextWrapMode, Ui, Wi
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use crate::mechanics::machine::{self, Machine};
-use crate::picture::paint::portrait::Portrait;
-use crate::picture::scene::palette::Palette;
+use stillbase_mechanics::machine::{self, Machine};
+use stillbase_picture::paint::portrait::Portrait;
+use stillbase_picture::scene::palette::Palette;
 
 /// Pictures of the built-in machines, in their order; drawn when the list is first opened.
 static PORTRAITS: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());

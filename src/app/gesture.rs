@@ -1,7 +1,7 @@
 //! State of the pointer: the object under it, the drag under way, and the tool.
 
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::Pick;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::pick::Pick;
 
 /// What is under the pointer or has the keyboard focus.
 #[derive(Clone, Debug, Default)]

@@ -11,12 +11,12 @@ use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Scrol
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, unit};
 use super::{Command, FileDialog, Switch, ViewChange, ViewState};
-use crate::picture::scene::palette::Palette;
-use crate::study::advice::Advice;
-use crate::study::import::PreservedPath;
 use assess::{TableAssessment, TableContent};
 pub(super) use parts::TableView;
 use parts::{column, worded};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_study::advice::Advice;
+use stillbase_study::import::PreservedPath;
 
 /// Default and minimum height of the panel, points.
 const DEFAULT_HEIGHT_PT: f32 = 268.0;

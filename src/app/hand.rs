@@ -4,14 +4,14 @@ use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
 use super::widgets::FINE_DRAG_FACTOR;
 use super::{Command, DragGesture, SessionCommand, Tool, ViewChange, ViewState, place, set_b};
-use crate::mechanics::planar::Vector;
-use crate::picture::paint::SceneViewport;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{DragAction, Pick};
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::design::length_edit;
-use crate::session::{Edit, Session};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::paint::SceneViewport;
+use stillbase_picture::scene::exaggeration::DrawnFrame;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::pick::{DragAction, Pick};
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::design::length_edit;
+use stillbase_session::{Edit, Session};
 
 /// Distance within which the tip can be grabbed during the demonstration, points.
 const DEMO_GRAB_DISTANCE_PT: f64 = 60.0;

@@ -7,8 +7,8 @@ use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
-use crate::picture::scene::palette::Palette;
-use crate::session::{Fork, Session};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::{Fork, Session};
 
 /// Maximum height of the list, points; above it the list scrolls.
 const MAX_HEIGHT_PT: f32 = 380.0;

@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use egui::{Color32, Painter, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use super::theme::{bold, colour};
-use crate::picture::scene::palette::{Palette, faded};
+use stillbase_picture::scene::palette::{Palette, faded};
 
 /// An icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,19 +8,19 @@ use egui::{Align2, Area, Id, RichText, Ui, vec2};
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
-use crate::picture::numbers::signed;
-use crate::picture::paint::words::words;
-use crate::picture::paint::{SceneViewport, paint};
-use crate::picture::scene::camera::Camera;
-use crate::picture::scene::exaggeration::Exaggeration;
-use crate::picture::scene::options::ViewOptions;
-use crate::picture::scene::palette::{Palette, Theme};
-use crate::picture::scene::stage::Stage;
-use crate::picture::scene::{Rgba, Scene};
-use crate::session::scenario::Scenario;
-use crate::session::{Edit, Refusal, Run, Session};
-use crate::simulation::frame::{Frame as Instant, Reach};
-use crate::study::comparison::Comparison;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::paint::words::words;
+use stillbase_picture::paint::{SceneViewport, paint};
+use stillbase_picture::scene::camera::Camera;
+use stillbase_picture::scene::exaggeration::Exaggeration;
+use stillbase_picture::scene::options::ViewOptions;
+use stillbase_picture::scene::palette::{Palette, Theme};
+use stillbase_picture::scene::stage::Stage;
+use stillbase_picture::scene::{Rgba, Scene};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, Refusal, Run, Session};
+use stillbase_simulation::frame::{Frame as Instant, Reach};
+use stillbase_study::comparison::Comparison;
 
 /// State of the introduction.
 pub struct Intro {

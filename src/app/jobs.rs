@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use self::priority::{step_back, thread};
-use crate::query::{Work, Workers};
+use stillbase_query::{Work, Workers};
 
 /// Each running job has a thread of its own; if no thread can be started, the job runs at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

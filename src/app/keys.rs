@@ -6,8 +6,8 @@ use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shown
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
 
 /// Turns keys into commands. In a text field, only keys that the field does not use count: shortcuts with Ctrl that a
 /// field does not know, and F1.

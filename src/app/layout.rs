@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::picture::scene::palette::Theme;
+use stillbase_picture::scene::palette::Theme;
 
 /// A layout of the window, for a purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

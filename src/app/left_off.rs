@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::heading;
-use crate::picture::charts::choice::PlotChoice;
+use stillbase_files::heading;
+use stillbase_picture::charts::choice::PlotChoice;
 
 /// Instant and plots on display.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use crate::query::{ByIdentity, IncrementalAnswer, Queries, QuickQuery, QuickWork, Shared};
-use crate::session::events::{Event, EventKind, Gestures};
-use crate::session::scenario::Bookmark;
-use crate::session::{Fork, Session};
-use crate::settings::number::significant;
-use crate::study::comparison::{ComparedRun, Comparison};
+use stillbase_query::{ByIdentity, IncrementalAnswer, Queries, QuickQuery, QuickWork, Shared};
+use stillbase_session::events::{Event, EventKind, Gestures};
+use stillbase_session::scenario::Bookmark;
+use stillbase_session::{Fork, Session};
+use stillbase_settings::number::significant;
+use stillbase_study::comparison::{ComparedRun, Comparison};
 
 /// A marked instant.
 #[derive(Clone, Debug)]

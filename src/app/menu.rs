@@ -4,10 +4,10 @@ use egui::{Id, PointerButton, Response, Ui};
 
 use super::widgets::CLICK_PAYLOAD;
 use super::{Command, SessionCommand, ViewChange, place};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::signed;
-use crate::picture::scene::options::Handle;
-use crate::session::{Edit, Session};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::options::Handle;
+use stillbase_session::{Edit, Session};
 
 /// Object and position of the menu.
 #[derive(Clone, Copy)]

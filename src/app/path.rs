@@ -7,17 +7,17 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 use super::theme::{colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, place};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::signed;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::planning::off_plane::least_reaction::FixedB;
-use crate::planning::posture::Posture;
-use crate::planning::timing::TimeLaw;
-use crate::session::scenario::{Corners, PathShape, ReactionObjective, Task, TaskChange, TaskKind, Value};
-use crate::session::{Edit, Session};
-use crate::settings::number::counted;
-use crate::settings::word::{Choice, ChoiceWords};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_planning::off_plane::least_reaction::FixedB;
+use stillbase_planning::posture::Posture;
+use stillbase_planning::timing::TimeLaw;
+use stillbase_session::scenario::{Corners, PathShape, ReactionObjective, Task, TaskChange, TaskKind, Value};
+use stillbase_session::{Edit, Session};
+use stillbase_settings::number::counted;
+use stillbase_settings::word::{Choice, ChoiceWords};
 
 /// Maximum number of points that are listed.
 const MAX_LISTED_POINTS: usize = 8;

@@ -4,9 +4,9 @@
 use egui::{Align, Context, Id, Rect, Shape, Ui};
 
 use super::theme::colour;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::session::Session;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_session::Session;
 
 /// Duration of the mark on an object's rows, s.
 const MARK_DURATION_S: f64 = 1.6;

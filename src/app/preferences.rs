@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::layout::{Layout, Panel, Panels, WindowArrangement};
-use crate::picture::scene::palette::Theme;
+use stillbase_picture::scene::palette::Theme;
 
 /// Preferences for the window. A file of an older or newer program is read as far as its keys are known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

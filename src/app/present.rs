@@ -5,8 +5,8 @@ use egui::{Align, Layout, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use super::icon::{Icon, IconButton};
 use super::theme::{bold, colour, plain};
 use super::{Command, Layout as WindowLayout, ViewChange, ViewState, status};
-use crate::picture::numbers::signed;
-use crate::session::Session;
+use stillbase_picture::numbers::signed;
+use stillbase_session::Session;
 
 /// Smaller moments are shown as zero, N m.
 const ZERO_BELOW_N_M: f64 = 0.005;

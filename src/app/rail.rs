@@ -6,9 +6,9 @@ use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 use super::actions::{key_of, key_of_switch};
 use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, rule, word_button, word_without};
 use super::{Command, Switch, ViewChange, ViewState, arrangement, history};
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::{Fork, Session};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::{Fork, Session};
 
 /// Width, points.
 const WIDTH_PT: f32 = 50.0;

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::picture::scene::options::RefusedCurve;
-use crate::planning::reactionless::Decimal;
-use crate::session::{Edit, Refusal};
+use stillbase_picture::scene::options::RefusedCurve;
+use stillbase_planning::reactionless::Decimal;
+use stillbase_session::{Edit, Refusal};
 
 /// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]

@@ -6,8 +6,8 @@ use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, FilePurpose, Recovery, SessionCommand, ViewChange, ViewState, WindowCommand};
-use crate::picture::scene::palette::faded;
-use crate::session::Session;
+use stillbase_picture::scene::palette::faded;
+use stillbase_session::Session;
 
 /// Which changes of a session are saved.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +52,7 @@ impl Saving {
 
     /// Adds a file to the recent files, by its absolute path; ignores a file that does not exist.
     pub fn uses(&mut self, file: &Path) {
-        let Some(file) = crate::files::absolute_path(file) else { return };
+        let Some(file) = stillbase_files::absolute_path(file) else { return };
         self.recent.retain(|other| *other != file);
         self.recent.insert(0, file);
         self.recent.truncate(MAX_RECENT_FILES);
@@ -60,7 +60,7 @@ impl Saving {
 
     /// Removes a file from the recent files if it does not exist any more.
     pub fn misses(&mut self, file: &Path) {
-        self.recent.retain(|other| other != file || crate::files::absolute_path(file).is_some());
+        self.recent.retain(|other| other != file || stillbase_files::absolute_path(file).is_some());
     }
 }
 

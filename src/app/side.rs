@@ -14,15 +14,15 @@ use super::facts::ScenarioFacts;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
-use crate::mechanics::machine::MAX_ANGLE;
-use crate::picture::scene::course::target_handle;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::planning::pose_space::NoPoseSpace;
-use crate::session::scenario::{POINT_RANGE, Value};
-use crate::session::{Edit, Session};
-use crate::settings::change::DEFAULT_WORD;
-use crate::settings::number::{significant, subscript};
+use stillbase_mechanics::machine::MAX_ANGLE;
+use stillbase_picture::scene::course::target_handle;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_planning::pose_space::NoPoseSpace;
+use stillbase_session::scenario::{POINT_RANGE, Value};
+use stillbase_session::{Edit, Session};
+use stillbase_settings::change::DEFAULT_WORD;
+use stillbase_settings::number::{significant, subscript};
 
 /// Default width: a fraction of the window width, within bounds, points.
 const WIDTH_FRACTION: f32 = 0.17;
@@ -329,7 +329,7 @@ fn fact(
     label: &str,
     value: &str,
     in_unit: &str,
-    tone: crate::picture::scene::Rgba,
+    tone: stillbase_picture::scene::Rgba,
     tip: &str,
 ) {
     ui.horizontal(|ui| {

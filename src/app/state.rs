@@ -19,19 +19,19 @@ use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
 use super::saving::Saving;
 use super::{Activity, Framing, Intro, Layout, Preferences, ResumePoint, SessionCommand, ViewState};
-use crate::mechanics::machine::Machine;
-use crate::picture::scene::exaggeration::exaggeration;
-use crate::picture::scene::palette::Theme;
-use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::query::{Queries, Query, QuickWork, Workers};
-use crate::session::scenario::Scenario;
-use crate::session::{Edit, Refusal, RunAhead, Session};
-use crate::simulation::frame::Totals;
-use crate::simulation::signals::{Signal, SignalsOf};
-use crate::study::comparison::Comparison;
-use crate::study::fronts::FrontCase;
-use crate::study::lengths::LengthsQuery;
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::exaggeration::exaggeration;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::stage::Stage;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_query::{Queries, Query, QuickWork, Workers};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, Refusal, RunAhead, Session};
+use stillbase_simulation::frame::Totals;
+use stillbase_simulation::signals::{Signal, SignalsOf};
+use stillbase_study::comparison::Comparison;
+use stillbase_study::fronts::FrontCase;
+use stillbase_study::lengths::LengthsQuery;
 
 /// A session on display.
 pub struct AppState {
@@ -204,7 +204,7 @@ impl AppState {
         let scenario = self.session.scenario();
         let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
         let mark = if self.saving.is_unsaved() { " *" } else { "" };
-        format!("{}{mark} – Stillbase", crate::settings::text::shorten_message(name))
+        format!("{}{mark} – Stillbase", stillbase_settings::text::shorten_message(name))
     }
 
     /// Returns the number of changes so far, and whether some of them are not saved in a file of the user.

@@ -6,13 +6,13 @@ use super::facts::ScenarioFacts;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, SessionCommand, Tool, ViewState, WindowCommand};
-use crate::picture::numbers::signed;
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::planning::pose_space::NoPoseSpace;
-use crate::session::verdict::{Statement, Statements, StatusLight, Verdict};
-use crate::session::{Edit, Session};
-use crate::simulation::frame::{Frame, Reach};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_planning::pose_space::NoPoseSpace;
+use stillbase_session::verdict::{Statement, Statements, StatusLight, Verdict};
+use stillbase_session::{Edit, Session};
+use stillbase_simulation::frame::{Frame, Reach};
 
 /// Whether a problem is to be shown.
 pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {

@@ -8,12 +8,12 @@ use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
 use super::{Command, Switch, ViewChange, ViewState};
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::session::Edit;
-use crate::session::scenario::{Amount, Spread, TaskChange, Value};
-use crate::settings::number::counted;
-use crate::study::tolerance::Study;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_session::Edit;
+use stillbase_session::scenario::{Amount, Spread, TaskChange, Value};
+use stillbase_settings::number::counted;
+use stillbase_study::tolerance::Study;
 
 const HEIGHT_PT: f32 = 268.0;
 
@@ -276,7 +276,7 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
         return;
     };
     const FLOOR: f64 = 1e-9;
-    let line = |s: &crate::study::spectrum::Spectrum| {
+    let line = |s: &stillbase_study::spectrum::Spectrum| {
         let points = s.frequency.iter().zip(&s.density).skip(1);
         points.map(|(f, d)| [f.log10(), d.max(FLOOR).log10()]).collect::<Vec<_>>()
     };

@@ -2,8 +2,8 @@
 
 use egui::{Color32, CornerRadius, Frame, Margin, Stroke, TextStyle, vec2};
 
-pub use crate::picture::paint::{bold, colour, install_fonts, plain};
-use crate::picture::scene::palette::{Palette, Theme, faded, palette};
+pub use stillbase_picture::paint::{bold, colour, install_fonts, plain};
+use stillbase_picture::scene::palette::{Palette, Theme, faded, palette};
 
 /// Applies a theme to egui.
 pub fn apply(ctx: &egui::Context, theme: Theme) {

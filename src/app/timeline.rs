@@ -9,8 +9,8 @@ use super::marks::{MarkGroup, Marks, Tone};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
 
 /// Gap between a mark and its tooltip or card, points: clear of the bar.
 const POPUP_GAP_PT: f32 = 32.0;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::app::theme::other;
-use crate::app::widgets::name;
+use crate::theme::other;
+use crate::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
@@ -12,10 +12,10 @@ use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, gallery, timeline};
-use crate::mechanics::machine::Machine;
-use crate::picture::scene::palette::Theme;
-use crate::session::Session;
-use crate::session::scenario::Scenario;
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
 
 /// Draws this panel; `line` holds the marks of the time line, and the playback rate if it lags behind the requested
 /// one.

@@ -3,11 +3,11 @@
 pub mod card;
 
 use super::{Command, SessionCommand};
-use crate::mechanics::planar::Vector;
-use crate::session::scenario::{Scenario, TaskKind};
-use crate::session::verdict::Verdict;
-use crate::session::{Edit, Session, TimedEdit};
-use crate::simulation::frame::Reach;
+use stillbase_mechanics::planar::Vector;
+use stillbase_session::scenario::{Scenario, TaskKind};
+use stillbase_session::verdict::Verdict;
+use stillbase_session::{Edit, Session, TimedEdit};
+use stillbase_simulation::frame::Reach;
 
 /// State of the tour.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
 use super::{BottomPanel, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
-use crate::picture::scene::Measure;
-use crate::picture::scene::views::ViewKind;
-use crate::session::Session;
+use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Session;
 
 impl Switch {
     /// Whether only views of the machine have this switch.

@@ -7,15 +7,15 @@ use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
 use super::said::StatusMessage;
-use crate::picture::charts::choice::PlotChoice;
-use crate::picture::scene::Measure;
-use crate::picture::scene::camera::Camera;
-use crate::picture::scene::framing::ViewContent;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::{Palette, Theme, palette};
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::{Edit, Session};
-use crate::study::front_point::FrontMeasure;
+use stillbase_picture::charts::choice::PlotChoice;
+use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::camera::Camera;
+use stillbase_picture::scene::framing::ViewContent;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::{Palette, Theme, palette};
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::{Edit, Session};
+use stillbase_study::front_point::FrontMeasure;
 
 /// Whether a view shows everything.
 #[derive(Clone, Debug, Default)]

@@ -13,17 +13,17 @@ use super::{
     Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, menu, present,
     status,
 };
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::picture::paint::words::words;
-use crate::picture::paint::{SceneViewport, paint};
-use crate::picture::scene::exaggeration::{DrawnFrame, Exaggeration};
-use crate::picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
-use crate::picture::scene::pick::Pick;
-use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::scenario::Task;
-use crate::session::{Edit, Session};
-use crate::study::comparison::Comparison;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_picture::paint::words::words;
+use stillbase_picture::paint::{SceneViewport, paint};
+use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
+use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
+use stillbase_picture::scene::pick::Pick;
+use stillbase_picture::scene::stage::Stage;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::scenario::Task;
+use stillbase_session::{Edit, Session};
+use stillbase_study::comparison::Comparison;
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(
@@ -168,7 +168,7 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
 
 /// Returns the frames of the runs shown in comparison, at a time, s.
 fn others(comparison: &Comparison, time: f64) -> Vec<OtherRun> {
-    let other = |(i, run): (usize, &crate::study::comparison::ComparedRun)| {
+    let other = |(i, run): (usize, &stillbase_study::comparison::ComparedRun)| {
         Some(OtherRun { name: (i + 1).to_string(), frame: *run.at(time)? })
     };
     comparison.shown().filter_map(other).collect()

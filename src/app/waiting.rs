@@ -3,7 +3,7 @@
 use std::mem::take;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::query::{Work, Workers};
+use stillbase_query::{Work, Workers};
 
 /// Worker threads that start no work while the window is drawn. New work on the same processor could delay the drawing
 /// by a time slice of the operating system.

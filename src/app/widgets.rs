@@ -8,13 +8,13 @@ use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClam
 
 use super::theme::{bold, colour, plain};
 use super::{Command, SessionCommand};
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::session::Edit;
-use crate::session::scenario::key_of;
-use crate::settings::key;
-use crate::settings::quantity;
-use crate::settings::range::shortened;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Edit;
+use stillbase_session::scenario::key_of;
+use stillbase_settings::key;
+use stillbase_settings::quantity;
+use stillbase_settings::range::shortened;
 
 /// The payload that is added with a click, kg.
 pub(super) const CLICK_PAYLOAD: f64 = 0.3;

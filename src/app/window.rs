@@ -11,11 +11,11 @@ mod times;
 pub use error::WindowError;
 pub use guest::{App, Clock};
 
-use crate::app::jobs::Threads;
-use crate::app::{AppState, Preferences, SessionCommand};
-use crate::files::preferences;
-use crate::picture::scene::palette::Theme;
-use crate::session::scenario::Scenario;
+use crate::jobs::Threads;
+use crate::{AppState, Preferences, SessionCommand};
+use stillbase_files::preferences;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_session::scenario::Scenario;
 
 /// Opens a window on a scenario and returns when it is closed.
 ///

@@ -2,16 +2,16 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::planning::off_plane::null_space::is_integrable;
-use stillbase::planning::pose_constant::PoseConstant;
-use stillbase::session::verdict::Statement;
-use stillbase::study::balance_constants::BalanceConstants;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_planning::off_plane::null_space::is_integrable;
+use stillbase_planning::pose_constant::PoseConstant;
+use stillbase_session::verdict::Statement;
+use stillbase_study::balance_constants::BalanceConstants;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, yes};
-use stillbase::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
 #[derive(Args)]

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::files::{NewFile, WriteError};
-use stillbase::session::scenario::Scenario;
-use stillbase::study::comparison::{
+use stillbase_files::{NewFile, WriteError};
+use stillbase_session::scenario::Scenario;
+use stillbase_study::comparison::{
     ComparisonRow, ComparisonTable, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, alternatives,
 };
 
@@ -14,8 +14,8 @@ use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
 use super::output::{Format, TextTable, check_output};
-use stillbase::settings::number::{fixed, nine_digits};
-use stillbase::settings::text::sheet_cell;
+use stillbase_settings::number::{fixed, nine_digits};
+use stillbase_settings::text::sheet_cell;
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
@@ -102,7 +102,7 @@ impl CompareArguments {
 
     #[cfg(feature = "record")]
     fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
-        let options = stillbase::recording::Options { force: self.force, ..super::headless::unpictured() };
+        let options = stillbase_recording::Options { force: self.force, ..super::headless::unpictured() };
         super::headless::record_with_bar(scenarios, file, &options)?;
         say(format!("wrote {}", file.display()));
         Ok(())

@@ -3,8 +3,8 @@
 use std::io::{self, StdoutLock, Write};
 use std::path::Path;
 
-use stillbase::files::{NewFile, WriteError};
-use stillbase::settings::text::plain;
+use stillbase_files::{NewFile, WriteError};
+use stillbase_settings::text::plain;
 
 use super::exit::say;
 use super::failure::Failure;

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use stillbase::mechanics::dynamics::Surroundings;
-use stillbase::mechanics::loads::Loads;
-use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::mechanics::planar::PerDrive;
-use stillbase::settings::range::shortened;
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::loads::Loads;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::PerDrive;
+use stillbase_settings::range::shortened;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, read};
 use super::output::{Format, TextTable};
-use stillbase::settings::number::{counted, fixed};
+use stillbase_settings::number::{counted, fixed};
 
 /// Torques of the motors, and what the base feels, of given states of motion, Eqs (1) to (6)
 ///

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use stillbase::settings::text::{plain, shorten_message};
+use stillbase_settings::text::{plain, shorten_message};
 
 use super::failure::Failure;
 

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::files::write_new;
-use stillbase::mechanics::dynamics::{Surroundings, inverse};
-use stillbase::mechanics::machine::Inertia;
-use stillbase::mechanics::planar::Vector;
-use stillbase::session::scenario::Scenario;
-use stillbase::session::{Run, replay_if, with_start_edits};
+use stillbase_files::write_new;
+use stillbase_mechanics::dynamics::{Surroundings, inverse};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::Vector;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Run, replay_if, with_start_edits};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, check_output, check_size};
 use super::simulate::require_audit;
-use stillbase::settings::number::{counted, fixed};
+use stillbase_settings::number::{counted, fixed};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::exchange::cut::Cut;
-use stillbase::exchange::drawing::Sheet;
-use stillbase::exchange::form::{self, Form, ModelContent};
-use stillbase::exchange::mjcf::{hinges, middle};
-use stillbase::exchange::urdf::joint;
-use stillbase::files::write_new;
-use stillbase::mechanics::machine::Machine;
-use stillbase::settings::number::{counted, fixed};
+use stillbase_exchange::cut::Cut;
+use stillbase_exchange::drawing::Sheet;
+use stillbase_exchange::form::{self, Form, ModelContent};
+use stillbase_exchange::mjcf::{hinges, middle};
+use stillbase_exchange::urdf::joint;
+use stillbase_files::write_new;
+use stillbase_mechanics::machine::Machine;
+use stillbase_settings::number::{counted, fixed};
 
 use super::exit::say;
 use super::failure::Failure;

@@ -3,16 +3,16 @@
 use std::fmt::Display;
 use std::io;
 
-use stillbase::files::WriteError;
-use stillbase::files::table::TableError;
-use stillbase::mechanics::balance::DesignError;
-use stillbase::mechanics::joint_forces::JointsError;
-use stillbase::mechanics::machine::{FileError, MachineError};
-use stillbase::planning::pose_constant::Unreachable;
-use stillbase::planning::pose_space::{NoPoseSpace, PlaneError};
-use stillbase::planning::timing::TimeError;
-use stillbase::session::Refusal;
-use stillbase::session::scenario::ScenarioError;
+use stillbase_files::WriteError;
+use stillbase_files::table::TableError;
+use stillbase_mechanics::balance::DesignError;
+use stillbase_mechanics::joint_forces::JointsError;
+use stillbase_mechanics::machine::{FileError, MachineError};
+use stillbase_planning::pose_constant::Unreachable;
+use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
+use stillbase_planning::timing::TimeError;
+use stillbase_session::Refusal;
+use stillbase_session::scenario::ScenarioError;
 
 use super::remedy::option;
 

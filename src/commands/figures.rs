@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stillbase::app::{AppState, Command, ComparisonCommand, SessionCommand, Switch, ViewChange, WindowCommand};
-use stillbase::files::write_new;
-use stillbase::picture::canvas::Canvas;
-use stillbase::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
-use stillbase::picture::scene::options::ViewOptions;
-use stillbase::picture::scene::palette::Theme;
-use stillbase::picture::scene::views::ViewKind;
-use stillbase::session::Edit;
-use stillbase::session::scenario::{TaskChange, Value};
+use stillbase_app::{AppState, Command, ComparisonCommand, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase_files::write_new;
+use stillbase_picture::canvas::Canvas;
+use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture};
+use stillbase_picture::scene::options::ViewOptions;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Edit;
+use stillbase_session::scenario::{TaskChange, Value};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -134,7 +134,7 @@ fn study() -> Vec<Command> {
 
 /// Opens a scenario, runs it to its end and shows an instant, s.
 fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
-    let scenario = stillbase::files::scenario(scenario)?.scenario;
+    let scenario = stillbase_files::scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;
     let task_time = app_state.session().length();
     [Command::Session(SessionCommand::Seek(task_time)), Command::Session(SessionCommand::Seek(time))]

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use stillbase::recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
-use stillbase::session::scenario::Scenario;
-use stillbase::session::verdict::Statements;
-use stillbase::settings::text::plain;
+use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::verdict::Statements;
+use stillbase_settings::text::plain;
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
 use super::simulate::require_audit;
-use stillbase::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
 #[derive(Args)]

@@ -1,7 +1,7 @@
 //! `--fix`, `--free` and `--bound`: numbers that may change to achieve balance, and their bounds.
 
-use stillbase::mechanics::balance::{Parameter, ParameterBounds, RebalanceRequest};
-use stillbase::mechanics::machine::Machine;
+use stillbase_mechanics::balance::{Parameter, ParameterBounds, RebalanceRequest};
+use stillbase_mechanics::machine::Machine;
 
 use super::ends::named;
 use super::failure::Failure;

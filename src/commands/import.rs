@@ -7,12 +7,12 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::files::table::{SampleTable, samples};
-use stillbase::files::{finish_all, made};
-use stillbase::planning::curves::Coordinates;
-use stillbase::query::{Shared, answer_now};
-use stillbase::session::scenario::Scenario;
-use stillbase::study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
+use stillbase_files::table::{SampleTable, samples};
+use stillbase_files::{finish_all, made};
+use stillbase_planning::curves::Coordinates;
+use stillbase_query::{Shared, answer_now};
+use stillbase_session::scenario::Scenario;
+use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -111,7 +111,7 @@ impl ImportArguments {
         for file in files.iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
-        let machine = self.settings.apply(stillbase::files::machine(&self.machine, None)?)?;
+        let machine = self.settings.apply(stillbase_files::machine(&self.machine, None)?)?;
         let name = self.file.display().to_string();
         let wanted = self.columns.map(|columns| match columns {
             Columns::Drives => Coordinates::Drives,

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::exchange::import::{BaseBody, ImportedMachine, import};
-use stillbase::files::write_new;
-use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
-use stillbase::session::gentle_motion;
-use stillbase::session::scenario::Scenario;
-use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::simulation::plant::{Base, BaseKind};
+use stillbase_exchange::import::{BaseBody, ImportedMachine, import};
+use stillbase_files::write_new;
+use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
+use stillbase_session::gentle_motion;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_simulation::plant::{Base, BaseKind};
 
 use super::exit::say;
 use super::failure::Failure;

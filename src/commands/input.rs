@@ -5,16 +5,16 @@ use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use stillbase::mechanics::machine::Machine;
-use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::PoseConstant;
-use stillbase::planning::pose_space::PoseSpace;
-use stillbase::session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
-use stillbase::settings::change;
-use stillbase::settings::key::Key;
-use stillbase::settings::range::Range;
-use stillbase::settings::text::MAX_TEXT_BYTES;
-use stillbase::settings::word::Choice;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::pose_constant::PoseConstant;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
+use stillbase_settings::change;
+use stillbase_settings::key::Key;
+use stillbase_settings::range::Range;
+use stillbase_settings::text::MAX_TEXT_BYTES;
+use stillbase_settings::word::Choice;
 
 use super::exit::say;
 use super::failure::Failure;
@@ -107,7 +107,7 @@ impl MachineArgument {
     /// # Errors
     /// If there is no such machine, or it is not valid.
     pub fn load(&self) -> Result<Machine, Failure> {
-        self.settings.apply(stillbase::files::machine(&self.name, None)?)
+        self.settings.apply(stillbase_files::machine(&self.name, None)?)
     }
 
     /// Returns the machine and others, with the same settings changed, each under a name of its own.
@@ -117,7 +117,7 @@ impl MachineArgument {
     pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
         let mut all: Vec<(String, Machine)> = Vec::new();
         for called in std::iter::once(&self.name).chain(others) {
-            let machine = stillbase::files::machine(called, None)?;
+            let machine = stillbase_files::machine(called, None)?;
             let machine = self.settings.apply(machine).map_err(|why| why.of(called))?;
             all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
         }
@@ -174,7 +174,7 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// # Errors
 /// As [`overlay_for_study`], except for settings without an effect.
 pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let found = stillbase::files::scenario(name)?;
+    let found = stillbase_files::scenario(name)?;
     if let Some(made) = &found.made {
         say(format!("note: {made}"));
     }
@@ -294,7 +294,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// If it cannot be read.
 pub fn read(file: &Path) -> Result<String, Failure> {
-    stillbase::files::text::read(file).map_err(|e| {
+    stillbase_files::text::read(file).map_err(|e| {
         let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
         Failure::wrong_input(why).of(file.display())
     })

@@ -16,7 +16,7 @@ pub fn watch() {
     let Ok(mut signals) = Signals::new(heard) else { return };
     let wait = move || {
         if let Some(signal) = signals.forever().next() {
-            let _held = stillbase::files::abandon();
+            let _held = stillbase_files::abandon();
             let _ = emulate_default_handler(signal);
         }
     };
@@ -26,7 +26,7 @@ pub fn watch() {
 /// Signals that the program was started to ignore, as with `nohup`: bit 0 is signal 1.
 #[cfg(unix)]
 fn ignored() -> u64 {
-    let status = stillbase::files::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();
+    let status = stillbase_files::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stillbase::mechanics::joint_forces::Pin;
-use stillbase::session::replay_if;
-use stillbase::simulation::frame::Frame;
-use stillbase::study::joint_extremes::{JointExtremes, JointReport};
+use stillbase_mechanics::joint_forces::Pin;
+use stillbase_session::replay_if;
+use stillbase_simulation::frame::Frame;
+use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
 use super::csv_file::Csv;
 use super::exit::say;
@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
 use super::simulate::require_audit;
-use stillbase::settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, shown};
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
 #[derive(Args)]

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::session::scenario::KEYS;
-use stillbase::settings::key::Key;
+use stillbase_session::scenario::KEYS;
+use stillbase_settings::key::Key;
 
 use super::failure::Failure;
 use super::output::Format;
@@ -82,7 +82,7 @@ impl KeysArguments {
         };
         let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();
         if keys.is_empty() {
-            let words = stillbase::settings::range::quote_clipped(&sought.join(" "));
+            let words = stillbase_settings::range::quote_clipped(&sought.join(" "));
             let why = format!("nothing is said of {words:?} in the list of keys: `stillbase keys` prints all of it");
             return Err(Failure::no_answer(why));
         }

@@ -1,14 +1,14 @@
 //! `stillbase learn`
 
 use clap::Args;
-use stillbase::exchange::mjcf::middle;
-use stillbase::mechanics::balance::Preset;
-use stillbase::mechanics::machine::Machine;
-use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::planning::Reference;
-use stillbase::session::Session;
-use stillbase::session::scenario::Scenario;
-use stillbase::study::equations::{
+use stillbase_exchange::mjcf::middle;
+use stillbase_mechanics::balance::Preset;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::Reference;
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
+use stillbase_study::equations::{
     DriveState, EQUATION_NUMBERS, Equality, Equation, EquationCell, InstantKind, NoInstant, StatedEquations, cells,
     equations, plain,
 };
@@ -16,7 +16,7 @@ use stillbase::study::equations::{
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_used};
 use super::output::Format;
-use stillbase::settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, shown};
 
 /// Say every equation of the paper, and below it the same with today's numbers
 ///
@@ -124,8 +124,8 @@ impl LearnArguments {
 
     /// Returns the scenario or the machine of the name.
     fn find(&self) -> Result<Subject, Failure> {
-        let machine = || self.settings.apply(stillbase::files::machine(&self.what, None)?);
-        match stillbase::files::scenario(&self.what) {
+        let machine = || self.settings.apply(stillbase_files::machine(&self.what, None)?);
+        match stillbase_files::scenario(&self.what) {
             // For a machine, no scenario made around it is used.
             Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {

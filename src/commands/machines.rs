@@ -2,7 +2,7 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::machine::builtins;
+use stillbase_mechanics::machine::builtins;
 
 use super::failure::Failure;
 use super::input::Settings;

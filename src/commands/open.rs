@@ -2,10 +2,10 @@
 
 use clap::Args;
 #[cfg(feature = "window")]
-use stillbase::app::window::WindowError;
+use stillbase_app::window::WindowError;
 #[cfg(feature = "window")]
-use stillbase::picture::scene::palette::Theme;
-use stillbase::session::scenario::Scenario;
+use stillbase_picture::scene::palette::Theme;
+use stillbase_session::scenario::Scenario;
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
@@ -52,7 +52,7 @@ impl OpenArguments {
             other => other,
         })?;
         #[cfg(feature = "window")]
-        let why = match stillbase::app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
+        let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
@@ -67,8 +67,8 @@ impl OpenArguments {
 
 #[cfg(feature = "record")]
 fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
-    use stillbase::files::free_name;
-    use stillbase::settings::number::counted;
+    use stillbase_files::free_name;
+    use stillbase_settings::number::counted;
 
     use super::exit::say;
     use super::headless::{record_with_bar, unpictured};

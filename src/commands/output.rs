@@ -7,9 +7,9 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
-use stillbase::files::check_new;
-use stillbase::session::Refusal;
-use stillbase::settings::text::plain;
+use stillbase_files::check_new;
+use stillbase_session::Refusal;
+use stillbase_settings::text::plain;
 
 use super::failure::Failure;
 

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase::files::{text, write_new};
-use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common::starting_b;
-use stillbase::planning::off_plane::least_reaction::FixedB;
-use stillbase::planning::off_plane::price::FloatingBase;
-use stillbase::planning::pose_constant::PoseConstant;
-use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{FileContent, PathShape, Scenario, Task, TaskChange, TaskKind, content};
-use stillbase::session::{Run, with_start_edits};
-use stillbase::simulation::plant::PlantDifferences;
-use stillbase::study::plan_summary::PlanSummary;
+use stillbase_files::{text, write_new};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::starting_b;
+use stillbase_planning::off_plane::least_reaction::FixedB;
+use stillbase_planning::off_plane::price::FloatingBase;
+use stillbase_planning::pose_constant::PoseConstant;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::timing::TimeLaw;
+use stillbase_session::scenario::{FileContent, PathShape, Scenario, Task, TaskChange, TaskKind, content};
+use stillbase_session::{Run, with_start_edits};
+use stillbase_simulation::plant::PlantDifferences;
+use stillbase_study::plan_summary::PlanSummary;
 
 use super::exit::say;
 use super::failure::Failure;
@@ -23,8 +23,8 @@ use super::input::{
     overlay_unchecked, point, pose_constant, pose_space, report_idle, report_tolerance,
 };
 use super::output::{Format, TextTable, check_output};
-use stillbase::settings::number::{counted, fixed};
-use stillbase::settings::word::Choice;
+use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::word::Choice;
 
 /// Name of a plan of a machine until a file gives it one.
 const DEFAULT_NAME: &str = "plan";
@@ -165,7 +165,7 @@ impl PlanArguments {
 
     /// Returns the scenario that the arguments define.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let as_machine = stillbase::files::machine(&self.name, None);
+        let as_machine = stillbase_files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
         if self.output.is_none() {
             self.settings.none_of_tolerance()?;

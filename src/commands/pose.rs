@@ -2,15 +2,15 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::Unreachable;
-use stillbase::planning::reactionless::{BSet, NoReach};
-use stillbase::study::pose_measures::PoseMeasures;
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::pose_constant::Unreachable;
+use stillbase_planning::reactionless::{BSet, NoReach};
+use stillbase_study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, TextTable};
-use stillbase::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// The poses that put the end effector on a point without leaving the plane b = const, and what each is good for
 ///

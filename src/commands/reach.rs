@@ -2,15 +2,15 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::planar::Vector;
-use stillbase::planning::common::{common_b_set, no_common};
-use stillbase::planning::pose_constant::{PointCorrection, Unreachable};
-use stillbase::planning::reactionless::BSet;
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::{common_b_set, no_common};
+use stillbase_planning::pose_constant::{PointCorrection, Unreachable};
+use stillbase_planning::reactionless::BSet;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_space};
 use super::output::{Format, TextTable};
-use stillbase::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// The pose constants b whose reactionless workspace holds a point, and those that hold all points
 ///

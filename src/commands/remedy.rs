@@ -1,6 +1,6 @@
 //! Names of remedies on the command line.
 
-use stillbase::study::advice::Remedy;
+use stillbase_study::advice::Remedy;
 
 /// Returns the option or the command of a remedy.
 pub fn option(remedy: Remedy) -> &'static str {

@@ -6,17 +6,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::session::verdict::{Statements, Verdict};
-use stillbase::session::{Run, replay_if};
-use stillbase::simulation::frame::Frame;
-use stillbase::simulation::signals::{Signal, signals};
+use stillbase_session::verdict::{Statements, Verdict};
+use stillbase_session::{Run, replay_if};
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signals::{Signal, signals};
 
 use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
-use stillbase::settings::number::{counted, fixed};
+use stillbase_settings::number::{counted, fixed};
 
 /// Run a scenario and print every signal over time as CSV
 #[derive(Args)]

@@ -1,7 +1,7 @@
 //! `--range`: links that may carry a counterweight, and where.
 
-use stillbase::mechanics::counterweights::Sites;
-use stillbase::mechanics::machine::Machine;
+use stillbase_mechanics::counterweights::Sites;
+use stillbase_mechanics::machine::Machine;
 
 use super::ends::named;
 use super::failure::Failure;

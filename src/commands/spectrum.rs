@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::files::{NewFile, WriteError};
-use stillbase::study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
-use stillbase::study::spectrum::{JitterLimit, WindowFunction};
+use stillbase_files::{NewFile, WriteError};
+use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
+use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, yes};
 use super::simulate::require_audit;
-use stillbase::settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, shown};
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///

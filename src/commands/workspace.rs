@@ -1,13 +1,13 @@
 //! `stillbase workspace`
 
 use clap::Args;
-use stillbase::mechanics::planar::Vector;
-use stillbase::study::workspace::{WorkspaceInterior, WorkspaceReport};
+use stillbase_mechanics::planar::Vector;
+use stillbase_study::workspace::{WorkspaceInterior, WorkspaceReport};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, TextTable, yes};
-use stillbase::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
 ///

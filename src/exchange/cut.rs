@@ -1,7 +1,7 @@
 //! [`Cut`]: dimensions of bars and holes, and the material of discs.
 
-use crate::mechanics::machine::Machine;
-use crate::settings::number::{ShortNumber, fixed};
+use stillbase_mechanics::machine::Machine;
+use stillbase_settings::number::{ShortNumber, fixed};
 
 /// Dimensions of bars, holes and discs, and the density of discs.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use super::drawing::{Sheet, dxf, svg};
 use super::mjcf::{MjcfError, mjcf};
 use super::parts::PartsList;
 use super::urdf::urdf;
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// An export format.
 #[derive(Clone, Copy, Debug)]

@@ -15,7 +15,7 @@ use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreePart};
 use super::turn::PinAngleSum;
 use super::xml::quoted;
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// Error of an export to MJCF.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,9 +1,9 @@
 //! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
 use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
-use crate::mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
-use crate::settings::number::fixed;
-use crate::settings::text::sheet_cell;
+use stillbase_mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
+use stillbase_settings::number::fixed;
+use stillbase_settings::text::sheet_cell;
 
 /// Parts list of a machine, by kinds of parts.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@
 use std::collections::BTreeMap;
 
 use super::xml::quoted;
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// A part of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! [`PinAngleSum`]: an angle between links as a sum of pin angles.
 
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// A sum of pin angles with signs. The angle of the pin at a link's root is that of its drive relative to its parent's
 /// drive, or to the x axis of the base.

@@ -20,7 +20,7 @@
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreeJoint, TreePart, Turns};
 use super::xml::{XmlWriter, quoted, remark};
-use crate::mechanics::machine::{Machine, Payload, RelativeAngle};
+use stillbase_mechanics::machine::{Machine, Payload, RelativeAngle};
 
 /// Mass of auxiliary links as a fraction of the machine's mass: some programs read a link without mass as one of 1 kg.
 const AUXILIARY_MASS_FRACTION: f64 = 1e-13;

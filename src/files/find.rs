@@ -4,12 +4,12 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::text::read;
-use crate::exchange::import::{ImportedMachine, import};
-use crate::mechanics::machine::{self, FileError, Machine, MachineError};
-use crate::session::gentle_motion;
-use crate::session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::shortened;
+use stillbase_exchange::import::{ImportedMachine, import};
+use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
+use stillbase_session::gentle_motion;
+use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::shortened;
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";

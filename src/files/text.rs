@@ -4,7 +4,7 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use crate::settings::text::MAX_TEXT_BYTES;
+use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Reads a plain text file of at most [`MAX_TEXT_BYTES`].
 ///

@@ -6,7 +6,7 @@
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | kg m² |
 //! | H_kl | mass matrix, Re Z_kl + δ_kl J_k, and J r_k r_l of every rotor | kg m² |
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
-//! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::mechanics::machine::Motors)) | N m |
+//! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::machine::Motors)) | N m |
 //! | D_k | Σ_l H_lk, and J r_k (1 − Σ_l r_l) of every rotor; angular momentum about B is D q̇ | kg m² |
 //! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g | N |
 //! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g | N m |
@@ -14,19 +14,20 @@
 //! # Source
 //! (4) with the sign of gravity corrected: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
 
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, Wrench, cross, dot};
+use crate::machine::Inertia;
+use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, Wrench, cross, dot};
 
 /// Calls a function with the number of drives as a constant, so that its loops unroll.
+#[macro_export]
 macro_rules! by_drives {
     ($n:expr, $f:ident($($arg:expr),*)) => {
-        by_drives!(@ $n, $f, [], ($($arg),*))
+        $crate::by_drives!(@ $n, $f, [], ($($arg),*))
     };
     // The same, with a second constant: whether the base moves.
     ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
         match $moves {
-            false => by_drives!(@ $n, $f, [false], ($($arg),*)),
-            true => by_drives!(@ $n, $f, [true], ($($arg),*)),
+            false => $crate::by_drives!(@ $n, $f, [false], ($($arg),*)),
+            true => $crate::by_drives!(@ $n, $f, [true], ($($arg),*)),
         }
     };
     (@ $n:expr, $f:ident, [$($moves:literal)?], $args:tt) => {
@@ -42,7 +43,7 @@ macro_rules! by_drives {
         }
     };
 }
-pub(crate) use by_drives;
+pub use by_drives;
 
 /// External loads: the field of gravity, and a force at the end effector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,7 +96,7 @@ pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
 /// Returns the first N elements of a padded array.
 #[inline]
-pub(crate) fn leading_entries<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
+pub fn leading_entries<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
     const { assert!(N <= MAX_DRIVES) }
     &padded.as_chunks().0[0]
 }
@@ -109,12 +110,12 @@ fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
 }
 
 #[inline(always)]
-pub(crate) fn matrix_times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
+pub fn matrix_times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
 
 /// Factors of H = L D Lᵀ, without square roots.
-pub(crate) struct Factors<const N: usize> {
+pub struct Factors<const N: usize> {
     /// L, strictly below the diagonal.
     l: Square<N>,
     /// Reciprocals of the diagonal of D.
@@ -123,7 +124,7 @@ pub(crate) struct Factors<const N: usize> {
 
 impl<const N: usize> Factors<N> {
     #[inline(always)]
-    pub(crate) fn of(h: &Square<N>) -> Self {
+    pub fn of(h: &Square<N>) -> Self {
         let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
         for i in 0..N {
             for j in 0..i {
@@ -137,7 +138,7 @@ impl<const N: usize> Factors<N> {
 
     /// Returns H⁻¹ x.
     #[inline(always)]
-    pub(crate) fn solve(&self, mut x: [f64; N]) -> [f64; N] {
+    pub fn solve(&self, mut x: [f64; N]) -> [f64; N] {
         for i in 0..N {
             x[i] -= (0..i).map(|m| self.l[i][m] * x[m]).sum::<f64>();
         }
@@ -167,7 +168,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, qd: &PerDr
 }
 
 #[inline(always)]
-pub(crate) fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
+pub fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
     let mut h = [[0.0; N]; N];
     let mut v = [0.0; N];
     for k in 0..N {
@@ -223,7 +224,7 @@ fn inverse_of<const N: usize>(
 
 /// Returns the torques of [`inverse`] at the machine's own size.
 #[inline(always)]
-pub(crate) fn torques<const N: usize>(
+pub fn torques<const N: usize>(
     inertia: &Inertia,
     e: &[Vector; N],
     qd: &[f64; N],
@@ -292,17 +293,12 @@ pub fn base_wrench(
 
 /// Returns the rate of the angular momentum about B, d/dt (D q̇), N m, from H q̈, V and q̈.
 #[inline(always)]
-pub(crate) fn angular_rate<const N: usize>(
-    inertia: &Inertia,
-    inertial: &[f64; N],
-    v: &[f64; N],
-    qdd: &[f64; N],
-) -> f64 {
+pub fn angular_rate<const N: usize>(inertia: &Inertia, inertial: &[f64; N], v: &[f64; N], qdd: &[f64; N]) -> f64 {
     (0..N).map(|k| inertial[k] + v[k] + inertia.taken_up[k] * qdd[k]).sum()
 }
 
 #[inline(always)]
-pub(crate) fn wrench_with<const N: usize>(
+pub fn wrench_with<const N: usize>(
     inertia: &Inertia,
     e: &[Vector; N],
     qd: &[f64; N],

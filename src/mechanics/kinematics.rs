@@ -8,8 +8,8 @@
 
 use nalgebra::{Complex, Matrix3, Vector3};
 
-use crate::mechanics::machine::{Chain, place_of};
-use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
+use crate::machine::{Chain, place_of};
+use crate::planar::{PerDrive, UnitVectors, Vector, cross, dot};
 
 const I: Vector = Complex::new(0.0, 1.0);
 
@@ -126,5 +126,5 @@ pub fn two_link_rates(ck: f64, cl: f64, ek: Vector, el: Vector, v: Vector) -> Op
 /// Returns the worst force transmission of the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change
 /// point.
 pub fn least_transmission(e: &UnitVectors, n: usize) -> f64 {
-    crate::mechanics::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
+    crate::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
 }

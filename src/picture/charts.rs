@@ -12,10 +12,10 @@ pub mod thin;
 use super::numbers::round_up;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
-use crate::planning::pose_space::constant_inertia;
-use crate::session::scenario::Scenario;
-use crate::simulation::frame::{Peaks, REACTIONLESS_SHARE};
-use crate::simulation::signals::Signal;
+use stillbase_planning::pose_space::constant_inertia;
+use stillbase_session::scenario::Scenario;
+use stillbase_simulation::frame::{Peaks, REACTIONLESS_SHARE};
+use stillbase_simulation::signals::Signal;
 
 /// A plot of signals over time.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,11 +14,11 @@
 //! each r' the smallest turn |Δθ| is the distance between B(r') + θ Σλ and S on the circle of b, divided by Σλ. The
 //! length of the move is √(r² + r'² − 2 r r' cos Δθ).
 
-use crate::mechanics::planar::{Vector, unit};
-use crate::planning::golden::golden;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::{BSet, Decimal, NoReach};
-use crate::planning::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
+use crate::golden::golden;
+use crate::pose_space::PoseSpace;
+use crate::reactionless::{BSet, Decimal, NoReach};
+use crate::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Equal steps between the least and the greatest distance r' in the coarse search.
 const RADIAL_STEPS: usize = 96;

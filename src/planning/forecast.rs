@@ -1,11 +1,11 @@
 //! [`Forecast`]: torques, speeds and reactions of a motion that is followed exactly, computed before it is run.
 
-use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::PerDrive;
-use crate::planning::Motion;
-use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use crate::query::ProgressCallback;
+use crate::Motion;
+use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::PerDrive;
+use stillbase_query::ProgressCallback;
 
 /// Peaks and integrals over a motion, from the inverse dynamics of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! [`Motion`]: a path with a timing, which yields the [`Reference`] that control follows.
 
 use super::reference::Reference;
-use crate::planning::curves::Path;
-use crate::planning::timing::{Profile, TimeLaw};
+use crate::curves::Path;
+use crate::timing::{Profile, TimeLaw};
 
 /// A path traversed once, from rest to rest unless the profile says otherwise.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::planning::common::common_b_set;
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace, is_reactionless};
-use crate::planning::reactionless::BSet;
-use crate::query::{ByIdentity, QuickQuery};
+use crate::common::common_b_set;
+use crate::pose_space::{NoPoseSpace, PoseSpace, is_reactionless};
+use crate::reactionless::BSet;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
+use stillbase_query::{ByIdentity, QuickQuery};
 
-pub use crate::planning::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
+pub use crate::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
 
 /// Query for the pose space of a machine, or the reason why it has none.
 pub struct PoseSpaceQuery;

@@ -1,10 +1,10 @@
 //! Poses of the points of a task: one pose for each point at a b, the nearest two poses at two b, and how points are
 //! carried along when b changes.
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use crate::planning::common;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::unreachable::Unreachable;
+use crate::common;
+use crate::pose_space::PoseSpace;
+use crate::unreachable::Unreachable;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// A pose in coordinates (a, b) and in drive angles.
 #[derive(Clone, Copy, Debug, PartialEq)]

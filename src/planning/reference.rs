@@ -1,6 +1,6 @@
 //! [`Reference`]: the reference that control follows.
 
-use crate::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 
 /// Desired drive angles, rates and accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]

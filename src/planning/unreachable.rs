@@ -3,8 +3,8 @@
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-use crate::mechanics::planar::Vector;
-use crate::planning::reactionless::{Decimal, NoReach, metres};
+use crate::reactionless::{Decimal, NoReach, metres};
+use stillbase_mechanics::planar::Vector;
 
 /// Why a point cannot be reached at a b, and which b would be feasible.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -24,10 +24,10 @@ use super::preview::{DESIGNS_PATH, Preview, machines_differ};
 use super::store::{Store, StoreError, TIME_TIMELINE};
 use super::style::{CombinedArchetypes, colour, series_name, under};
 use super::topic::Topic;
-use crate::mechanics::balance::Condition;
-use crate::picture::charts::{Chart, ChartPlace};
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::{Palette, Theme, mix, palette};
+use stillbase_mechanics::balance::Condition;
+use stillbase_picture::charts::{Chart, ChartPlace};
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
 
 /// Writes the layout and makes the viewer open with it; `pictured`: there are offscreen pictures.
 ///

@@ -12,7 +12,7 @@ use super::eye::Eye;
 use super::rows::SparseRows;
 use super::store::{Instant, RowTimes, Store, StoreError};
 use super::style::{CombinedArchetypes, colour, solid};
-use crate::picture::scene::{Area, ItemChanges, Mesh, MeshSet, Rgba, Strips, Transform};
+use stillbase_picture::scene::{Area, ItemChanges, Mesh, MeshSet, Rgba, Strips, Transform};
 
 /// Grid cells of a workspace along each angle.
 const CELLS: u32 = 40;

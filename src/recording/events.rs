@@ -5,13 +5,13 @@ use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
 use super::rows::SparseRows;
 use super::store::{Instant, RowTimes, Store, StoreError};
 use super::style::{brief, colour, under};
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::Palette;
-use crate::query::IncrementalQuery;
-use crate::session::events::{Event, EventKind, EventLog, bookmarked, gestures};
-use crate::session::scenario::{Scenario, Task};
-use crate::session::verdict::Verdict;
-use crate::simulation::frame::{Frame, Peaks, Phase};
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_query::IncrementalQuery;
+use stillbase_session::events::{Event, EventKind, EventLog, bookmarked, gestures};
+use stillbase_session::scenario::{Scenario, Task};
+use stillbase_session::verdict::Verdict;
+use stillbase_simulation::frame::{Frame, Peaks, Phase};
 
 /// Events and phases of a case.
 #[derive(Debug)]

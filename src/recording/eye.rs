@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use rerun::blueprint::components::Eye3DKind;
 use rerun::external::re_sdk_types::blueprint::archetypes::EyeControls3D;
 
-use crate::picture::scene::camera::{Camera, FlatCamera, Orbit};
+use stillbase_picture::scene::camera::{Camera, FlatCamera, Orbit};
 
 /// Half the height of the picture at a distance of 1; the viewer has a field of view of 55°.
 const HALF_HEIGHT: f64 = 0.5206;

@@ -6,18 +6,18 @@ use super::options::Pictures;
 use super::stop::CaseError;
 use super::store::{Instant, RowTimes, Store};
 #[cfg(feature = "render")]
-use crate::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
+use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture};
 #[cfg(all(feature = "render", not(feature = "ui")))]
-use crate::picture::render::{View, offscreen::Gpu};
-use crate::picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
-use crate::simulation::frame::Frame;
+use stillbase_picture::render::{View, offscreen::Gpu};
+use stillbase_picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
+use stillbase_simulation::frame::Frame;
 
 /// Size of buffered pictures above which they are written, bytes.
 const MAX_BUFFERED_BYTES: usize = 4 << 20;
 
 /// Draws scenes; with labels, if fonts are compiled in.
 #[cfg(feature = "ui")]
-struct Painter(crate::picture::canvas::Canvas);
+struct Painter(stillbase_picture::canvas::Canvas);
 
 #[cfg(all(feature = "render", not(feature = "ui")))]
 struct Painter(Gpu, View);
@@ -29,7 +29,7 @@ impl Painter {
         // Scale as in a window of this height, but large enough for labels to be legible.
         let scale = (wanted.height as f32 / 800.0).max(0.5);
         #[cfg(feature = "ui")]
-        return Ok(Self(crate::picture::canvas::Canvas::new(size, scale)?));
+        return Ok(Self(stillbase_picture::canvas::Canvas::new(size, scale)?));
         #[cfg(not(feature = "ui"))]
         Ok(Self(
             Gpu::new()?,

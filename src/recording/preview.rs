@@ -7,17 +7,17 @@ use rerun::external::re_log_types::EntityPathPart;
 use super::design::RecordedDesign;
 use super::eye::Eye;
 use super::topic::Topic;
-use crate::picture::charts::{Chart, charts};
-use crate::picture::scene::camera::Orbit;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::query::Queries;
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, replay_while};
-use crate::simulation::frame::Peaks;
-use crate::simulation::signals::{Signal, signals};
-use crate::study::comparison::DesignCandidate;
+use stillbase_picture::charts::{Chart, charts};
+use stillbase_picture::scene::camera::Orbit;
+use stillbase_picture::scene::linkage::LinkageModel;
+use stillbase_picture::scene::reaction::Scale;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_query::Queries;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Refusal, replay_while};
+use stillbase_simulation::frame::Peaks;
+use stillbase_simulation::signals::{Signal, signals};
+use stillbase_study::comparison::DesignCandidate;
 
 /// Extreme values of a run, and the views and charts that follow from them.
 #[derive(Debug)]

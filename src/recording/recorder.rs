@@ -16,16 +16,16 @@ use super::stop::CaseError;
 use super::store::{Instant, RowTimes, Store};
 use super::style::{lines, under};
 use super::topic::Topic;
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::picture::scene::options::ViewOptions;
-use crate::picture::scene::palette::{Palette, Theme, mix, palette};
-use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::views::{ViewKind, Views};
-use crate::picture::scene::{Scene, point};
-use crate::session::scenario::Scenario;
-use crate::session::verdict::{Statements, Verdict};
-use crate::session::{Edit, Plan, Run, replay_while};
-use crate::simulation::frame::{Frame, Peaks};
+use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_picture::scene::options::ViewOptions;
+use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
+use stillbase_picture::scene::reaction::Scale;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_picture::scene::{Scene, point};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::verdict::{Statements, Verdict};
+use stillbase_session::{Edit, Plan, Run, replay_while};
+use stillbase_simulation::frame::{Frame, Peaks};
 
 /// Number of buffered rows above which they are written.
 const MAX_BUFFERED_ROWS: usize = 8192;
@@ -272,7 +272,7 @@ fn properties(
         .with_component::<Text>("version", words(env!("CARGO_PKG_VERSION")))
         .with_component::<Text>("verdict", words(&verdict.sentence()))
         .with_component::<Text>("scenario", words(&scenario.to_toml()))
-        .with_component::<Text>("machine", words(&crate::mechanics::machine::to_toml(&scenario.machine)))
+        .with_component::<Text>("machine", words(&stillbase_mechanics::machine::to_toml(&scenario.machine)))
         .with_component::<Scalar>("peak_torque", numbers(&peaks.torque))
         .with_component::<Scalar>("peak_base_force", number(peaks.force))
         .with_component::<Scalar>("peak_base_moment", number(peaks.arm_moment))

@@ -11,8 +11,8 @@ use super::entity::{Dot, Entity, EntityKind, EntityShape, Rigid, StaticShape, St
 use super::eye::Eye;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
-use crate::picture::scene::palette::mix;
-use crate::picture::scene::{Anchor, Area, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid};
+use stillbase_picture::scene::palette::mix;
+use stillbase_picture::scene::{Anchor, Area, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid};
 
 /// Height between consecutive lines that are drawn over everything, px.
 const LINE_SPACING_PX: f32 = 0.1;

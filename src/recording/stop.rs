@@ -1,7 +1,7 @@
 //! Reasons why the recording of a case stops.
 
 use super::store::StoreError;
-use crate::session::Refusal;
+use stillbase_session::Refusal;
 
 /// Reasons why a case is not recorded.
 #[derive(Debug)]

@@ -16,7 +16,7 @@ use rerun::time::{TimeInt, TimePoint, Timeline};
 use rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
 use thiserror::Error;
 
-use crate::files::NewFile;
+use stillbase_files::NewFile;
 
 /// Application name under which the viewer stores layouts.
 pub const APPLICATION: &str = "stillbase";

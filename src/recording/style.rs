@@ -4,8 +4,8 @@ use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AsComponents, Color, EntityPath, LineStrips3D, Mesh3D, Radius, SerializedComponentBatch};
 
 use super::eye::Eye;
-use crate::picture::scene::{Mesh, Rgba};
-use crate::simulation::signals::Signal;
+use stillbase_picture::scene::{Mesh, Rgba};
+use stillbase_simulation::signals::Signal;
 
 /// Returns the path of an entity under another, part by part.
 pub fn under(root: &EntityPath, path: &str) -> EntityPath {

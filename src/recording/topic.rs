@@ -5,10 +5,10 @@ use rerun::{EntityPath, Scalars, SeriesLines};
 
 use super::store::{RowTimes, Store, StoreError};
 use super::style::{colour, series_name, under};
-use crate::picture::charts::{self, Chart};
-use crate::picture::scene::palette::Palette;
-use crate::simulation::frame::{Frame, Peaks};
-use crate::simulation::signals::Signal;
+use stillbase_picture::charts::{self, Chart};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_simulation::frame::{Frame, Peaks};
+use stillbase_simulation::signals::Signal;
 
 /// Entities of several groups of signals. Any other group is a separate entity with its own name. So is a signal that
 /// is compared between cases, because a legend names all series of an entity, even hidden ones.

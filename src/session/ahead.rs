@@ -1,8 +1,8 @@
 //! [`RunAhead`]: continues a copy of a run to the end of its planned motion, to predict how far the base will move.
 
 use super::run::Run;
-use crate::query::{ByIdentity, Portion, ProgressCallback, Query};
-use crate::simulation::frame::Totals;
+use stillbase_query::{ByIdentity, Portion, ProgressCallback, Query};
+use stillbase_simulation::frame::Totals;
 
 /// Number of steps in a portion of the work.
 const STEPS_PER_PORTION: u64 = 256;

@@ -4,9 +4,9 @@ use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
 use super::run::Run;
 use super::scenario::{Scenario, ScenarioError};
-use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{DriveAngles, PerDrive, unit};
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
 
 /// Place of each relative angle within its limits in the middle of the motion, as a fraction of their width. In the
 /// very middle parallelograms go flat.

@@ -3,11 +3,11 @@
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
-use crate::planning::pose_constant::PoseSpaceQuery;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::carried_points;
-use crate::query::{Queries, QuickWork};
-use crate::settings::range::shortened;
+use stillbase_planning::pose_constant::PoseSpaceQuery;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posed::carried_points;
+use stillbase_query::{Queries, QuickWork};
+use stillbase_settings::range::shortened;
 
 /// Returns the scenario with the settings or the push of an edit. Nothing is planned or checked; see [`checked`]. Drags
 /// and poses do not change the scenario.
@@ -57,7 +57,7 @@ pub(super) fn task_at_b(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) 
     let mut task = Task { b, ..scenario.task.clone() };
     let places = space.map(|space| carried_points(space, &task.points(), [scenario.task.b, b]));
     if let Some([from, via @ .., to]) = places.as_deref() {
-        let place = |p: &crate::mechanics::planar::Vector| [p.re, p.im];
+        let place = |p: &stillbase_mechanics::planar::Vector| [p.re, p.im];
         (task.from, task.to) = (place(from), place(to));
         task.via = via.iter().map(place).collect();
     }

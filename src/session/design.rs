@@ -7,16 +7,16 @@ use toml::{Table, Value};
 
 use super::edit::Edit;
 pub use super::scenario::DesignBrief;
-use crate::mechanics::balance::{
+use crate::scenario::Scenario;
+use stillbase_mechanics::balance::{
     Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
 };
-use crate::mechanics::counterweights::{
+use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, Disc, FreeRotor, Front, Objective, Placed, RotorFreedom, Sites, front,
     place_weights,
 };
-use crate::mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
-use crate::session::scenario::Scenario;
-use crate::settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
+use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
+use stillbase_settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
 
 /// Penalty on a change of the mass of a counterweight, 1/kg.
 const MASS_PENALTY_PER_KG: f64 = 1.0;

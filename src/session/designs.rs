@@ -7,7 +7,7 @@ use super::edit::{Edit, TimedEdit};
 use super::events::GESTURE_PAUSE;
 use super::refusal::Refusal;
 use super::scenario::Scenario;
-use crate::mechanics::machine::{Machine, is_of_machine};
+use stillbase_mechanics::machine::{Machine, is_of_machine};
 
 /// A state of the machine.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,12 +8,12 @@ use super::machines::Machines;
 use super::replay;
 use super::run::Run;
 use super::script::Script;
-use crate::query::Sequence;
-use crate::session::scenario::{Bookmark, Scenario};
-use crate::simulation::frame::Frame;
+use crate::scenario::{Bookmark, Scenario};
+use stillbase_query::Sequence;
+use stillbase_simulation::frame::Frame;
 
 /// Callback that receives the progress, from 0 to 1, and returns whether the work is to go on.
-pub use crate::query::ProgressCallback;
+pub use stillbase_query::ProgressCallback;
 
 /// Number of frames between two progress reports.
 pub(super) const REPORT_FRAMES: usize = 256;

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
-use crate::mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
-use crate::session::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of};
-use crate::settings::change;
-use crate::settings::key::Effect;
-use crate::settings::range::{RangeCheck, shortened};
+use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of};
+use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
+use stillbase_settings::change;
+use stillbase_settings::key::Effect;
+use stillbase_settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use super::changes::{changed, opening, order_of};
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
-use crate::session::scenario::Scenario;
+use crate::scenario::Scenario;
 
 /// Checks numbers and settings of every edit of a scenario, in the order of steps.
 ///

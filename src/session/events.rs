@@ -7,11 +7,11 @@ use std::sync::Arc;
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
 use super::verdict::LIMIT_TOLERANCE;
-use crate::mechanics::machine::Machine;
-use crate::query::{IncrementalQuery, Shared};
-use crate::session::scenario::Bookmark;
-use crate::settings::number::{ShortNumber, significant};
-use crate::simulation::frame::{Frame, Phase, Reach};
+use crate::scenario::Bookmark;
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::{IncrementalQuery, Shared};
+use stillbase_settings::number::{ShortNumber, significant};
+use stillbase_simulation::frame::{Frame, Phase, Reach};
 
 /// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::document::LeftBranch;
 use super::edit::TimedEdit;
 use super::events::{first_gesture, last_gesture};
-use crate::query::{ByIdentity, QuickQuery, Sequence};
+use stillbase_query::{ByIdentity, QuickQuery, Sequence};
 
 /// Difference between a branch and the run on display.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,9 +21,9 @@ use super::edit::TimedEdit;
 use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
-use crate::query::{IncrementalAnswer, Queries, Sequence};
-use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
-use crate::simulation::frame::Frame;
+use crate::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
+use stillbase_query::{IncrementalAnswer, Queries, Sequence};
+use stillbase_simulation::frame::Frame;
 
 /// A run that the user edits while it goes on. Copies share frames and history, so the cost of a copy does not grow
 /// with the session. Slow operations can run on a copy in the background.
@@ -132,7 +132,7 @@ impl Session {
     /// the frame on display, rad.
     pub fn b_aim(&self) -> f64 {
         match self.run.simulation().guide() {
-            crate::simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
+            stillbase_simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
             _ => self.frame().b_reference,
         }
     }

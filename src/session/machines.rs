@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// The machines of a run, each with its first step.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::settings::change;
+use stillbase_settings::change;
 
 /// Takes the settings of such an edit out of its entry; returns `None` for any other edit.
 pub fn settings(table: &mut Table) -> Result<Option<Table>, String> {

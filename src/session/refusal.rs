@@ -2,19 +2,19 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::MachineError;
-use crate::planning::curves::{CurveError, PathError};
-use crate::planning::following::Blocked;
-use crate::planning::off_plane::drift::DriftError;
-use crate::planning::off_plane::least_reaction::LeastReactionError;
-use crate::planning::off_plane::price::PriceError;
-use crate::planning::pose_constant::{NoCommonB, Unreachable};
-use crate::planning::pose_space::{NoPoseSpace, PlaneError};
-use crate::planning::reactionless::Decimal;
-use crate::planning::timing::TimeError;
-use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::{RangeCheck, Requirement, range_error};
+use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
+use stillbase_mechanics::machine::MachineError;
+use stillbase_planning::curves::{CurveError, PathError};
+use stillbase_planning::following::Blocked;
+use stillbase_planning::off_plane::drift::DriftError;
+use stillbase_planning::off_plane::least_reaction::LeastReactionError;
+use stillbase_planning::off_plane::price::PriceError;
+use stillbase_planning::pose_constant::{NoCommonB, Unreachable};
+use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
+use stillbase_planning::reactionless::Decimal;
+use stillbase_planning::timing::TimeError;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::{RangeCheck, Requirement, range_error};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -1,11 +1,11 @@
 //! Replays scenarios with their edits from the first to the last step.
 
-use crate::query::Queries;
-use crate::session::changes::{ScriptError, fold_start_edits, in_order};
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Run, TimedEdit};
-use crate::simulation::audit::AuditFigure;
-use crate::simulation::frame::Frame;
+use crate::changes::{ScriptError, fold_start_edits, in_order};
+use crate::scenario::Scenario;
+use crate::{Refusal, Run, TimedEdit};
+use stillbase_query::Queries;
+use stillbase_simulation::audit::AuditFigure;
+use stillbase_simulation::frame::Frame;
 
 /// Applies the edits at step 0 before the first drag. Returns the scenario without the other edits, and their number.
 ///

@@ -6,21 +6,21 @@ use super::changes::{ScriptError, fold_start_edits};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
-use crate::mechanics::machine::{Chain, Inertia};
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::Motion;
-use crate::planning::following::follow::Bounds;
-use crate::planning::following::{Follower, Pull};
-use crate::planning::pose_constant::{CommonB, PoseSpaceQuery};
-use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
-use crate::planning::posture::GuidedSpace;
-use crate::planning::reactionless::{BSet, Decimal};
-use crate::query::{ByIdentity, Queries, QuickWork, Shared};
-use crate::session::changes::{after_start_edit, changed, checked};
-use crate::session::scenario::{MAX_STEPS, Scenario};
-use crate::settings::key::Effect;
-use crate::simulation::frame::Frame;
-use crate::simulation::{Guide, Simulation};
+use crate::changes::{after_start_edit, changed, checked};
+use crate::scenario::{MAX_STEPS, Scenario};
+use stillbase_mechanics::machine::{Chain, Inertia};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_planning::Motion;
+use stillbase_planning::following::follow::Bounds;
+use stillbase_planning::following::{Follower, Pull};
+use stillbase_planning::pose_constant::{CommonB, PoseSpaceQuery};
+use stillbase_planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
+use stillbase_planning::posture::GuidedSpace;
+use stillbase_planning::reactionless::{BSet, Decimal};
+use stillbase_query::{ByIdentity, Queries, QuickWork, Shared};
+use stillbase_settings::key::Effect;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::{Guide, Simulation};
 
 /// Why a run waits: its task does not fit its machine.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,7 +169,7 @@ impl Run {
 
     /// Returns the place of the end effector in a pose, m.
     pub fn place(&self, q: &DriveAngles) -> Vector {
-        crate::mechanics::kinematics::end_effector(self.scenario.machine.end_effector(), &q.units())
+        stillbase_mechanics::kinematics::end_effector(self.scenario.machine.end_effector(), &q.units())
     }
 
     /// Returns the place of the end effector after a fraction of the planned time, m.
@@ -364,7 +364,7 @@ impl Run {
             }
             Edit::PullLink { link, along, .. } => {
                 let chain = self.point_of(link, *along).ok()?;
-                let at = crate::mechanics::kinematics::end_effector(&chain, &self.simulation.reference().q.units());
+                let at = stillbase_mechanics::kinematics::end_effector(&chain, &self.simulation.reference().q.units());
                 Edit::PullLink { link: link.clone(), along: *along, x: at.re, y: at.im }
             }
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },

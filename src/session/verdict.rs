@@ -10,13 +10,13 @@ mod statements;
 
 pub use statements::{Statement, Statements, StatusLight};
 
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::planning::curves::Samples;
-use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use crate::session::scenario::{Scenario, TaskKind};
-use crate::settings::number::{ShortNumber, fixed, significant};
-use crate::simulation::audit::AuditFigure;
-use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
+use crate::scenario::{Scenario, TaskKind};
+use stillbase_mechanics::planar::{PerDrive, Vector};
+use stillbase_planning::curves::Samples;
+use stillbase_planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use stillbase_settings::number::{ShortNumber, fixed, significant};
+use stillbase_simulation::audit::AuditFigure;
+use stillbase_simulation::frame::{Frame, Peaks, Phase, Reach};
 
 /// An end effector misses its target if it ends farther from it than this, m.
 pub const TARGET_TOLERANCE: f64 = 1e-4;

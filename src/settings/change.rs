@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use crate::settings::range::{quote_clipped, shortened};
+use crate::range::{quote_clipped, shortened};
 
 /// Word that removes a key, so that its default applies.
 pub const DEFAULT_WORD: &str = "default";

@@ -120,12 +120,14 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 /// The macro generates the struct with its documentation, `KEYS`, `Default`, and reading and writing of files. A field
 /// that is omitted has its default; an unknown one is an error. It also generates `uses`: whether a key has an effect
 /// in the present state.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! keyed {
     ($(#[$outer:meta])* pub struct $name:ident at $path:literal { $($rows:tt)* }) => {
-        $crate::settings::keyed::keyed!(@below concat!($path, "."); $(#[$outer])* pub struct $name { $($rows)* });
+        $crate::keyed::keyed!(@below concat!($path, "."); $(#[$outer])* pub struct $name { $($rows)* });
     };
     ($(#[$outer:meta])* pub struct $name:ident { $($rows:tt)* }) => {
-        $crate::settings::keyed::keyed!(@below ""; $(#[$outer])* pub struct $name { $($rows)* });
+        $crate::keyed::keyed!(@below ""; $(#[$outer])* pub struct $name { $($rows)* });
     };
     (
         @below $path:expr;
@@ -182,22 +184,22 @@ macro_rules! keyed {
 
         impl $name {
             #[doc = concat!("The keys `", $path, "*`, but for those of tables in it.")]
-            pub const KEYS: &'static [$crate::settings::key::Key] = &[$(
-                $crate::settings::key::Key::new(
+            pub const KEYS: &'static [$crate::key::Key] = &[$(
+                $crate::key::Key::new(
                     concat!($path, stringify!($field)),
-                    <$type as $crate::settings::keyed::HasKeyType>::HOLDS$(.within($range))?,
+                    <$type as $crate::keyed::HasKeyType>::HOLDS$(.within($range))?,
                     $default,
-                    $crate::settings::keyed::sentence(concat!($($words),+)),
+                    $crate::keyed::sentence(concat!($($words),+)),
                 )
                 $(.instead($instead))?
                 $(.when($when))?
                 $(.reaching($effect))?,
             )* $($(
-                $crate::settings::key::Key::new(
+                $crate::key::Key::new(
                     concat!($path, stringify!($names), ".*"),
-                    <$each as $crate::settings::keyed::HasKeyType>::HOLDS$(.within($within))?,
+                    <$each as $crate::keyed::HasKeyType>::HOLDS$(.within($within))?,
                     $one,
-                    $crate::settings::keyed::sentence(concat!($($said),+)),
+                    $crate::keyed::sentence(concat!($($said),+)),
                 )
                 $(.instead($else))?
                 $(.when($where))?,
@@ -220,7 +222,7 @@ macro_rules! keyed {
         impl Default for $name {
             fn default() -> Self {
                 Self {
-                    $($field: $crate::settings::keyed::keyed!(@usual $type, $default $(, $usual)?),)*
+                    $($field: $crate::keyed::keyed!(@usual $type, $default $(, $usual)?),)*
                     $($($names: Default::default(),)+)?
                     $($($table: Default::default(),)+)?
                 }
@@ -253,11 +255,11 @@ macro_rules! keyed {
         }
     };
     (@usual $type:ty, $default:expr) => {
-        <$type as $crate::settings::keyed::DefaultFromText>::typed($default)
+        <$type as $crate::keyed::DefaultFromText>::typed($default)
     };
     (@usual $type:ty, $default:expr, $usual:expr) => {
         $usual
     };
 }
 
-pub(crate) use keyed;
+pub use keyed;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use crate::settings::number::{ShortNumber, counted};
+use crate::number::{ShortNumber, counted};
 
 /// A closed interval and its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

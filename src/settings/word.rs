@@ -36,6 +36,8 @@ pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
 /// with further documentation above it, if there is any. Files, the choices of a key, those of the command line and the
 /// menus of the window follow from it. If each variant has further data, their type stands behind the enum's name, and
 /// the data behind the words: `Variant = …, …, … => data;`. The method `data` returns them.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! words {
     (
         $(#[$outer:meta])*
@@ -57,13 +59,13 @@ macro_rules! words {
             )+
         }
 
-        impl $crate::settings::word::Choice for $name {
+        impl $crate::word::Choice for $name {
             const ALL: &'static [Self] = &[$(Self::$variant),+];
             const FILE: &'static [&'static str] = &[$($file),+];
 
-            fn words(self) -> $crate::settings::word::ChoiceWords {
+            fn words(self) -> $crate::word::ChoiceWords {
                 match self {
-                    $(Self::$variant => $crate::settings::word::ChoiceWords {
+                    $(Self::$variant => $crate::word::ChoiceWords {
                         file: $file,
                         screen: $screen,
                         meaning: $meaning,
@@ -72,14 +74,14 @@ macro_rules! words {
             }
         }
 
-        impl $crate::settings::keyed::HasKeyType for $name {
-            const HOLDS: $crate::settings::key::KeyType =
-                $crate::settings::key::KeyType::Choice(<Self as $crate::settings::word::Choice>::FILE);
+        impl $crate::keyed::HasKeyType for $name {
+            const HOLDS: $crate::key::KeyType =
+                $crate::key::KeyType::Choice(<Self as $crate::word::Choice>::FILE);
         }
 
-        impl $crate::settings::keyed::DefaultFromText for $name {
+        impl $crate::keyed::DefaultFromText for $name {
             fn typed(default: &str) -> Self {
-                use $crate::settings::word::Choice;
+                use $crate::word::Choice;
                 Self::of_word(default).unwrap_or(Self::ALL[0])
             }
         }
@@ -93,7 +95,7 @@ macro_rules! words {
             )+
         }
     ) => {
-        $crate::settings::word::words! {
+        $crate::word::words! {
             $(#[$outer])*
             pub enum $name {
                 $(
@@ -115,4 +117,4 @@ macro_rules! words {
     };
 }
 
-pub(crate) use words;
+pub use words;

@@ -10,15 +10,15 @@
 //! in a joint uses its own angle, q_k − q_on. With equal gains on all drives and an exact model, Σ D_k e_k decays on
 //! its own: errors that start on the plane stay on it and transmit no moment. With unequal gains they leave the plane.
 
-use crate::mechanics::dynamics::{by_drives, leading_entries, torques};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
-use crate::planning::Reference;
-use crate::settings::keyed::keyed;
-use crate::settings::number::{ShortNumber, nine_digits};
-use crate::settings::range::{Range, RangeCheck};
-use crate::settings::word::words;
-use crate::simulation::plant::{DriveValues, MovingBody};
+use crate::plant::{DriveValues, MovingBody};
+use stillbase_mechanics::dynamics::{by_drives, leading_entries, torques};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
+use stillbase_planning::Reference;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::number::{ShortNumber, nine_digits};
+use stillbase_settings::range::{Range, RangeCheck};
+use stillbase_settings::word::words;
 
 keyed! {
     /// Settings of control.
@@ -70,7 +70,7 @@ impl Control {
     }
 
     /// Returns the checks that depend on the step, s, and on the number `n` of drives.
-    pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<RangeCheck> {
+    pub fn fits(&self, n: usize, step: f64) -> Vec<RangeCheck> {
         let mut list = Vec::new();
         let at_step = |range: Range| format!("{range} at a step of {} s", ShortNumber(step));
         for (key, gain, most) in [

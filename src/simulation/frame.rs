@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::audit::AuditFigure;
-use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::joint_forces::InternalLoads;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
-use crate::simulation::plant::WheelState;
+use crate::plant::WheelState;
+use stillbase_mechanics::dynamics::BaseWrench;
+use stillbase_mechanics::joint_forces::InternalLoads;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 
-pub use crate::planning::following::follow::Target;
-pub use crate::planning::pose_space::Reach;
-pub use crate::planning::reactionless::Dexterity;
-pub use crate::simulation::audit::Audit;
-pub use crate::simulation::peaks::{Peaks, REACTIONLESS_SHARE};
-pub use crate::simulation::totals::Totals;
+pub use crate::audit::Audit;
+pub use crate::peaks::{Peaks, REACTIONLESS_SHARE};
+pub use crate::totals::Totals;
+pub use stillbase_planning::following::follow::Target;
+pub use stillbase_planning::pose_space::Reach;
+pub use stillbase_planning::reactionless::Dexterity;
 
 /// One instant of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! [`Peaks`]: peak values of a run, and whether they count as zero.
 
-use crate::mechanics::planar::PerDrive;
+use stillbase_mechanics::planar::PerDrive;
 
 /// Peak values over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Table of signals: each row is a plot, a series of the recording and a column of the CSV.
 
-use crate::mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::query::QuickQuery;
-use crate::settings::number::subscript;
-use crate::simulation::frame::Frame;
+use crate::frame::Frame;
+use stillbase_mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_query::QuickQuery;
+use stillbase_settings::number::subscript;
 
 /// A number in a [`Frame`], with its name and unit.
 #[derive(Clone, Debug)]

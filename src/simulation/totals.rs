@@ -1,8 +1,8 @@
 //! [`Totals`]: time integrals and extremes of a run so far: root mean squares, impulses, energy, motion of the base.
 
-use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::planar::length;
-use crate::simulation::plant::Slope;
+use crate::plant::Slope;
+use stillbase_mechanics::dynamics::BaseWrench;
+use stillbase_mechanics::planar::length;
 
 /// Time integrals and extremes over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

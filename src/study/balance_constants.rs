@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::mechanics::machine::Inertia;
+use stillbase_mechanics::machine::Inertia;
 
 /// Constants of the balance conditions. Of complex coefficients the real parts; pairs in the order (1,2), (1,3), (2,3)
 /// …

@@ -5,9 +5,9 @@ use serde::ser::{SerializeStruct, Serializer};
 use thiserror::Error;
 
 use super::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, WindowFunction};
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, base_loads};
-use crate::settings::number::fixed;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Refusal, base_loads};
+use stillbase_settings::number::fixed;
 
 /// One value for each component of the base wrench.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,11 +5,11 @@ use serde::Serialize;
 
 use super::balance_constants::BalanceConstants;
 use super::measures::Measures;
-use crate::mechanics::balance::{
+use stillbase_mechanics::balance::{
     BodyQuantity, DesignError, ListedParameter, RebalanceError, RebalanceRequest, design, rebalance,
 };
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::Motion;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_planning::Motion;
 
 /// Report on a machine whose centres of mass were placed by Eq. (10).
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -7,11 +7,11 @@ use super::balance_constants::BalanceConstants;
 use super::front_point::FrontPoint;
 use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search};
 use super::measures::Measures;
-use crate::mechanics::counterweights::{
+use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, FreeRotor, Placed, Residual, Sites, front, over_payloads, place_weights,
 };
-use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
-use crate::planning::Motion;
+use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
+use stillbase_planning::Motion;
 
 /// Number of payloads, across their range, at which the residual is reported.
 const PAYLOAD_SAMPLES: usize = 11;

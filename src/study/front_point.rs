@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::mechanics::counterweights::{Placed, PlacementTolerance, worst_residual};
-use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::planning::Motion;
-use crate::planning::pose_space::plane_area;
+use stillbase_mechanics::counterweights::{Placed, PlacementTolerance, worst_residual};
+use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::Motion;
+use stillbase_planning::pose_space::plane_area;
 
 use super::measures::instants;
 
@@ -87,7 +87,7 @@ impl FrontPoint {
 fn greatest_torque(machine: &Machine, motion: &Motion) -> f64 {
     let inertia = Inertia::of(machine);
     let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
-    let at = |r: crate::planning::Reference| {
+    let at = |r: stillbase_planning::Reference| {
         let (torque, _) = inverse_with_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
         inertia.motors().torques(&torque).iter().fold(0.0_f64, |most, x| most.max(x.abs()))
     };

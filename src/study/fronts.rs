@@ -4,11 +4,11 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::front_point::FrontPoint;
-use crate::mechanics::counterweights::{CounterweightError, CounterweightSpec, Front, FrontSearch};
-use crate::mechanics::machine::Machine;
-use crate::planning::Motion;
-use crate::query::{ByIdentity, Portion, ProgressCallback, Query};
-use crate::session::design::DesignBrief;
+use stillbase_mechanics::counterweights::{CounterweightError, CounterweightSpec, Front, FrontSearch};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::Motion;
+use stillbase_query::{ByIdentity, Portion, ProgressCallback, Query};
+use stillbase_session::design::DesignBrief;
 
 /// A machine whose Pareto front is requested.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,10 @@
 
 use serde::Serialize;
 
-use crate::mechanics::joint_forces::{AxialMoments, Joints, JointsError, MAX_FRAME_PINS, Pin, PinPeak};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::cross;
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::joint_forces::{AxialMoments, Joints, JointsError, MAX_FRAME_PINS, Pin, PinPeak};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::cross;
+use stillbase_simulation::frame::Frame;
 
 /// An extreme value and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

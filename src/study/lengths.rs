@@ -9,13 +9,13 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::mechanics::counterweights::{
+use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, Objective, Placed, Sites, place_weights,
 };
-use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
-use crate::planning::pose_space::plane_area;
-use crate::query::{Portion, ProgressCallback, Query, Shared};
-use crate::session::design::DesignBrief;
+use stillbase_mechanics::machine::{Length, Link, Machine, MachineSpec};
+use stillbase_planning::pose_space::plane_area;
+use stillbase_query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_session::design::DesignBrief;
 
 /// A length to optimise: one under `[lengths]`, which several links may share, or that of one link.
 #[derive(Clone, Debug, PartialEq)]

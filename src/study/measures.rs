@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::planning::Motion;
+use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{PerDrive, Vector};
+use stillbase_planning::Motion;
 
 /// Comparison of a machine with the one that it was made from, the bare machine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -79,7 +79,7 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
 }
 
 /// Samples a motion at the middle of equal time intervals, to avoid sampling exactly at jumps of the acceleration.
-pub(super) fn instants(motion: &Motion) -> impl Iterator<Item = crate::planning::Reference> {
+pub(super) fn instants(motion: &Motion) -> impl Iterator<Item = stillbase_planning::Reference> {
     let dt = motion.duration() / SAMPLES as f64;
     (0..SAMPLES).map(move |i| motion.at((i as f64 + 0.5) * dt))
 }

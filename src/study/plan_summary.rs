@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 
-use crate::mechanics::machine::Inertia;
-use crate::planning::common::common_b_set;
-use crate::planning::following::Blocked;
-use crate::planning::off_plane::Price;
-use crate::planning::off_plane::least_reaction::Verdicts;
-use crate::planning::off_plane::price::{FloatingBase, PriceError};
-use crate::planning::pose_constant::PointCorrection;
-use crate::planning::pose_space::PoseSpace;
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Run};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_planning::common::common_b_set;
+use stillbase_planning::following::Blocked;
+use stillbase_planning::off_plane::Price;
+use stillbase_planning::off_plane::least_reaction::Verdicts;
+use stillbase_planning::off_plane::price::{FloatingBase, PriceError};
+use stillbase_planning::pose_constant::PointCorrection;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Refusal, Run};
 
 /// Summary of a task.
 #[derive(Clone, Debug, PartialEq, Serialize)]

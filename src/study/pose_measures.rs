@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::mechanics::kinematics::least_transmission;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::{PlaneMap, PlanePoint};
+use stillbase_mechanics::kinematics::least_transmission;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::reactionless::{PlaneMap, PlanePoint};
 
 /// A pose and its kinematic measures.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::series::{Series, Statistics};
-use crate::query::IncrementalQuery;
-use crate::simulation::frame::Frame;
-use crate::simulation::signals::Signal;
+use stillbase_query::IncrementalQuery;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signals::Signal;
 
 /// Samples of some signals of one run. A signal that was added later has fewer samples until it catches up.
 #[derive(Clone, Debug, Default)]

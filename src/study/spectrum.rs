@@ -23,9 +23,9 @@
 
 use std::str::FromStr;
 
-use crate::settings::number::counted;
 use realfft::RealFftPlanner;
 use serde::Serialize;
+use stillbase_settings::number::counted;
 use thiserror::Error;
 
 /// Window function of the samples before the transform.

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::pose_measures::PoseMeasures;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{Vector, unit};
-use crate::planning::pose_space::{Outline, Planes, PoseSpace};
-use crate::planning::reactionless::{Boundary, ChangeCurve, DRIVE_PAIRS, PlaneMap};
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_planning::pose_space::{Outline, Planes, PoseSpace};
+use stillbase_planning::reactionless::{Boundary, ChangeCurve, DRIVE_PAIRS, PlaneMap};
 
 /// Region that the end effector reaches while b is held.
 #[derive(Clone, Debug, PartialEq, Serialize)]

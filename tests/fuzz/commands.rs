@@ -7,10 +7,10 @@ use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::trim::{MeasurementSet, Regressor, adopt_parameters, fit, identified_machine, next_excitation};
 
-use crate::commands::dynamics;
-use crate::commands::failure::Failure;
-use crate::commands::input::{Settings, overlay_used};
 use crate::fuzz::{bytes, fuzz, is_short};
+use stillbase_commands::dynamics;
+use stillbase_commands::failure::Failure;
+use stillbase_commands::input::{Settings, overlay_used};
 
 fn said(failure: &Failure) -> Result<(), String> {
     match failure {

@@ -5,7 +5,8 @@ use super::*;
 #[test]
 fn help_names_every_command_with_units_and_examples() {
     let all = prints(&["--help"]);
-    let known = <crate::commands::Subcommand as clap::Subcommand>::augment_subcommands(clap::Command::new("stillbase"));
+    let known =
+        <stillbase_commands::Subcommand as clap::Subcommand>::augment_subcommands(clap::Command::new("stillbase"));
     let names: Vec<&str> = known.get_subcommands().map(clap::Command::get_name).collect();
     assert!(names.len() > 14, "{names:?}");
     for command in names {

@@ -4,14 +4,14 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::files::table::{SampleTable, TableData as Read, motions, samples};
-use crate::mechanics::machine::Machine;
-use crate::planning::curves::Coordinates;
-use crate::query::{Portion, ProgressCallback, Query, Shared};
-use crate::session::scenario::Scenario;
-use crate::study::advice::Advice;
-use crate::study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
-use crate::study::trim::{MeasuredMotion, MeasurementSet, TrimMethod, TrimOutcome, TrimQuery, TrimRequest};
+use stillbase_files::table::{SampleTable, TableData as Read, motions, samples};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::curves::Coordinates;
+use stillbase_query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_session::scenario::Scenario;
+use stillbase_study::advice::Advice;
+use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
+use stillbase_study::trim::{MeasuredMotion, MeasurementSet, TrimMethod, TrimOutcome, TrimQuery, TrimRequest};
 
 /// The text of a table, and its name.
 #[derive(Debug, PartialEq)]

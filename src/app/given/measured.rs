@@ -4,13 +4,13 @@ use egui::{Align, Grid, Label, Layout, RichText, Ui};
 
 use super::assess::TableAction;
 use super::parts::{PROPOSAL_WIDTH, TableView, column, rows, take, title};
-use crate::app::Command;
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::note;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::settings::number::{counted, shown as rounded};
-use crate::study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
+use crate::Command;
+use crate::theme::{colour, plain};
+use crate::widgets::note;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_settings::number::{counted, shown as rounded};
+use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 470.0;

@@ -7,17 +7,17 @@ use egui_plot::{Line, LineStyle, PlotPoints};
 
 use super::assess::TableAction;
 use super::parts::{COLUMN_GAP, PROPOSAL_WIDTH, TableView, column, rows, take, title, worded};
-use crate::app::plots::{marks, small_axes, spaced};
-use crate::app::study::bare;
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::{name as named, note};
-use crate::app::{Command, ComparisonCommand, Switch, ViewChange, WindowCommand};
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::planning::curves::Coordinates;
-use crate::session::scenario::Scenario;
-use crate::settings::number::{counted, fixed};
-use crate::study::import::{GivenMotion, ImportedMotion, MotionImportError, Proposal};
+use crate::plots::{marks, small_axes, spaced};
+use crate::study::bare;
+use crate::theme::{colour, plain};
+use crate::widgets::{name as named, note};
+use crate::{Command, ComparisonCommand, Switch, ViewChange, WindowCommand};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_planning::curves::Coordinates;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::{counted, fixed};
+use stillbase_study::import::{GivenMotion, ImportedMotion, MotionImportError, Proposal};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 360.0;

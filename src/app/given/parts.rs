@@ -3,11 +3,11 @@
 use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::assess::{OpenedTable, TableAction, TableAssessment, TableContent, TableOptions};
-use crate::app::theme::{bold, colour, plain};
-use crate::app::{Command, SessionCommand, WindowCommand};
-use crate::picture::scene::palette::Palette;
-use crate::planning::curves::Coordinates;
-use crate::study::advice::{Advice, Remedy};
+use crate::theme::{bold, colour, plain};
+use crate::{Command, SessionCommand, WindowCommand};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_planning::curves::Coordinates;
+use stillbase_study::advice::{Advice, Remedy};
 
 /// Minimum width of the column that describes the proposal, points.
 pub(super) const PROPOSAL_WIDTH: f32 = 300.0;
@@ -17,7 +17,7 @@ pub(super) const COLUMN_GAP: f32 = 14.0;
 
 /// Content of the panel: the table, its assessment, and whether the assessment belongs to the present session.
 #[derive(Clone, Copy)]
-pub(in crate::app) struct TableView<'a> {
+pub(crate) struct TableView<'a> {
     pub given: &'a OpenedTable,
     pub answer: Option<&'a Result<TableAssessment, Advice>>,
     pub is_known: bool,

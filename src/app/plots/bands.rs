@@ -6,16 +6,16 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::name;
-use crate::app::{Command, SessionCommand, ViewState, set_b};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::planning::pose_constant::CommonB;
-use crate::planning::pose_space::PoseSpace;
-use crate::query::{ByIdentity, Queries, QuickWork};
-use crate::session::Session;
+use crate::theme::{colour, plain};
+use crate::widgets::name;
+use crate::{Command, SessionCommand, ViewState, set_b};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_planning::pose_constant::CommonB;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_query::{ByIdentity, Queries, QuickWork};
+use stillbase_session::Session;
 
 /// Maximum number of points with a bar.
 const MAX_BARS: usize = 8;

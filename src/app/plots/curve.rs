@@ -6,14 +6,14 @@ use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
 use super::prepared::extent;
 use super::shown::DisplayContext;
 use super::{hover, menu, values};
-use crate::app::theme::colour;
-use crate::app::{Command, SessionCommand, ViewChange};
-use crate::picture::charts::choice::{Plot, PlotChange};
-use crate::picture::charts::drawn::PlotLines;
-use crate::picture::charts::figure::{Axes, FigureItem, PlotContext, body};
-use crate::picture::numbers::at_step;
-use crate::picture::paint::figure::items;
-use crate::picture::scene::palette::faded;
+use crate::theme::colour;
+use crate::{Command, SessionCommand, ViewChange};
+use stillbase_picture::charts::choice::{Plot, PlotChange};
+use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::figure::{Axes, FigureItem, PlotContext, body};
+use stillbase_picture::numbers::at_step;
+use stillbase_picture::paint::figure::items;
+use stillbase_picture::scene::palette::faded;
 
 /// Distance within which a cursor can be grabbed, points.
 const GRAB_DISTANCE_PT: f32 = 5.0;
@@ -89,7 +89,7 @@ pub fn show(
 fn describe(response: &Response, plot: &Plot<'_>, look: &PlotContext<'_>) {
     let over = plot.against.map_or_else(|| "over time".into(), |signal| format!("over {}", signal.label));
     let label = format!("{} {over}, {}", plot.title, plot.unit());
-    let value = |curve: &crate::picture::charts::choice::PlotCurve<'_>| {
+    let value = |curve: &stillbase_picture::charts::choice::PlotCurve<'_>| {
         format!("{} {}", curve.signal.symbol, at_step(curve.times * curve.signal.value(look.now), 1e-3))
     };
     let values: Vec<String> = plot.shown().map(value).collect();

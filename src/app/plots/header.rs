@@ -3,13 +3,13 @@
 use egui::accesskit::Role;
 use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
 
-use crate::app::theme::{bold, colour, plain};
-use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Plot, PlotChange, PlotCurve};
-use crate::picture::charts::drawn::PlotLines;
-use crate::picture::charts::figure::{PlotContext, pen};
-use crate::picture::numbers::{at_step, signed};
-use crate::study::comparison::SignalDifference;
+use crate::theme::{bold, colour, plain};
+use crate::{Command, ViewChange};
+use stillbase_picture::charts::choice::{Plot, PlotChange, PlotCurve};
+use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::figure::{PlotContext, pen};
+use stillbase_picture::numbers::{at_step, signed};
+use stillbase_study::comparison::SignalDifference;
 
 /// Height of the line, points.
 pub const HEADER_HEIGHT: f32 = 17.0;

@@ -3,13 +3,13 @@
 use egui::{Grid, Id, RichText, Ui};
 
 use super::shown::{DisplayContext, nearest};
-use crate::app::theme::{bold, colour, plain};
-use crate::picture::charts::choice::Plot;
-use crate::picture::charts::drawn::PlotLines;
-use crate::picture::charts::figure::{PlotContext, pen};
-use crate::picture::numbers::{at_step, signed};
-use crate::session::Session;
-use crate::simulation::frame::Frame;
+use crate::theme::{bold, colour, plain};
+use stillbase_picture::charts::choice::Plot;
+use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::figure::{PlotContext, pen};
+use stillbase_picture::numbers::{at_step, signed};
+use stillbase_session::Session;
+use stillbase_simulation::frame::Frame;
 
 fn id() -> Id {
     Id::unique("time under the pointer")

@@ -7,11 +7,11 @@ use super::prepared::extent;
 use super::search;
 use super::shown::DisplayContext;
 use super::written::columns;
-use crate::app::theme::{bold, colour};
-use crate::app::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
-use crate::picture::charts::choice::{Plot, PlotChange};
-use crate::query::answer_sequence;
-use crate::study::samples::SignalSamples;
+use crate::theme::{bold, colour};
+use crate::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
+use stillbase_picture::charts::choice::{Plot, PlotChange};
+use stillbase_query::answer_sequence;
+use stillbase_study::samples::SignalSamples;
 
 /// Draws the button, and the menu while it is open.
 pub fn show(

@@ -17,7 +17,7 @@ use egui::{Frame, Margin, Panel, Ui};
 
 use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::{Command, Layout};
-use crate::picture::charts::figure::{BOTTOM_MARGIN, LEFT_MARGIN, PlotContext};
+use stillbase_picture::charts::figure::{BOTTOM_MARGIN, LEFT_MARGIN, PlotContext};
 
 pub use prepared::extent;
 pub use search::focus;

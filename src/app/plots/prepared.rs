@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use super::shown::DisplayContext;
-use crate::picture::charts::choice::{Plot, PlotChoice};
-use crate::picture::charts::drawn::PlotLines;
-use crate::picture::charts::range::TimeExtent;
-use crate::query::{ByIdentity, IncrementalAnswer, QuickQuery, QuickWork, Sequence, Shared};
-use crate::session::Session;
-use crate::session::scenario::Scenario;
-use crate::simulation::frame::Frame;
-use crate::simulation::signals::Signal;
-use crate::study::comparison::Comparison;
-use crate::study::samples::SignalSamples;
+use stillbase_picture::charts::choice::{Plot, PlotChoice};
+use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::range::TimeExtent;
+use stillbase_query::{ByIdentity, IncrementalAnswer, QuickQuery, QuickWork, Sequence, Shared};
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signals::Signal;
+use stillbase_study::comparison::Comparison;
+use stillbase_study::samples::SignalSamples;
 
 /// Number of frames sampled in one repaint: a few milliseconds for ten signals.
 const FRAMES_PER_REPAINT: usize = 4_000;

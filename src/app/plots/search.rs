@@ -6,12 +6,12 @@ use egui::{
 
 use super::prepared::extent;
 use super::shown::DisplayContext;
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::name;
-use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Plot, PlotChange};
-use crate::picture::charts::search::search;
-use crate::picture::numbers::at_step;
+use crate::theme::{bold, colour, plain};
+use crate::widgets::name;
+use crate::{Command, ViewChange};
+use stillbase_picture::charts::choice::{Plot, PlotChange};
+use stillbase_picture::charts::search::search;
+use stillbase_picture::numbers::at_step;
 
 /// Purpose of the search for a signal.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::app::ViewState;
-use crate::query::Queries;
-use crate::session::Session;
-use crate::simulation::frame::Frame;
-use crate::simulation::signals::Signal;
-use crate::study::comparison::Comparison;
+use crate::ViewState;
+use stillbase_query::Queries;
+use stillbase_session::Session;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signals::Signal;
+use stillbase_study::comparison::Comparison;
 
 /// The data shown by the plots.
 pub struct DisplayContext<'a> {

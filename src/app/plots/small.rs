@@ -3,9 +3,9 @@
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Plot};
 
-use crate::app::theme::{bold, colour, plain};
-use crate::picture::numbers::round_up;
-use crate::picture::scene::palette::{Palette, faded};
+use crate::theme::{bold, colour, plain};
+use stillbase_picture::numbers::round_up;
+use stillbase_picture::scene::palette::{Palette, faded};
 
 /// Font size of the axis numbers, points.
 const AXIS_FONT_PT: f32 = 10.5;

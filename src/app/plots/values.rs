@@ -2,10 +2,10 @@
 
 use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 
-use crate::app::{Command, ViewChange};
-use crate::picture::charts::choice::{Plot, PlotChange};
-use crate::picture::charts::drawn::PlotLines;
-use crate::picture::charts::figure::{Axes, LEFT_MARGIN};
+use crate::{Command, ViewChange};
+use stillbase_picture::charts::choice::{Plot, PlotChange};
+use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::figure::{Axes, LEFT_MARGIN};
 
 /// Minimum and maximum of the visible value range, as fractions of the range of all values.
 const MIN_SPAN: f64 = 1e-3;

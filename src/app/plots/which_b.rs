@@ -7,18 +7,18 @@ use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Points, Span, VLine};
 
 use super::bands::bars;
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::name;
-use crate::app::{Command, SessionCommand, ViewChange, ViewState, set_b};
-use crate::mechanics::planar::Vector;
-use crate::picture::charts::figure::BOTTOM_MARGIN;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::planning::pose_constant::CommonB;
-use crate::planning::pose_space::{Planes, PoseSpace};
-use crate::planning::reactionless::PlanePoint;
-use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork};
-use crate::session::Session;
+use crate::theme::{colour, plain};
+use crate::widgets::name;
+use crate::{Command, SessionCommand, ViewChange, ViewState, set_b};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::charts::figure::BOTTOM_MARGIN;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_planning::pose_constant::CommonB;
+use stillbase_planning::pose_space::{Planes, PoseSpace};
+use stillbase_planning::reactionless::PlanePoint;
+use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
+use stillbase_session::Session;
 
 /// Query for the branches of the self-motion on the planes, for each of some points.
 pub struct Branches;

@@ -2,15 +2,15 @@
 
 use super::prepared::{PlotPreparation, extent};
 use super::shown::DisplayContext;
-use crate::app::PlotFile;
-use crate::picture::canvas::Canvas;
-use crate::picture::charts::choice::Plot;
-use crate::picture::charts::figure::{Figure, PlotContext};
-use crate::picture::charts::svg::svg;
-use crate::picture::paint::figure::whole;
-use crate::query::{QuickWork, answer_sequence};
-use crate::simulation::signals::Signal;
-use crate::study::samples::SignalSamples;
+use crate::PlotFile;
+use stillbase_picture::canvas::Canvas;
+use stillbase_picture::charts::choice::Plot;
+use stillbase_picture::charts::figure::{Figure, PlotContext};
+use stillbase_picture::charts::svg::svg;
+use stillbase_picture::paint::figure::whole;
+use stillbase_query::{QuickWork, answer_sequence};
+use stillbase_simulation::signals::Signal;
+use stillbase_study::samples::SignalSamples;
 
 /// Width and height of a picture of a plot, points.
 const PICTURE_SIZE_PT: [f32; 2] = [720.0, 320.0];
@@ -59,7 +59,7 @@ fn png(figure: &Figure) -> Result<Vec<u8>, String> {
         if std::mem::replace(&mut dressed, true) {
             whole(ui.painter(), figure);
         } else {
-            crate::picture::paint::install_fonts(ui.ctx());
+            stillbase_picture::paint::install_fonts(ui.ctx());
         }
     });
     picture.map_err(|why| why.to_string())?.to_png().map_err(|why| format!("no picture: {why}"))

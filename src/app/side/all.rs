@@ -3,18 +3,18 @@
 use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
 use super::fold::{fold, undo};
-use crate::app::facts::{ScenarioFacts, Setting};
-use crate::app::place::fold_id;
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::{name, note, undoable_edit};
-use crate::app::{Command, WindowCommand};
-use crate::picture::scene::palette::Palette;
-use crate::session::Edit;
-use crate::session::scenario::{Value, part_of};
-use crate::settings::change::{self, DEFAULT_WORD};
-use crate::settings::key::{Key, KeyType};
-use crate::settings::quantity::{self, QuantityError};
-use crate::settings::range::shortened;
+use crate::facts::{ScenarioFacts, Setting};
+use crate::place::fold_id;
+use crate::theme::{colour, plain};
+use crate::widgets::{name, note, undoable_edit};
+use crate::{Command, WindowCommand};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Edit;
+use stillbase_session::scenario::{Value, part_of};
+use stillbase_settings::change::{self, DEFAULT_WORD};
+use stillbase_settings::key::{Key, KeyType};
+use stillbase_settings::quantity::{self, QuantityError};
+use stillbase_settings::range::shortened;
 
 /// Title of the list.
 const TITLE: &str = "All settings";

@@ -3,13 +3,13 @@
 use egui::Ui;
 
 use super::fold::{NumberField, PanelSection, SliderScale, fold, segments, switch};
-use crate::app::widgets::NumberRow;
-use crate::app::{Command, Switch, ViewChange, ViewState, place};
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::session::{Edit, Session};
-use crate::settings::word::Choice;
-use crate::simulation::plant::{Base, BaseKind, Wheel};
+use crate::widgets::NumberRow;
+use crate::{Command, Switch, ViewChange, ViewState, place};
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::{Edit, Session};
+use stillbase_settings::word::Choice;
+use stillbase_simulation::plant::{Base, BaseKind, Wheel};
 
 /// Draws this section.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {

@@ -4,12 +4,12 @@ use egui::Ui;
 
 use super::fold::{NumberField, PanelSection, SliderScale, choose, fold};
 use super::plant::PerDriveField;
-use crate::app::Command;
-use crate::app::widgets::{NumberRow, tip_of};
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
-use crate::settings::word::Choice;
-use crate::simulation::control::{Control, ControlLaw};
+use crate::Command;
+use crate::widgets::{NumberRow, tip_of};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
+use stillbase_settings::word::Choice;
+use stillbase_simulation::control::{Control, ControlLaw};
 
 /// Selectable sample periods, steps: a rate must fit the time step.
 const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
             let mut knows = control.knows_base;
             let tip = tip_of("control.knows_base");
             if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
-                crate::app::widgets::undoable_edit(commands, PanelSection::Control.set(&["knows_base"], knows));
+                crate::widgets::undoable_edit(commands, PanelSection::Control.set(&["knows_base"], knows));
             }
         }
     });

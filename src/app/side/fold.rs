@@ -2,14 +2,14 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::app::place;
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{NumberRow, name, send, undoable_edit};
-use crate::app::{Command, SessionCommand};
-use crate::picture::scene::palette::Palette;
-use crate::session::Edit;
-use crate::session::scenario::Value;
-use crate::settings::change::DEFAULT_WORD;
+use crate::place;
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{NumberRow, name, send, undoable_edit};
+use crate::{Command, SessionCommand};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Edit;
+use stillbase_session::scenario::Value;
+use stillbase_settings::change::DEFAULT_WORD;
 
 /// The section of the panel, and of a scenario, that a setting belongs to.
 #[derive(Clone, Copy)]
@@ -219,7 +219,7 @@ impl<'a> NumberField<'a> {
         let called = called.unwrap_or_else(|| row.label.to_owned());
         let mut value = now;
         let differs = now != normal;
-        let written = |x: f64| crate::picture::numbers::signed(x, row.decimals);
+        let written = |x: f64| stillbase_picture::numbers::signed(x, row.decimals);
         let mut responses = Vec::new();
         ui.horizontal(|ui| {
             ui.label(row.label).on_hover_text(row.tip);

@@ -4,14 +4,14 @@
 use egui::Ui;
 
 use super::fold::{NumberField, PanelSection, SliderScale, choose, fold, switch, switch_nonzero};
-use crate::app::widgets::{CLICK_PAYLOAD, NumberRow, note, tip_of, undoable_edit, unit};
-use crate::app::{Command, place};
-use crate::mechanics::machine::{Link, Machine};
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::session::scenario::Value;
-use crate::session::{Edit, Session};
-use crate::simulation::plant::{DriveValues, LinkDifference, PlantDifferences};
+use crate::widgets::{CLICK_PAYLOAD, NumberRow, note, tip_of, undoable_edit, unit};
+use crate::{Command, place};
+use stillbase_mechanics::machine::{Link, Machine};
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::scenario::Value;
+use stillbase_session::{Edit, Session};
+use stillbase_simulation::plant::{DriveValues, LinkDifference, PlantDifferences};
 
 /// Returns the number of differences.
 fn count(plant: &PlantDifferences) -> usize {
@@ -176,7 +176,7 @@ fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
             false => PanelSection::Plant.back(&["torque_limits"]),
         });
     if on {
-        let limit = |d: &crate::mechanics::machine::Drive| d.torque_limit.map_or("none".into(), |t| format!("{t}"));
+        let limit = |d: &stillbase_mechanics::machine::Drive| d.torque_limit.map_or("none".into(), |t| format!("{t}"));
         let all: Vec<String> = model.spec().drives.iter().map(limit).collect();
         note(ui, p, &format!("|τ| at most {} N m", all.join(", ")));
     }

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use super::AppState;
-use crate::app::background::{Background, Opening};
-use crate::app::change::SessionSource;
-use crate::app::{Activity, BottomPanel, ComparisonCommand};
-use crate::picture::scene::stage::OutlineQuery;
-use crate::query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
-use crate::session::RunAhead;
-use crate::session::scenario::Scenario;
-use crate::study::comparison::{AlternativeRuns, ComparedRun, Comparison};
-use crate::study::tolerance::{StudiedRun, Study, StudyQuery};
+use crate::background::{Background, Opening};
+use crate::change::SessionSource;
+use crate::{Activity, BottomPanel, ComparisonCommand};
+use stillbase_picture::scene::stage::OutlineQuery;
+use stillbase_query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
+use stillbase_session::RunAhead;
+use stillbase_session::scenario::Scenario;
+use stillbase_study::comparison::{AlternativeRuns, ComparedRun, Comparison};
+use stillbase_study::tolerance::{StudiedRun, Study, StudyQuery};
 
 /// Maximum number of steps that are run ahead to find the motion of the base.
 const MAX_STEPS_AHEAD: f64 = 20_000.0;
@@ -166,7 +166,7 @@ impl AppState {
     }
 
     /// Ends the background work: waits until a session under way is saved, and stops everything else.
-    pub(in crate::app) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.background.wait_for(Activity::Saving);
         self.background = Background::default();
     }

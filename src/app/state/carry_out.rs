@@ -1,12 +1,12 @@
 //! Execution of commands.
 
 use super::AppState;
-use crate::app::background::Opening;
-use crate::app::change::{SessionChange, SessionSource};
-use crate::app::marks;
-use crate::app::tour::Tour;
-use crate::app::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
-use crate::picture::scene::views::ViewKind;
+use crate::background::Opening;
+use crate::change::{SessionChange, SessionSource};
+use crate::marks;
+use crate::tour::Tour;
+use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase_picture::scene::views::ViewKind;
 
 impl AppState {
     /// Carries out one command, after those before it. A command that fails changes nothing, and a message says why.

@@ -1,12 +1,12 @@
 //! Changes of the session made in the background, and their consequences.
 
 use super::AppState;
-use crate::app::background::SessionResult;
-use crate::app::change::SessionChange;
-use crate::app::{Activity, RefusedEdit};
-use crate::query::Ticket;
-use crate::session::scenario::MAX_BRANCHES;
-use crate::session::{Edit, Refusal};
+use crate::background::SessionResult;
+use crate::change::SessionChange;
+use crate::{Activity, RefusedEdit};
+use stillbase_query::Ticket;
+use stillbase_session::scenario::MAX_BRANCHES;
+use stillbase_session::{Edit, Refusal};
 
 impl AppState {
     /// Changes a copy of the session in the background, and shows it once it is finished. The copy shares its frames;

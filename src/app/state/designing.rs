@@ -1,17 +1,17 @@
 //! Edits in the design view, and the counterweights applied there.
 
 use super::AppState;
-use crate::app::change::SessionChange;
-use crate::app::{FrontsCommand, studio};
-use crate::mechanics::counterweights::{MATERIALS, Objective};
-use crate::mechanics::machine::Machine;
-use crate::picture::scene::views::ViewKind;
-use crate::query::{Query, Shared};
-use crate::session::Edit;
-use crate::session::design::{brief_edit, counterweights_edit, machine_edit};
-use crate::session::scenario::Scenario;
-use crate::study::fronts::{FrontCase, Fronts};
-use crate::study::lengths::{LengthSearch, LengthsQuery};
+use crate::change::SessionChange;
+use crate::{FrontsCommand, studio};
+use stillbase_mechanics::counterweights::{MATERIALS, Objective};
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_query::{Query, Shared};
+use stillbase_session::Edit;
+use stillbase_session::design::{brief_edit, counterweights_edit, machine_edit};
+use stillbase_session::scenario::Scenario;
+use stillbase_study::fronts::{FrontCase, Fronts};
+use stillbase_study::lengths::{LengthSearch, LengthsQuery};
 
 impl AppState {
     /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if that is

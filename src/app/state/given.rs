@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::AppState;
 use super::beside::fault;
-use crate::app::change::SessionChange;
-use crate::app::given::assess::{AssessmentQuery, OpenedTable, TableAction, TableAssessment, TableOptions, TableText};
-use crate::app::{Activity, BottomPanel};
-use crate::query::{QueryResult, QueryStatus, Shared};
-use crate::session::Edit;
-use crate::study::advice::Advice;
-use crate::study::trim::adopting_edit;
+use crate::change::SessionChange;
+use crate::given::assess::{AssessmentQuery, OpenedTable, TableAction, TableAssessment, TableOptions, TableText};
+use crate::{Activity, BottomPanel};
+use stillbase_query::{QueryResult, QueryStatus, Shared};
+use stillbase_session::Edit;
+use stillbase_study::advice::Advice;
+use stillbase_study::trim::adopting_edit;
 
 impl AppState {
     /// Opens a table and shows its assessment for the session on display.

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::AppState;
-use crate::app::background::{Opening, SessionFile};
-use crate::app::change::{NotOpened, Opened, OpenedSession, SessionSource};
-use crate::app::{Activity, Framing, Recovery, ResumePoint};
-use crate::mechanics::machine::Machine;
-use crate::query::{Shared, Ticket};
-use crate::session::Session;
-use crate::session::scenario::Scenario;
+use crate::background::{Opening, SessionFile};
+use crate::change::{NotOpened, Opened, OpenedSession, SessionSource};
+use crate::{Activity, Framing, Recovery, ResumePoint};
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::{Shared, Ticket};
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
 
 impl AppState {
     /// Opens a source in the background; a newer request replaces an older one.

@@ -1,14 +1,14 @@
 //! One pass of the user interface.
 
 use super::AppState;
-use crate::app::facts::ScenarioFacts;
-use crate::app::marks::Marks;
-use crate::app::{
+use crate::facts::ScenarioFacts;
+use crate::marks::Marks;
+use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
     compare, finder, given, keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
     widgets,
 };
-use crate::picture::scene::views::ViewKind;
+use stillbase_picture::scene::views::ViewKind;
 
 /// Time between two repaints that show progress, s.
 const PROGRESS_INTERVAL_S: f32 = 0.1;

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::AppState;
 use super::beside::fault;
-use crate::app::{Activity, PlotFile, plots};
-use crate::exchange::cut::Cut;
-use crate::exchange::form::Form;
-use crate::query::Ticket;
+use crate::{Activity, PlotFile, plots};
+use stillbase_exchange::cut::Cut;
+use stillbase_exchange::form::Form;
+use stillbase_query::Ticket;
 
 /// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
@@ -67,7 +67,7 @@ impl AppState {
         self.write(path, (Activity::Saving, busy), of, |app_state| {
             let content = content(app_state)?;
             Ok(move |_: &Ticket, path: &Path, replaces: bool| {
-                crate::files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
+                stillbase_files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
                 Ok(format!("saved {}", whole(path)))
             })
         })
@@ -114,11 +114,11 @@ impl AppState {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
-                let options = crate::recording::Options { pictures: None, force };
-                let mut report = |progress: crate::recording::RecordingProgress| {
+                let options = stillbase_recording::Options { pictures: None, force };
+                let mut report = |progress: stillbase_recording::RecordingProgress| {
                     ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64)
                 };
-                let done = crate::recording::record(&[scenario], path, &options, &mut report);
+                let done = stillbase_recording::record(&[scenario], path, &options, &mut report);
                 let done = done.map_err(|e| e.to_string())?;
                 let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
                 Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
@@ -137,5 +137,5 @@ const FILE_BEING_SAVED: &str = "one file is being saved: want that to end first"
 
 /// Returns the absolute path of a file, so that the user can find it.
 fn whole(path: &Path) -> String {
-    crate::files::absolute_path(path).unwrap_or_else(|| path.into()).display().to_string()
+    stillbase_files::absolute_path(path).unwrap_or_else(|| path.into()).display().to_string()
 }

@@ -2,19 +2,19 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit, unit};
-use crate::app::{Command, SessionCommand};
-use crate::mechanics::balance::Preset;
-use crate::mechanics::counterweights::MATERIALS;
-use crate::mechanics::machine::{Drive, ranges};
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::session::Edit;
-use crate::session::design::DesignBrief;
-use crate::session::scenario::{Scenario, Value};
-use crate::settings::change::DEFAULT_WORD;
-use crate::settings::word::{Choice, ChoiceWords};
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit, unit};
+use crate::{Command, SessionCommand};
+use stillbase_mechanics::balance::Preset;
+use stillbase_mechanics::counterweights::MATERIALS;
+use stillbase_mechanics::machine::{Drive, ranges};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Edit;
+use stillbase_session::design::DesignBrief;
+use stillbase_session::scenario::{Scenario, Value};
+use stillbase_settings::change::DEFAULT_WORD;
+use stillbase_settings::word::{Choice, ChoiceWords};
 
 /// Draws the brief.
 pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, commands: &mut Vec<Command>) {

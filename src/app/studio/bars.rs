@@ -3,13 +3,13 @@
 use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::facts::{BalanceBars, DesignFacts};
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::heading;
-use crate::app::{ViewState, place};
-use crate::picture::numbers::signed;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::{Palette, mix};
-use crate::session::Session;
+use crate::theme::{bold, colour, plain};
+use crate::widgets::heading;
+use crate::{ViewState, place};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::{Palette, mix};
+use stillbase_session::Session;
 
 /// Heights of a row and of its bar, and widths on the left for the symbol and on the right for the residual, points.
 const ROW_HEIGHT_PT: f32 = 38.0;

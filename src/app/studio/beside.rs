@@ -4,13 +4,13 @@ use egui::{Align, Button, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
 use super::facts::DesignFacts;
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::{name, note};
-use crate::app::{Command, FrontsCommand, WindowCommand};
-use crate::mechanics::machine::builtins;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::study::fronts::MachineFront;
+use crate::theme::{colour, plain};
+use crate::widgets::{name, note};
+use crate::{Command, FrontsCommand, WindowCommand};
+use stillbase_mechanics::machine::builtins;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_study::fronts::MachineFront;
 
 /// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
 pub(super) fn places(facts: &DesignFacts) -> impl Iterator<Item = [f64; 2]> {

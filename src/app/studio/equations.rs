@@ -7,15 +7,15 @@ use super::bars::hot_link;
 use super::lesson::MachineEquations;
 use super::terms::{self, TermPainter};
 use super::typeset::set;
-use crate::app::ViewState;
-use crate::app::side::SCROLL_BAR_WIDTH;
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{name, note};
-use crate::picture::numbers::{at_step, signed};
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
-use crate::study::equations::{Equality, Equation, InstantKind};
+use crate::ViewState;
+use crate::side::SCROLL_BAR_WIDTH;
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{name, note};
+use stillbase_picture::numbers::{at_step, signed};
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
+use stillbase_study::equations::{Equality, Equation, InstantKind};
 
 /// Maximum width of the names of lines, points.
 const MAX_NAME_WIDTH_PT: f32 = 48.0;

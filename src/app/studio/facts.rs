@@ -4,21 +4,21 @@ use std::sync::Arc;
 
 use super::lengths::LengthsResult;
 use super::lesson::MachineEquations;
-use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::counterweights::{CounterweightError, Front, FrontSearch, Placed, Residual, over_payloads};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::picture::scene::options::WeightOption;
-use crate::planning::Motion;
-use crate::query::{
+use stillbase_mechanics::balance::{Breakdown, Condition};
+use stillbase_mechanics::counterweights::{CounterweightError, Front, FrontSearch, Placed, Residual, over_payloads};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_picture::scene::options::WeightOption;
+use stillbase_planning::Motion;
+use stillbase_query::{
     ByIdentity, Portion, ProgressCallback, Queries, Query, QueryResult, QueryStatus, QuickQuery, QuickWork,
 };
-use crate::session::Session;
-use crate::session::design::DesignBrief;
-use crate::settings::number::subscript;
-use crate::study::front_point::FrontMeasure;
-use crate::study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
-use crate::study::lengths::LengthsQuery;
-use crate::study::measures::Measures;
+use stillbase_session::Session;
+use stillbase_session::design::DesignBrief;
+use stillbase_settings::number::subscript;
+use stillbase_study::front_point::FrontMeasure;
+use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
+use stillbase_study::lengths::LengthsQuery;
+use stillbase_study::measures::Measures;
 
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 25;
@@ -318,7 +318,7 @@ fn front_request(bare: &Machine, brief: &DesignBrief) -> <FrontSearch as Query>:
 
 fn terms(machine: &Machine) -> Vec<BalanceBars> {
     let breakdown = Breakdown::of(machine);
-    let term = |term: &crate::mechanics::balance::BalanceTerm| {
+    let term = |term: &stillbase_mechanics::balance::BalanceTerm| {
         let links = (0..machine.links().len()).map(|link| (link, breakdown.of_link(term, link).re));
         let mut parts: Vec<(usize, f64)> = links.collect();
         let most = parts.iter().fold(0.0_f64, |most, (_, part)| most.max(part.abs()));

@@ -5,14 +5,14 @@ use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
 use super::beside;
 use super::facts::{DesignFacts, FrontMachine};
-use crate::app::plots::{base_plot, marks, small_axes, spaced};
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{heading, name, note};
-use crate::app::{Command, SessionCommand, ViewChange, ViewState};
-use crate::picture::numbers::signed;
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::{Palette, faded, mix};
-use crate::study::front_point::FrontMeasure;
+use crate::plots::{base_plot, marks, small_axes, spaced};
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{heading, name, note};
+use crate::{Command, SessionCommand, ViewChange, ViewState};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::{Palette, faded, mix};
+use stillbase_study::front_point::FrontMeasure;
 
 const PLOT_HEIGHT_PT: f32 = 210.0;
 /// Delay before progress of the search is shown, s.

@@ -3,18 +3,18 @@
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
 use super::asked::{bounded, optional};
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{NumberRow, note, send, tip_of, unit};
-use crate::app::{Command, SessionCommand, WindowCommand};
-use crate::mechanics::counterweights::Objective;
-use crate::mechanics::machine::ranges;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::query::{QueryResult, QueryStatus};
-use crate::session::Edit;
-use crate::session::scenario::Scenario;
-use crate::settings::number::counted;
-use crate::study::lengths::{FoundLengths, NoLengths};
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{NumberRow, note, send, tip_of, unit};
+use crate::{Command, SessionCommand, WindowCommand};
+use stillbase_mechanics::counterweights::Objective;
+use stillbase_mechanics::machine::ranges;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_query::{QueryResult, QueryStatus};
+use stillbase_session::Edit;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::counted;
+use stillbase_study::lengths::{FoundLengths, NoLengths};
 
 /// A search for lengths, and its result.
 pub type LengthsResult = QueryResult<Result<FoundLengths, NoLengths>>;
@@ -48,7 +48,7 @@ pub fn show(
                 "Several searches over these lengths; the best of what they come across is shown, and nothing changes";
             for (words, objective) in [("least mass", Objective::mass()), ("least inertia", Objective::inertia())] {
                 let button = ui.button(RichText::new(words).font(plain(12.0))).on_hover_text(tip);
-                crate::app::widgets::name(&button, &format!("Seek lengths with {words}"));
+                crate::widgets::name(&button, &format!("Seek lengths with {words}"));
                 if button.clicked() {
                     commands.push(WindowCommand::Seek(objective).into());
                 }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::balance::Preset;
-use crate::mechanics::machine::Machine;
-use crate::query::{Queries, QuickQuery, QuickWork};
-use crate::session::Session;
-use crate::study::equations::{DriveState, Equation, InstantKind, equations};
+use stillbase_mechanics::balance::Preset;
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::{Queries, QuickQuery, QuickWork};
+use stillbase_session::Session;
+use stillbase_study::equations::{DriveState, Equation, InstantKind, equations};
 
 /// The equations of a machine at an instant.
 pub struct MachineEquations {

@@ -3,11 +3,11 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::facts::DesignFacts;
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::heading;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::Palette;
-use crate::session::Session;
+use crate::theme::{colour, plain};
+use crate::widgets::heading;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::Session;
 
 const BETA: &str = "What is left of what the machine without counterweights does in the same motion of its drives: \
                     0 is nothing, 1 as much";

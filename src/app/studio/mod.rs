@@ -21,7 +21,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 use super::side::SCROLL_BAR_WIDTH;
 use super::theme::{colour, plain};
 use super::{Command, FileDialog, FilePurpose, ViewChange, ViewState};
-use crate::session::Session;
+use stillbase_session::Session;
 
 pub use facts::{DesignFacts, leave, of_front};
 

@@ -4,11 +4,11 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoints, VLine};
 
 use super::facts::DesignFacts;
-use crate::app::plots::{base_plot, marks, small_axes, spaced};
-use crate::app::theme::{colour, plain};
-use crate::app::widgets::{heading, name, note};
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
+use crate::plots::{base_plot, marks, small_axes, spaced};
+use crate::theme::{colour, plain};
+use crate::widgets::{heading, name, note};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
 
 const PLOT_HEIGHT_PT: f32 = 96.0;
 

@@ -2,16 +2,16 @@
 
 use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
-use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
-use crate::app::{Command, ViewState, place};
-use crate::mechanics::balance::ParameterBounds;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::Palette;
-use crate::session::design::{DesignBrief, length_edit};
-use crate::session::scenario::{TaskChange, Value, to_value};
-use crate::session::{Edit, Session};
-use crate::settings::change::DEFAULT_WORD;
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
+use crate::{Command, ViewState, place};
+use stillbase_mechanics::balance::ParameterBounds;
+use stillbase_picture::scene::options::Handle;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_session::design::{DesignBrief, length_edit};
+use stillbase_session::scenario::{TaskChange, Value, to_value};
+use stillbase_session::{Edit, Session};
+use stillbase_settings::change::DEFAULT_WORD;
 
 /// Widths of the columns for the link's name and for each number, gap, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;

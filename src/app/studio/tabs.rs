@@ -2,9 +2,9 @@
 
 use egui::{Button, RichText, Ui, vec2};
 
-use crate::app::theme::{bold, colour};
-use crate::app::widgets::name;
-use crate::app::{Command, Switch, ViewChange, ViewState};
+use crate::theme::{bold, colour};
+use crate::widgets::name;
+use crate::{Command, Switch, ViewChange, ViewState};
 
 const TABS: [(bool, &str, &str); 2] = [
     (false, "Balance", "What is out of balance, and counterweights to take"),
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let width = 0.5 * (ui.available_width() - 3.0 - crate::app::side::SCROLL_BAR_WIDTH);
+        let width = 0.5 * (ui.available_width() - 3.0 - crate::side::SCROLL_BAR_WIDTH);
         for (learns, words, tip) in TABS {
             let chosen = learns == view_state.arrangement.learns;
             let text = RichText::new(words).font(bold(12.5)).color(colour(if chosen { p.ink } else { p.dim }));

@@ -3,12 +3,12 @@
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use super::typeset::{set, words};
-use crate::app::place;
-use crate::app::theme::{colour, plain};
-use crate::mechanics::machine::Machine;
-use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::study::equations::{Equality, EquationCell, Term, cells, plain as written};
+use crate::place;
+use crate::theme::{colour, plain};
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_study::equations::{Equality, EquationCell, Term, cells, plain as written};
 
 /// Heights of symbols and of numbers, width of a sign before either, gaps between terms and below a row, points.
 const SYMBOL_HEIGHT_PT: f32 = 17.0;
@@ -156,7 +156,7 @@ fn tip(ui: &Ui, pen: &TermPainter<'_>, term: &Term, unit: &str) {
         lines[0].insert_str(0, "− ");
     }
     let of = |(origin, part): &&(_, f64)| {
-        let origin: &crate::study::equations::Origin = origin;
+        let origin: &stillbase_study::equations::Origin = origin;
         format!("{}: {} {unit}", origin.words(pen.machine), signed(*part, TIP_DECIMALS))
     };
     if parts.len() > 1 || parts.first().is_some_and(|(origin, _)| origin.link().is_none()) {

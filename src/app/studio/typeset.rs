@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, Galley, Ui};
 
-use crate::app::theme::plain;
-use crate::study::equations::{Level, pieces};
+use crate::theme::plain;
+use stillbase_study::equations::{Level, pieces};
 
 /// Size of an index, as a fraction of its symbol.
 const INDEX_SCALE: f32 = 0.74;

@@ -3,12 +3,12 @@
 use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 
 use super::{STEPS, Step, StepButton, Tour};
-use crate::app::theme::{bold, card, colour, plain};
-use crate::app::widgets::name;
-use crate::app::{Command, ViewChange, ViewState, WindowCommand};
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::ViewKind;
-use crate::session::Session;
+use crate::theme::{bold, card, colour, plain};
+use crate::widgets::name;
+use crate::{Command, ViewChange, ViewState, WindowCommand};
+use stillbase_picture::scene::palette::Palette;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Session;
 
 impl Tour {
     /// Draws the card, over the lower left corner of the scene.

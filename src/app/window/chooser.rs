@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use rfd::{AsyncFileDialog, FileHandle};
 use winit::window::Window;
 
-use crate::app::jobs::Threads;
-use crate::app::{AppState, FileDialog, FilePurpose, PlotFile, SessionCommand, ViewChange};
-use crate::exchange::form;
-use crate::query::{Job, Poll};
+use crate::jobs::Threads;
+use crate::{AppState, FileDialog, FilePurpose, PlotFile, SessionCommand, ViewChange};
+use stillbase_exchange::form;
+use stillbase_query::{Job, Poll};
 
 /// Shows file dialogs of the system in the background.
 #[derive(Default)]

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::picture::render::offscreen::{Gpu, NoAdapter};
-use crate::session::Refusal;
+use stillbase_picture::render::offscreen::{Gpu, NoAdapter};
+use stillbase_session::Refusal;
 
 /// The reason why there is no window.
 #[derive(Debug, Error)]

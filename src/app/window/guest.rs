@@ -11,7 +11,7 @@ use super::chooser::Chooser;
 use super::error::WindowError;
 use super::keeper::Keeper;
 use super::times::Times;
-use crate::app::{AppState, Preferences, SessionCommand, WindowCommand};
+use crate::{AppState, Preferences, SessionCommand, WindowCommand};
 
 /// The application, in a window or driven by tests without one.
 pub struct App {
@@ -86,7 +86,7 @@ impl App {
         }
         self.app_state.close();
         // An unfinished recording leaves no incomplete file.
-        drop(crate::files::abandon());
+        drop(stillbase_files::abandon());
         self.window = None;
     }
 

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::app::jobs::Threads;
-use crate::app::{AppState, Preferences, ResumePoint};
-use crate::files::journal::{self, Journal, LeftoverJournal};
-use crate::files::preferences;
-use crate::query::{Job, Poll};
+use crate::jobs::Threads;
+use crate::{AppState, Preferences, ResumePoint};
+use stillbase_files::journal::{self, Journal, LeftoverJournal};
+use stillbase_files::preferences;
+use stillbase_query::{Job, Poll};
 
 /// Writes changes in the background: the first at once, later ones within a second.
 pub struct Keeper {

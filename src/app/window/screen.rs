@@ -10,8 +10,8 @@ use egui::epaint::{ClippedPrimitive, ImageDelta, TextureAtlas};
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use crate::picture::gui::{GuiRenderer, RenderTarget};
-use crate::picture::render::offscreen::NoAdapter;
+use stillbase_picture::gui::{GuiRenderer, RenderTarget};
+use stillbase_picture::render::offscreen::NoAdapter;
 
 /// A window's surface and the device that draws on it. The device may be lost at any time, with the card, its driver or
 /// a remote display.

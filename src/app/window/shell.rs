@@ -14,8 +14,8 @@ use winit::window::{Window, WindowId};
 use super::error::{WindowError, what_is_missing};
 use super::guest::App;
 use super::screen::{PaintOutcome, Screen};
-use crate::picture::paint::draw_drafts;
-use crate::picture::render::offscreen::NoAdapter;
+use stillbase_picture::paint::draw_drafts;
+use stillbase_picture::render::offscreen::NoAdapter;
 
 /// A device lost again within this time is not replaced again.
 const MIN_DEVICE_LIFETIME: Duration = Duration::from_secs(10);

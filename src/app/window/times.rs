@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Align2, Area, Frame, Id, Margin, Order, RichText, vec2};
 
-use crate::app::theme::{colour, plain};
-use crate::picture::scene::palette::Palette;
+use crate::theme::{colour, plain};
+use stillbase_picture::scene::palette::Palette;
 
 /// Times of repaints, averaged over the last few.
 #[derive(Default)]

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
-use stillbase::query::answer_now;
-use stillbase::study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
+use stillbase_query::answer_now;
+use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
 
 use super::super::failure::Failure;
 use super::super::output::TextTable;

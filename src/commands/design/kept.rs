@@ -1,11 +1,11 @@
 //! `stillbase design --keep`
 
 use clap::Args;
-use stillbase::mechanics::balance::{RebalanceError, RebalanceRequest};
-use stillbase::mechanics::machine::Machine;
-use stillbase::planning::Motion;
-use stillbase::settings::number::{fixed, significant};
-use stillbase::study::centres::{RebalanceChange, RebalanceReport, rebalance_report};
+use stillbase_mechanics::balance::{RebalanceError, RebalanceRequest};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::Motion;
+use stillbase_settings::number::{fixed, significant};
+use stillbase_study::centres::{RebalanceChange, RebalanceReport, rebalance_report};
 
 use super::super::check::balance_tables;
 use super::super::failure::Failure;

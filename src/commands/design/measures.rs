@@ -1,7 +1,7 @@
 //! Measures of a design, as text.
 
-use stillbase::settings::number::fixed;
-use stillbase::study::measures::Measures;
+use stillbase_settings::number::fixed;
+use stillbase_study::measures::Measures;
 
 /// Formats the measures, one in each line.
 pub fn text(measures: &Measures) -> String {

@@ -9,10 +9,10 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase::files::write_new;
-use stillbase::mechanics::balance::Preset;
-use stillbase::mechanics::machine::{Machine, to_toml};
-use stillbase::study::centres::design_centres;
+use stillbase_files::write_new;
+use stillbase_mechanics::balance::Preset;
+use stillbase_mechanics::machine::{Machine, to_toml};
+use stillbase_study::centres::design_centres;
 
 use super::check::balance_tables;
 use super::exit::say;
@@ -20,10 +20,10 @@ use super::failure::Failure;
 use super::input::{MachineArgument, Settings, choice, scenario};
 use super::output::{Format, TextTable, check_output};
 use kept::RebalanceArguments;
-use stillbase::planning::Motion;
-use stillbase::session::{Run, with_start_edits};
-use stillbase::settings::number::{counted, fixed};
-use stillbase::settings::word::Choice;
+use stillbase_planning::Motion;
+use stillbase_session::{Run, with_start_edits};
+use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::word::Choice;
 use weighed::WeightArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)

@@ -3,18 +3,18 @@
 use std::time::Instant;
 
 use clap::Args;
-use stillbase::mechanics::counterweights::{
+use stillbase_mechanics::counterweights::{
     BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
 };
-use stillbase::mechanics::machine::Machine;
-use stillbase::planning::Motion;
-use stillbase::settings::number::{fixed, nine_digits, significant};
-use stillbase::study::counterweights::{
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::Motion;
+use stillbase_settings::number::{fixed, nine_digits, significant};
+use stillbase_study::counterweights::{
     CounterweightReport, CounterweightRequest, LengthsReport, NoCounterweights, balance_by_weights, removed_weights,
 };
-use stillbase::study::front_point::FrontPoint;
-use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths};
-use stillbase::study::measures::greatest_accelerations;
+use stillbase_study::front_point::FrontPoint;
+use stillbase_study::lengths::{FreeLength, LengthSearch, NoLengths};
+use stillbase_study::measures::greatest_accelerations;
 
 use super::super::check::balance_tables;
 use super::super::ends::ends;

@@ -1,9 +1,9 @@
 //! The answer of `stillbase import` as a table.
 
-use stillbase::settings::number::{counted, fixed};
-use stillbase::study::import::{ComparedNumber, ImportedMotion};
+use stillbase_settings::number::{counted, fixed};
+use stillbase_study::import::{ComparedNumber, ImportedMotion};
 
-use crate::commands::output::{TextTable, yes};
+use crate::output::{TextTable, yes};
 
 /// Formats the given and the proposed motion side by side.
 pub fn table(answer: &ImportedMotion) -> String {

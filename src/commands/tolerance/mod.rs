@@ -8,19 +8,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use stillbase::files::shards::{ShardError, ShardHeader, StudyId, Writer, merge};
-use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
-use stillbase::session::{Run, with_start_edits};
-use stillbase::study::tolerance::{
+use stillbase_files::shards::{ShardError, ShardHeader, StudyId, Writer, merge};
+use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
+use stillbase_session::{Run, with_start_edits};
+use stillbase_study::tolerance::{
     Distributions, Ensemble, EnsemblePart, Mode, PartReport, SampleOutcome, ToleranceError, Yields,
 };
 
 use self::report::{MergedParts, ToleranceAnswer};
-use crate::commands::exit::say;
-use crate::commands::failure::Failure;
-use crate::commands::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
-use crate::commands::output::{Format, check_output};
-use stillbase::settings::number::counted;
+use crate::exit::say;
+use crate::failure::Failure;
+use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
+use crate::output::{Format, check_output};
+use stillbase_settings::number::counted;
 
 /// Vary a machine within its tolerances and see what its base feels
 ///
@@ -177,7 +177,7 @@ impl ToleranceArguments {
             let edits = counted(others, "edit");
             say(format!("note: {}: the planned motion counts, without {edits} after its start", scenario.name));
         }
-        let left_out = stillbase::study::tolerance::neglected_effects(&scenario);
+        let left_out = stillbase_study::tolerance::neglected_effects(&scenario);
         if !left_out.is_empty() && !self.simulate {
             let what = left_out.join(", ");
             say(format!(
@@ -194,7 +194,7 @@ impl ToleranceArguments {
         let section = self.section(&scenario);
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
-        let range = stillbase::study::tolerance::shard(samples, (i, n));
+        let range = stillbase_study::tolerance::shard(samples, (i, n));
         if range.end - range.start > MAX_MACHINES {
             let why = format!("{} machines at once: want at most {MAX_MACHINES}, in shards", range.end - range.start);
             return Err(Failure::wrong_input(why));

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use stillbase::session::Refusal;
-use stillbase::study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
+use stillbase_session::Refusal;
+use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 
 /// Number of chunks of a wave for each thread, enough that no thread waits long for the slowest.
 const CHUNKS_PER_THREAD: usize = 32;

@@ -1,10 +1,10 @@
 //! Results of a study, as JSON and as text.
 
 use serde::Serialize;
-use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::tolerance::{Distribution, Distributions, LimitYield, PartReport, SampleOutcome, Share, Yields};
+use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_study::tolerance::{Distribution, Distributions, LimitYield, PartReport, SampleOutcome, Share, Yields};
 
-use crate::commands::output::TextTable;
+use crate::output::TextTable;
 
 /// Formats the distributions of the four results of a machine, one in each row.
 fn distributions_table(all: &Distributions, nominal: Option<&SampleOutcome>) -> TextTable {

@@ -1,8 +1,8 @@
 //! The answer of `stillbase trim` as text.
 
-use stillbase::mechanics::machine::Machine;
-use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::trim::{ExcitationReport, ParameterChange, Suggestion, TrimReport};
+use stillbase_mechanics::machine::Machine;
+use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_study::trim::{ExcitationReport, ParameterChange, Suggestion, TrimReport};
 
 use super::super::output::{TextTable, yes};
 

@@ -5,15 +5,15 @@ mod answer;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase::files::table::motions;
-use stillbase::files::{finish_all, made};
-use stillbase::mechanics::balance::RebalanceRequest;
-use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective};
-use stillbase::mechanics::machine::{Machine, to_toml};
-use stillbase::mechanics::planar::Vector;
-use stillbase::query::{Shared, answer_now};
-use stillbase::settings::number::counted;
-use stillbase::study::trim::{
+use stillbase_files::table::motions;
+use stillbase_files::{finish_all, made};
+use stillbase_mechanics::balance::RebalanceRequest;
+use stillbase_mechanics::counterweights::{CounterweightSpec, Disc, Objective};
+use stillbase_mechanics::machine::{Machine, to_toml};
+use stillbase_mechanics::planar::Vector;
+use stillbase_query::{Shared, answer_now};
+use stillbase_settings::number::counted;
+use stillbase_study::trim::{
     MeasurementSet, NoTrim, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found, corrected_as_built, free_weights,
     identified_machine,
 };
@@ -102,7 +102,7 @@ impl TrimArguments {
             [files @ .., name] if !files.is_empty() => (name, files),
             _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
         };
-        let machine = self.settings.apply(stillbase::files::machine(name, None)?)?;
+        let machine = self.settings.apply(stillbase_files::machine(name, None)?)?;
         let drives = machine.drives();
         if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
             return Err(Failure::wrong_input(format!(

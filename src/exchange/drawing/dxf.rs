@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::sheet::{Sheet, SheetShape, TextAlign};
-use crate::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// Layers with their colour numbers: outlines to cut, holes to drill, discs, and annotations.
 const LAYERS: [(&str, u8); 4] = [("OUTLINE", 7), ("HOLES", 5), ("COUNTERWEIGHT", 1), ("TEXT", 8)];

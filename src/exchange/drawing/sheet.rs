@@ -5,9 +5,9 @@
 
 use std::f64::consts::PI;
 
-use crate::exchange::cut::{Cut, CutError, SAME_PIN_DISTANCE, ends, holes};
-use crate::mechanics::machine::{Counterweight, Machine};
-use crate::settings::number::{counted, fixed};
+use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, ends, holes};
+use stillbase_mechanics::machine::{Counterweight, Machine};
+use stillbase_settings::number::{counted, fixed};
 
 /// A drawing as plain shapes.
 #[derive(Clone, Debug, PartialEq)]

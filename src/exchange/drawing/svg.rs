@@ -1,8 +1,8 @@
 //! A sheet as SVG at scale 1 : 1: a unit of the drawing is a millimetre.
 
 use super::sheet::{Sheet, SheetShape, TextAlign, TextEmphasis};
-use crate::exchange::xml::{XmlWriter, quoted};
-use crate::settings::number::fixed;
+use crate::xml::{XmlWriter, quoted};
+use stillbase_settings::number::fixed;
 
 /// Colours of the drives, as the window shows them on white.
 const COLOURS: [&str; 8] = ["#0072b2", "#c2410c", "#047857", "#a86d00", "#9c4f86", "#7a7100", "#1d4f91", "#5b6270"];

@@ -11,7 +11,7 @@ use super::linkage::{ImportedPart, MAX_PARTS, end_rank};
 use super::read::{AttributeSource, child, each, inertia, mass, number, numbers, several, vector, word};
 use super::refusal::{ImportError, element_error, element_name};
 use super::shapes::{MassProperties, solid};
-use crate::settings::range::quote_clipped;
+use stillbase_settings::range::quote_clipped;
 
 /// A point: its part, `None` for the base, and its position in the axes of the base, m.
 pub type AttachmentPoint = (Option<usize>, Vector3<f64>);

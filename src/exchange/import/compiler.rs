@@ -5,7 +5,7 @@ use roxmltree::Node;
 
 use super::read::{AttributeSource, each, number, several, vector};
 use super::refusal::{ImportError, element_error};
-use crate::settings::range::quote_clipped;
+use stillbase_settings::range::quote_clipped;
 
 /// Source of masses: shapes or `<inertial>` elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use roxmltree::Node;
 
 use super::read::{AttributeSource, each};
 use super::refusal::{ImportError, element_error};
-use crate::settings::range::quote_clipped;
+use stillbase_settings::range::quote_clipped;
 
 /// Maximum number of classes of a file: each holds all attributes that it inherits.
 const MAX_CLASSES: usize = 200;

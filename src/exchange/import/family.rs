@@ -11,12 +11,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::linkage::{ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, common_axis, owners, plane};
 use super::refusal::ImportError;
-use crate::mechanics::machine::{
+use stillbase_mechanics::machine::{
     Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Rotor,
 };
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::quote_clipped;
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::quote_clipped;
 
 /// Masses and inertias up to this fraction of the total are treated as zero.
 pub const NEGLIGIBLE_MASS: f64 = 1e-9;
@@ -325,7 +325,7 @@ impl Builder<'_> {
             summary: String::new(),
             gravity: [gravity.re, gravity.im],
             lengths: std::collections::BTreeMap::new(),
-            payload: crate::mechanics::machine::Payload::default(),
+            payload: stillbase_mechanics::machine::Payload::default(),
             drives,
             links,
             counterweights: Vec::new(),

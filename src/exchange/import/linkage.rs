@@ -159,7 +159,7 @@ pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f6
     for part in parts {
         let own = part.hinge.map_or(axis, |(own, _)| own);
         if own.cross(&axis).norm() > PARALLEL_UP_TO_SINE {
-            let [x, y, z] = [own.x, own.y, own.z].map(|x| crate::settings::number::fixed(x, 3));
+            let [x, y, z] = [own.x, own.y, own.z].map(|x| stillbase_settings::number::fixed(x, 3));
             return Err(part.wrong(
                 format!("it turns about {x} {y} {z}, not parallel to the others"),
                 "axes that are all parallel: a machine that moves in a plane",

@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use roxmltree::Node;
 
 use super::refusal::{ImportError, element_error};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::quote_clipped;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::quote_clipped;
 
 /// Largest magnitude of a number that is read: products of larger numbers could overflow.
 const MAX_MAGNITUDE: f64 = 1e9;

@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use crate::settings::range::{quote_clipped, shortened};
+use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Error in a file, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -16,8 +16,8 @@ use super::compiler::{Compiler, to_axis};
 use super::defaults::Element;
 use super::read::{AttributeSource, number, numbers, several};
 use super::refusal::{ImportError, element_error};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::quote_clipped;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::quote_clipped;
 
 /// Density of shapes that give none, kg/m³: that of water.
 const DEFAULT_DENSITY: f64 = 1000.0;

@@ -10,10 +10,10 @@ use super::linkage::{
 };
 use super::read::{child, each, given, inertia, mass, number, vector, word};
 use super::refusal::{ImportError, element_error, element_name};
-use crate::exchange::urdf::meet;
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::{ShortNumber, fixed};
-use crate::settings::range::{quote_clipped, shortened};
+use crate::urdf::meet;
+use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_settings::number::{ShortNumber, fixed};
+use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Tolerance within which rate ratios are equal; also the relative tolerance of limits.
 const RATE_TOLERANCE: f64 = 1e-9;

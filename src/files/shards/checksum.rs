@@ -6,7 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::hash::Checksum;
-use crate::files::{NewFile, WriteError};
+use crate::{NewFile, WriteError};
 
 /// The text before the checksum.
 pub const CHECKSUM_PREFIX: &str = " check ";

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::files::WriteError;
+use crate::WriteError;
 
 /// The reason why a shard cannot be read or written, or why shards do not form one study.
 #[derive(Debug, Error)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::ShardError;
 use super::rows::{ShardHeader, StudyId, StudyPart, Writer, outcome_of};
-use crate::study::tolerance::SampleOutcome;
+use stillbase_study::tolerance::SampleOutcome;
 
 /// Merges shards, given in any order, into one file, and returns the study and the outcomes of its machines.
 ///

@@ -21,9 +21,9 @@ use parquet::schema::types::Type;
 use super::checksum::{self, CHECKSUM_BLANK, CHECKSUM_PREFIX, CheckedFile, ChecksumPlace};
 use super::error::{ShardError, shard_error};
 use super::hash::fnv_1a;
-use crate::files::{NewFile, WriteError};
-use crate::session::scenario::{Scenario, Tolerance};
-use crate::study::tolerance::SampleOutcome;
+use crate::{NewFile, WriteError};
+use stillbase_session::scenario::{Scenario, Tolerance};
+use stillbase_study::tolerance::SampleOutcome;
 
 /// Identifier of a study. In a CSV file its text is the title of the column of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -440,7 +440,7 @@ fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
     let kind = kind_of(file)?;
     let unreadable = |e| shard_error(file, format!("{e}: want a plain file that can be read"));
     // Opening a pipe would block until its other end is opened.
-    let there = std::fs::metadata(file).and_then(|there| crate::files::text::check(&there, u64::MAX));
+    let there = std::fs::metadata(file).and_then(|there| crate::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
     Ok((kind, File::open(file).map_err(unreadable)?))
 }

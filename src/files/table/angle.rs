@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::settings::number::ShortNumber;
+use stillbase_settings::number::ShortNumber;
 
 /// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is refused.
 const MAX_PLAIN_ANGLE_RAD: f64 = 2.0 * TAU;

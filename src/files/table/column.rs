@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::mechanics::machine::Machine;
-use crate::settings::range::{quote_clipped, shortened};
+use stillbase_mechanics::machine::Machine;
+use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Names of units, each with its value in SI units.
 pub(super) type UnitNames = &'static [(&'static str, f64)];

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::study::advice::{Advice, Remedy};
+use stillbase_study::advice::{Advice, Remedy};
 
 /// The reason why text is not the expected table, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]

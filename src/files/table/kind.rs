@@ -7,10 +7,10 @@ use super::error::TableError;
 use super::measured::{feels, motions_or};
 use super::reader::TableReader;
 use super::samples::{SampleTable, samples_or};
-use crate::files::text::read;
-use crate::mechanics::machine::Machine;
-use crate::settings::text::MAX_TEXT_BYTES;
-use crate::study::trim::MeasuredMotion;
+use crate::text::read;
+use stillbase_mechanics::machine::Machine;
+use stillbase_settings::text::MAX_TEXT_BYTES;
+use stillbase_study::trim::MeasuredMotion;
 
 /// Content of a table.
 #[derive(Debug)]

@@ -4,11 +4,11 @@ use super::angle::{GAP_FACTOR, continuous_angle};
 use super::column::{ANGLE, DEGREE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
 use super::reader::TableReader;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::settings::number::{ShortNumber, counted};
-use crate::settings::range::quote_clipped;
-use crate::study::trim::MeasuredMotion;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{PerDrive, Vector};
+use stillbase_settings::number::{ShortNumber, counted};
+use stillbase_settings::range::quote_clipped;
+use stillbase_study::trim::MeasuredMotion;
 
 /// Maximum number of rows of a table.
 pub const MAX_ROWS: usize = 100_000;

@@ -2,7 +2,7 @@
 
 use super::column::TableColumn;
 use super::error::TableError;
-use crate::settings::range::quote_clipped;
+use stillbase_settings::range::quote_clipped;
 
 /// Largest magnitude of a number, in SI units.
 const MAX_NUMBER: f64 = 1e11;

@@ -4,12 +4,12 @@ use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
 use super::column::{ANGLE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
 use super::reader::TableReader;
-use crate::mechanics::machine::Machine;
-use crate::planning::curves::given::MAX_SAMPLES;
-use crate::planning::curves::spline::MIN_SPLINE_SAMPLES;
-use crate::planning::curves::{Coordinates, Samples};
-use crate::settings::number::{ShortNumber, counted};
-use crate::study::advice::{Advice, Remedy};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::curves::given::MAX_SAMPLES;
+use stillbase_planning::curves::spline::MIN_SPLINE_SAMPLES;
+use stillbase_planning::curves::{Coordinates, Samples};
+use stillbase_settings::number::{ShortNumber, counted};
+use stillbase_study::advice::{Advice, Remedy};
 
 const LENGTH: UnitNames = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 

@@ -1,8 +1,8 @@
 //! [`Breakdown`]: every condition of (7) and (8), with the contribution of each body of a machine.
 
 use super::condition::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::machine::{Inertia, Machine};
+use crate::planar::{MAX_DRIVES, Vector};
 
 /// A part of a machine that has a mass of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -7,9 +7,9 @@
 //! | m a_k | contribution of the mass to g_k | complex, kg m |
 //! | m conj(a_k) a_l | contribution of the mass to C_kl | complex, kg m² |
 
-use crate::mechanics::machine::{Inertia, Machine, ResolvedLink};
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::settings::number::subscript;
+use crate::machine::{Inertia, Machine, ResolvedLink};
+use crate::planar::{MAX_DRIVES, Vector};
+use stillbase_settings::number::subscript;
 
 /// A quantity that must vanish for a machine to be balanced and invariant. Drives are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,7 +60,7 @@ impl Condition {
     }
 
     /// Returns the tolerance of the residual: up to this it is treated as zero.
-    pub(crate) fn nothing(self, inertia: &Inertia) -> f64 {
+    pub fn nothing(self, inertia: &Inertia) -> f64 {
         match self {
             Self::Force(_) => inertia.least_first_moment(),
             Self::Coupling(..) => inertia.least_coupling(),

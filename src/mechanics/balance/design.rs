@@ -18,9 +18,9 @@ use thiserror::Error;
 
 use super::condition::Condition;
 use super::plane::{LinearEquation, SolutionSpace};
-use crate::mechanics::machine::{Inertia, Machine, MachineError};
-use crate::settings::number::counted;
-use crate::settings::word::{Choice, words};
+use crate::machine::{Inertia, Machine, MachineError};
+use stillbase_settings::number::counted;
+use stillbase_settings::word::{Choice, words};
 
 words! {
     /// Penalties by name, for machines of nine links.

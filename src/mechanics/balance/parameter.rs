@@ -1,8 +1,8 @@
 //! [`Parameter`]: a number of a machine on which its balance depends and that may be changed to balance it.
 
 use super::breakdown::Body;
-use crate::mechanics::machine::{Machine, MachineSpec, ranges};
-use crate::settings::range::Range;
+use crate::machine::{Machine, MachineSpec, ranges};
+use stillbase_settings::range::Range;
 
 /// A quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -96,7 +96,7 @@ impl Parameter {
 
     /// Sets its value, kg or m. The disc of a counterweight keeps its thickness, so its radius follows its mass. The
     /// inertia of a link about its own centre of mass stays.
-    pub(crate) fn set(self, spec: &mut MachineSpec, value: f64) {
+    pub fn set(self, spec: &mut MachineSpec, value: f64) {
         match (self.body, self.quantity) {
             (Body::Link(j), BodyQuantity::Mass) => spec.links[j].mass = value,
             (Body::Link(j), BodyQuantity::Along) => spec.links[j].com = value,

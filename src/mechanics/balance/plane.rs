@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::{extended, least_squares};
 use super::distance::nearest;
-use crate::convex::LinearRow;
+use stillbase_convex::LinearRow;
 
 /// Relative pivot tolerance: a row whose independent part is at most this fraction of it is treated as dependent.
 const RANK_TOLERANCE: f64 = 1e-11;

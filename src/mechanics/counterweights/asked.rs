@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::refusal::CounterweightError;
-use crate::mechanics::machine::{Machine, ranges};
-use crate::settings::range::Range;
+use crate::machine::{Machine, ranges};
+use stillbase_settings::range::Range;
 
 /// Bounds of position and mass of a counterweight on a link.
 #[derive(Clone, Copy, Debug, PartialEq)]

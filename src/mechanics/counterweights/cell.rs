@@ -4,7 +4,7 @@
 //! s²/w ≤ (a + b) s − a b w. For w from a to b, w² ≤ (a + b) w − a b. Both are equalities at a and at b.
 
 use super::asked::{CounterweightSpec, Sites};
-use crate::convex::{LinearRow, Program};
+use stillbase_convex::{LinearRow, Program};
 
 /// Range of mass, kg, and of position, m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use super::asked::{CounterweightSpec, Objective};
 use super::place::{Placed, place_weights};
 use super::refusal::CounterweightError;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::query::{Portion, ProgressCallback, Query, answer_now};
+use crate::machine::{Inertia, Machine};
+use stillbase_query::{Portion, ProgressCallback, Query, answer_now};
 
 /// Points of the Pareto front, from the least added mass to the least inertia: no machine is better than another in
 /// both.

@@ -2,9 +2,9 @@
 
 use super::asked::{CounterweightSpec, Sites};
 use super::refusal::CounterweightError;
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
+use crate::balance::Condition;
+use crate::machine::{Inertia, Machine};
+use crate::planar::Vector;
 
 /// The residual of one condition of (7) or (8).
 pub(super) struct ConditionResidual {

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine, MachineError};
+use crate::balance::Condition;
+use crate::machine::{Inertia, Machine, MachineError};
 
 /// Largest residuals of (7) and of (8) with one payload.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -7,9 +7,9 @@ use super::question::CounterweightTask;
 use super::refusal::CounterweightError;
 use super::relief::sufficient_reliefs;
 use super::way::BalanceGoal;
-use crate::convex::{NoOptimum, Optimum};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
+use crate::machine::{Inertia, Machine};
+use crate::planar::Vector;
+use stillbase_convex::{NoOptimum, Optimum};
 
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 use super::asked::CounterweightSpec;
 use super::left::{ConditionResidual, conditions};
 use super::refusal::CounterweightError;
-use crate::mechanics::balance::{LinearEquation, SolutionSpace};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
+use crate::balance::{LinearEquation, SolutionSpace};
+use crate::machine::{Inertia, Machine};
+use crate::planar::Vector;
 
 /// A machine without counterweights, except fixed ones, and without the rotors that have a free parameter.
 pub(super) struct CounterweightProblem {

@@ -6,9 +6,9 @@ use super::problem::CounterweightProblem;
 use super::refusal::{Bound, BoundKind};
 use super::unknowns::{AffineForm, UnknownIndices};
 use super::way::{BalanceGoal, SearchNode};
-use crate::convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::Machine;
+use crate::balance::Condition;
+use crate::machine::Machine;
+use stillbase_convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
 
 /// Relative and absolute amount by which the first of two objectives may exceed its minimum while the second is
 /// minimised: the solver's rounding.

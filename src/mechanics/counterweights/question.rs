@@ -5,9 +5,9 @@ use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::search::search;
 use super::way::{BalanceGoal, SearchNode};
-use crate::convex::{NoOptimum, Optimum};
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::Vector;
+use crate::machine::Machine;
+use crate::planar::Vector;
+use stillbase_convex::{NoOptimum, Optimum};
 
 /// One request for counterweights on a machine, with the problem derived from it.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::mechanics::machine::MachineError;
+use crate::machine::MachineError;
 
 /// A bound that may contradict others.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! x ≤ b − c − κ √w. With s = w x these are s ≥ (a + c) w + κ w^1.5 and s ≤ (b − c) w − κ w^1.5, both convex.
 
 use super::asked::CounterweightSpec;
-use crate::convex::{LinearRow, Program};
+use stillbase_convex::{LinearRow, Program};
 
 /// Interval between neighbouring pins, or beyond the outermost, m from the root; infinite where there is no pin.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use super::refusal::CounterweightError;
 use super::room::FreeSpan;
 use super::solution::MIN_MASS_KG;
 use super::way::SearchNode;
-use crate::convex::{NoOptimum, Optimum};
-use crate::mechanics::machine::Machine;
+use crate::machine::Machine;
+use stillbase_convex::{NoOptimum, Optimum};
 
 /// Maximum number of subproblems from choices between pins.
 const MAX_CHOICES: usize = 4000;

@@ -6,8 +6,8 @@ use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::unknowns::{AffineForm, UnknownIndices};
 use super::way::{BalanceGoal, SearchNode};
-use crate::mechanics::balance::{LinearEquation, SolutionSpace};
-use crate::mechanics::machine::{Counterweight, Machine, Rotor};
+use crate::balance::{LinearEquation, SolutionSpace};
+use crate::machine::{Counterweight, Machine, Rotor};
 
 /// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
 type Found = Vec<(Sites, [f64; 2])>;

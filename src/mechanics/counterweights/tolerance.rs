@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::Machine;
+use crate::balance::Condition;
+use crate::machine::Machine;
 
 /// Tolerances of a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::asked::{CounterweightSpec, RotorFreedom};
 use super::problem::CounterweightProblem;
-use crate::mechanics::machine::Machine;
+use crate::machine::Machine;
 
 /// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
 /// free rotors, if the inertia counts; two for each free rotor; |D_k| of each drive, if it counts; and the greatest

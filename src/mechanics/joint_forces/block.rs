@@ -2,7 +2,7 @@
 
 use super::pins::{FLAT_SINE, MAX_PINS};
 use super::tree::{CutClosure, TreeLink, lever};
-use crate::mechanics::planar::{UnitVectors, Vector};
+use crate::planar::{UnitVectors, Vector};
 
 /// Maximum number of closures solved together: each closure comes with two undriven links, so with three pins.
 pub(super) const MAX_BLOCK_CLOSURES: usize = MAX_PINS / 3;

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::pins::MAX_PINS;
-use crate::settings::number::counted;
+use stillbase_settings::number::counted;
 
 /// Why statics does not determine the forces in a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -4,8 +4,8 @@ use super::block::together;
 use super::joints::Joints;
 use super::pins::{FLAT_SINE, MAX_PINS};
 use super::tree::{SolveStep, Stator};
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, cross};
+use crate::dynamics::Surroundings;
+use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, cross};
 
 /// Forces of all pins, and torques of the motors, at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl PinForces {
 
     /// Returns the torques of the motors less the friction of the drives' bearings, N m, from the moments that the
     /// driven links need. `None` at a change point; without pin friction
-    /// [`inverse`](crate::mechanics::dynamics::inverse) gives them there.
+    /// [`inverse`](crate::dynamics::inverse) gives them there.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }

@@ -1,9 +1,9 @@
 //! The pin forces that a frame keeps, and their peaks and means over a run.
 
 use super::{AxialMoments, Joints, PinForces, TiltMoment};
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{PerDrive, UnitVectors, Vector};
+use crate::dynamics::Surroundings;
+use crate::machine::Machine;
+use crate::planar::{PerDrive, UnitVectors, Vector};
 
 /// Number of pins whose forces a frame keeps. A session holds many frames, so a frame does not keep every pin; the
 /// largest force over all pins is kept in any case.

@@ -5,7 +5,7 @@ use super::pins::{MAX_PINS, Pin, pins};
 use super::structure;
 use super::transmission::{self, Parallelogram};
 use super::tree::{CutClosure, SolveStep, Stator, TreeLink};
-use crate::mechanics::machine::Machine;
+use crate::machine::Machine;
 
 /// The pins of a machine, with all constants of the machine that their forces depend on.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! The pins of a machine with their names. Statics need not determine their forces.
 
-use crate::mechanics::machine::{Chain, Machine};
+use crate::machine::{Chain, Machine};
 
 /// Maximum number of pins of a machine whose forces are computed.
 pub const MAX_PINS: usize = 32;

@@ -4,8 +4,8 @@ use super::block::together;
 use super::error::JointsError;
 use super::pins::pins;
 use super::tree::{CutClosure, SolveStep, Stator, TreeLink, lever};
-use crate::mechanics::machine::{CLOSURE_TOLERANCE, Inertia, Machine};
-use crate::mechanics::planar::{UnitVectors, Vector, unit};
+use crate::machine::{CLOSURE_TOLERANCE, Inertia, Machine};
+use crate::planar::{UnitVectors, Vector, unit};
 
 /// Returns the machine's links as a tree, parents first; the end link includes the payload.
 pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {

@@ -21,9 +21,9 @@
 //! Products of inertia I_xz, I_yz of each link about its own CM are zero: each link is symmetric about a plane normal
 //! to the drives' axis. With all z_j = 0, the default, n_t = 0.
 
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
+use crate::dynamics::Surroundings;
+use crate::machine::Machine;
+use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
 /// Constants of a machine from which its tilting moment follows.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 
 use super::pins::Pin;
 use super::tree::{CutClosure, TreeLink};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{PerDrive, UnitVectors, cross};
+use crate::machine::Inertia;
+use crate::planar::{PerDrive, UnitVectors, cross};
 
 /// A loop of two drives.
 #[derive(Clone, Debug, PartialEq)]

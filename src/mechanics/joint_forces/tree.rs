@@ -1,7 +1,7 @@
 //! The tree of links that remains when every closure is cut, and the action of closure forces on it.
 
-use crate::mechanics::machine::RotorCoupling;
-use crate::mechanics::planar::Vector;
+use crate::machine::RotorCoupling;
+use crate::planar::Vector;
 
 /// A link of the tree with the payload that it holds.
 #[derive(Clone, Debug)]

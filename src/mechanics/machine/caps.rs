@@ -2,7 +2,7 @@
 
 use super::error::{KeyPath, MachineError};
 use super::spec::MachineSpec;
-use crate::mechanics::planar::MAX_DRIVES;
+use crate::planar::MAX_DRIVES;
 
 /// Maximum number of links.
 pub const MAX_LINKS: usize = 200;

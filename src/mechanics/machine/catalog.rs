@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::error::MachineError;
 use super::file::{FileError, parse};
 use super::model::Machine;
-use crate::settings::range::shortened;
+use stillbase_settings::range::shortened;
 
 static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
     [

@@ -1,6 +1,6 @@
 //! Points of a machine as sums of unit vectors.
 
-use crate::mechanics::planar::{MAX_DRIVES, UnitVectors, Vector};
+use crate::planar::{MAX_DRIVES, UnitVectors, Vector};
 
 /// A point as a sum of unit vectors: weight w_k, m, on e(q_k).
 pub type Chain = [f64; MAX_DRIVES];

@@ -9,10 +9,10 @@ use super::motors::Motors;
 use super::numbers::check_numbers;
 use super::ranges::{LENGTH, PLACE, within};
 use super::spec::{Angle, Attach, Closure, Length, Link, LinkPoint, MachineSpec, PlaceOnLink, Rotor};
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::ShortNumber;
-use crate::settings::range::{quote_clipped, shortened};
-use crate::settings::text::control_character;
+use crate::planar::MAX_DRIVES;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::{quote_clipped, shortened};
+use stillbase_settings::text::control_character;
 
 /// Tolerance of the distance between the two points of a closure, m.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;

@@ -5,8 +5,8 @@ use std::fmt;
 use thiserror::Error;
 
 use super::spec::MachineSpec;
-use crate::settings::number::ShortNumber;
-use crate::settings::range::{Requirement, quote_clipped};
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::{Requirement, quote_clipped};
 
 /// A place in a machine file: a path of keys and positions. It is shown as `--set` takes it, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

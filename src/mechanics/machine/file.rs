@@ -6,8 +6,8 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::{KeyPath, KeyStep, Machine, MachineError, MachineSpec};
-use crate::settings::range::shortened;
-use crate::settings::text::MAX_TEXT_BYTES;
+use stillbase_settings::range::shortened;
+use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Error of a machine file, with its place.
 #[derive(Debug, Error)]
@@ -64,12 +64,12 @@ pub fn to_toml(machine: &Machine) -> String {
 }
 
 /// Returns the line of a byte offset, counted from 1.
-pub(crate) fn line_of(text: &str, byte: usize) -> usize {
+pub fn line_of(text: &str, byte: usize) -> usize {
     text.as_bytes()[..byte.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
 }
 
 /// Returns the line of the innermost step of a place that exists in the text.
-pub(crate) fn line_of_place(text: &str, place: &KeyPath) -> Option<usize> {
+pub fn line_of_place(text: &str, place: &KeyPath) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut span = None;
     let mut at: Option<&DeValue> = None;

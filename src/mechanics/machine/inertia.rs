@@ -13,29 +13,36 @@
 //! | D | angular momentum about B is D q̇: C_kk + J_k + J r_k where all C_kl vanish | kg m² |
 
 use super::{Chain, Machine, Motors};
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector};
+use crate::planar::{MAX_DRIVES, PerDrive, Vector};
 
 /// The constants g, C, J of a machine with its payload and its motors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inertia {
-    pub(crate) motors: Motors,
-    pub(crate) drives: usize,
-    pub(crate) mass: f64,
-    pub(crate) g: [Vector; MAX_DRIVES],
-    pub(crate) c: [[Vector; MAX_DRIVES]; MAX_DRIVES],
+    /// The motors that drive it.
+    pub motors: Motors,
+    /// Number of drives n.
+    pub drives: usize,
+    /// Total mass with the payload, kg.
+    pub mass: f64,
+    /// First moments g_k of the drives, kg m.
+    pub g: [Vector; MAX_DRIVES],
+    /// Couplings C_kl of the drives, kg m²; the real part of C_kk is a moment of inertia.
+    pub c: [[Vector; MAX_DRIVES]; MAX_DRIVES],
     /// J_k and the contribution J r_k² of the rotors to H_kk, kg m².
-    pub(crate) spin: [f64; MAX_DRIVES],
+    pub spin: [f64; MAX_DRIVES],
     /// Contribution J r_k r_l of the rotors to H_kl, k ≠ l, kg m².
-    pub(crate) gears: [[f64; MAX_DRIVES]; MAX_DRIVES],
+    pub gears: [[f64; MAX_DRIVES]; MAX_DRIVES],
     /// D_k − Σ_l H_lk, kg m²: J r_k (1 − Σ_l r_l) of the rotors, from the reaction of gears on stators on the base.
-    pub(crate) taken_up: [f64; MAX_DRIVES],
-    pub(crate) rotors: [RotorCoupling; MAX_DRIVES],
-    pub(crate) end_effector: Chain,
+    pub taken_up: [f64; MAX_DRIVES],
+    /// The rotors, one a drive.
+    pub rotors: [RotorCoupling; MAX_DRIVES],
+    /// Coefficients of the end-effector position, m.
+    pub end_effector: Chain,
 }
 
 /// A rotor, with the ratios of its rate to those of the drives and, after these, of a base that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct RotorCoupling {
+pub struct RotorCoupling {
     /// Inertia J about its axis, kg m².
     pub inertia: f64,
     /// Ratios r: the rotor turns at r·q̇.
@@ -61,7 +68,7 @@ impl Inertia {
     }
 
     /// Returns the constants of a machine without mass, to which bodies are added.
-    pub(crate) fn nothing(drives: usize, motors: Motors, end_effector: Chain) -> Self {
+    pub fn nothing(drives: usize, motors: Motors, end_effector: Chain) -> Self {
         let zero = Vector::new(0.0, 0.0);
         Self {
             drives,
@@ -102,7 +109,7 @@ impl Inertia {
 
     /// Adds the rotors' inertia for a base that turns, as one more drive after the others. The ratios of each rotor
     /// then sum to 1, so that the columns of the mass matrix sum to D.
-    pub(crate) fn turn_base(&mut self) {
+    pub fn turn_base(&mut self) {
         let n = self.drives;
         self.taken_up = [0.0; MAX_DRIVES];
         for i in 0..n {
@@ -122,7 +129,7 @@ impl Inertia {
 
     /// Adds a body that follows a drive, with its mass, kg, its inertia about its CM, kg m², and its CM Σ_k a_k e^{i
     /// q_k}.
-    pub(crate) fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
+    pub fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
         self.mass += mass;
         self.spin[drive] += inertia;
         for k in 0..self.drives {
@@ -213,7 +220,7 @@ impl Inertia {
 
     /// Returns the angular momentum of the rotors, kg m²/s, less the part in the mass matrix of the drives alone. `qd`
     /// holds the rates of the drives and, after these, of a base that turns.
-    pub(crate) fn of_base(&self, qd: &[f64]) -> f64 {
+    pub fn of_base(&self, qd: &[f64]) -> f64 {
         let of = |t: &RotorCoupling| {
             let turn = |n: usize| t.rates.iter().zip(&qd[..n]).map(|(r, qd)| r * qd).sum::<f64>();
             let own: f64 = t.rates[..self.drives].iter().sum();

@@ -10,8 +10,8 @@ use super::ranges::{
     TORQUE_LIMIT, within,
 };
 use super::spec::MachineSpec;
-use crate::settings::change::DEFAULT_WORD;
-use crate::settings::key::{Key, KeyType};
+use stillbase_settings::change::DEFAULT_WORD;
+use stillbase_settings::key::{Key, KeyType};
 
 /// A key, with access to its value.
 pub(super) struct KeyRow {

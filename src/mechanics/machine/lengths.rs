@@ -3,7 +3,7 @@
 use super::error::MachineError;
 use super::model::Machine;
 use super::spec::{Length, MachineSpec};
-use crate::settings::range::{quote_clipped, shortened};
+use stillbase_settings::range::{quote_clipped, shortened};
 
 impl MachineSpec {
     /// Returns every length of a machine, m: named lengths, and under the link's name those that links do not share.

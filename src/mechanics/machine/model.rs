@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::Chain;
 use super::motors::Motors;
 use super::spec::{Link, MachineSpec};
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::planar::{MAX_DRIVES, Vector};
 
 /// A valid machine. Copies share their data, so that copying is cheap, and so is comparing copies.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@
 //! | m | torques of the motors, m = A⁻ᵀ τ; power is m · A q̇ = τ · q̇ | N m |
 //! | τ | generalised torques of the absolute angles, as in (4) | N m |
 
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
+use crate::planar::{MAX_DRIVES, PerDrive};
 
 /// For each motor, the drive on whose links its stator sits. If all sit on the base, A is the identity and is skipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl Motors {
 
     /// Replaces x by A x; elements beyond the drives stay unchanged.
     #[inline(always)]
-    pub(crate) fn turn(&self, x: &mut [f64]) {
+    pub fn turn(&self, x: &mut [f64]) {
         for (k, on) in self.carried().rev() {
             x[k] -= x[on];
         }
@@ -75,7 +75,7 @@ impl Motors {
 
     /// Replaces x by A⁻¹ x: angles, rates or accelerations of the drives from those of the motors.
     #[inline(always)]
-    pub(crate) fn drive(&self, x: &mut [f64]) {
+    pub fn drive(&self, x: &mut [f64]) {
         for (k, on) in self.carried() {
             x[k] += x[on];
         }
@@ -92,7 +92,7 @@ impl Motors {
 
     /// Replaces τ by A⁻ᵀ τ.
     #[inline(always)]
-    pub(crate) fn give(&self, torque: &mut [f64]) {
+    pub fn give(&self, torque: &mut [f64]) {
         for (k, on) in self.carried().rev() {
             torque[on] += torque[k];
         }

@@ -4,7 +4,7 @@ use super::error::{KeyPath, MachineError};
 use super::keys::rows_of;
 use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
-use crate::settings::range::Requirement;
+use stillbase_settings::range::Requirement;
 
 /// Checks every number of a specification; returns an error for the first that is not finite or out of range.
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {

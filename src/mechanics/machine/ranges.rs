@@ -1,7 +1,7 @@
 //! Ranges of the numbers of a machine.
 
 use super::error::{KeyPath, MachineError};
-use crate::settings::range::{Range, Requirement};
+use stillbase_settings::range::{Range, Requirement};
 
 /// Largest magnitude of a number of a machine, in SI units: products of larger numbers could overflow.
 const MAX_NUMBER: f64 = 1e6;
@@ -9,16 +9,16 @@ const MAX_NUMBER: f64 = 1e6;
 pub(super) const MIN_POSITIVE: f64 = 1e-9;
 
 pub(super) const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");
-pub(crate) const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
-pub(crate) const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
+pub const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
+pub const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
 /// The mass of a link may be nearly zero, but not zero.
-pub(crate) const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
-pub(crate) const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
+pub const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
+pub const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
 pub(super) const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
-pub(crate) const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
+pub const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
 pub(super) const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
 /// Gear ratios are limited either way; a ratio of 0 is refused by its own check.
-pub(crate) const RATIO: Range = Range::either_way(1e4, "");
+pub const RATIO: Range = Range::either_way(1e4, "");
 pub(super) const SPEED_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s");
 pub(super) const ACCELERATION_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s²");
 pub(super) const JERK_LIMIT: Range = Range::new(MIN_POSITIVE, 1e9, "rad/s³");

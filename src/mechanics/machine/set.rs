@@ -5,8 +5,8 @@ use toml::{Table, Value};
 use super::error::quoted;
 use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
 use super::{KeyPath, Machine, MachineError, MachineSpec};
-use crate::settings::change::{self, DEFAULT_WORD};
-use crate::settings::key::{self, Key};
+use stillbase_settings::change::{self, DEFAULT_WORD};
+use stillbase_settings::key::{self, Key};
 
 /// The tables and keys of a scenario that set its machine.
 pub const MACHINE_TABLES: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use serde::{Deserialize, Serialize};
 
 use super::{Vector, unit};
-use crate::settings::number::counted;
+use stillbase_settings::number::counted;
 
 /// Maximum number of drives of a machine.
 pub const MAX_DRIVES: usize = 8;
@@ -22,7 +22,7 @@ impl PerDrive {
     /// Zero for each of `n` drives.
     ///
     /// # Panics
-    /// If `n` exceeds [`MAX_DRIVES`]; a [`Machine`](crate::mechanics::machine::Machine) never does.
+    /// If `n` exceeds [`MAX_DRIVES`]; a [`Machine`](crate::machine::Machine) never does.
     #[inline]
     pub fn zeros(n: usize) -> Self {
         assert!(n <= MAX_DRIVES, "at most {MAX_DRIVES} drives");
@@ -115,21 +115,21 @@ impl PerDrive {
 impl PerDrive {
     /// Returns the first N elements of the padded array.
     #[inline]
-    pub(crate) fn array<const N: usize>(&self) -> &[f64; N] {
+    pub fn array<const N: usize>(&self) -> &[f64; N] {
         const { assert!(N <= MAX_DRIVES) }
         &self.values.as_chunks().0[0]
     }
 
     /// Returns the first N elements of the padded array, mutable.
     #[inline]
-    pub(crate) fn array_mut<const N: usize>(&mut self) -> &mut [f64; N] {
+    pub fn array_mut<const N: usize>(&mut self) -> &mut [f64; N] {
         const { assert!(N <= MAX_DRIVES) }
         &mut self.values.as_chunks_mut().0[0]
     }
 
     /// Makes one from the first `n` elements of an array, whose other elements are zero.
     #[inline]
-    pub(crate) fn of_array<const N: usize>(n: usize, values: [f64; N]) -> Self {
+    pub fn of_array<const N: usize>(n: usize, values: [f64; N]) -> Self {
         Self { len: n, ..Self::from(values) }
     }
 }

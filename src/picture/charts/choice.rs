@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::{Chart, EMPTY_CHART, charts};
-use crate::session::scenario::Scenario;
-use crate::simulation::signals::Signal;
+use stillbase_session::scenario::Scenario;
+use stillbase_simulation::signals::Signal;
 
 /// Maximum number of plots that the user adds, and of curves added to one plot.
 const MAX_ADDED: usize = 24;

@@ -1,8 +1,8 @@
 //! The curves of a plot in a time interval ([`PlotLines`]), recomputed when samples, interval or choice change.
 
 use super::choice::Plot;
-use crate::study::samples::SignalSamples;
-use crate::study::series::Statistics;
+use stillbase_study::samples::SignalSamples;
+use stillbase_study::series::Statistics;
 
 /// A curve's points, in the units of its plot.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,10 @@ use super::choice::Plot;
 use super::colour;
 use super::drawn::PlotLines;
 use super::thin::simplify_line;
-use crate::picture::numbers::{at_step, round_ticks, ticks};
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::simulation::frame::{Frame, Peaks};
+use crate::numbers::{at_step, round_ticks, ticks};
+use crate::scene::Rgba;
+use crate::scene::palette::{Palette, faded};
+use stillbase_simulation::frame::{Frame, Peaks};
 
 /// A graphic item; coordinates and lengths in points.
 #[derive(Clone, Debug, PartialEq)]

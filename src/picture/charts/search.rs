@@ -1,6 +1,6 @@
 //! Text search for signals by parts of a name, symbol, path or unit.
 
-use crate::simulation::signals::Signal;
+use stillbase_simulation::signals::Signal;
 
 /// Returns the signals that match every word of `text`, best matches first; all signals if `text` is empty.
 pub fn search<'a>(signals: &'a [Signal], text: &str) -> Vec<&'a Signal> {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::figure::{Figure, FigureItem, FigureText};
-use crate::picture::scene::Rgba;
+use crate::scene::Rgba;
 
 /// Returns the text of the SVG file.
 pub fn svg(figure: &Figure) -> String {

@@ -4,7 +4,7 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
 use super::{bold, colour, plain};
-use crate::picture::charts::figure::{Axes, Figure, FigureItem};
+use crate::charts::figure::{Axes, Figure, FigureItem};
 
 /// Paints items; their coordinates are relative to `origin`.
 pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem]) {

@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 use egui::{Painter, Pos2, Rect, Stroke};
 
 use super::colour;
-use crate::mechanics::machine::{Machine, place_of};
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::picture::scene::linkage::{FlatLink, LinkageModel};
-use crate::picture::scene::palette::{Palette, mix};
+use crate::scene::linkage::{FlatLink, LinkageModel};
+use crate::scene::palette::{Palette, mix};
+use stillbase_mechanics::machine::{Machine, place_of};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Position of each relative angle between its limits, from 0 to 1. At 0.5, arms with symmetric limits would be
 /// straight.

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::{SceneViewport, colour, paint, plain};
-use crate::picture::scene::camera::Camera;
-use crate::picture::scene::palette::faded;
-use crate::picture::scene::{Anchor, Label, Scene};
+use crate::scene::camera::Camera;
+use crate::scene::palette::faded;
+use crate::scene::{Anchor, Label, Scene};
 
 /// Maximum vertical shift that avoids an overlap, points.
 const MAX_SHIFT_PT: f32 = 36.0;

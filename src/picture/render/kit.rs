@@ -8,7 +8,7 @@ use wgpu::util::StagingBelt;
 use super::quality::Quality;
 use super::shader::twin;
 use super::view::View;
-use crate::picture::scene::Rgba;
+use crate::scene::Rgba;
 
 /// Colours are sRGB values, which are written and blended without conversion.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

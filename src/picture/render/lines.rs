@@ -3,7 +3,7 @@
 use super::kit::{List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
-use crate::picture::scene::{IN_PLACE, Polyline, Scene, place};
+use crate::scene::{IN_PLACE, Polyline, Scene, place};
 
 twin! {
     /// One segment from `a` to `b`, with the vertices before and after it.

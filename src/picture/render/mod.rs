@@ -23,7 +23,7 @@ pub use quality::Quality;
 pub use shader::SharedLayout;
 pub use view::View;
 
-use crate::picture::scene::Scene;
+use crate::scene::Scene;
 use kit::Upload;
 use wgpu::util::StagingBelt;
 

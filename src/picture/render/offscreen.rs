@@ -3,7 +3,7 @@
 use std::io;
 
 use super::{Renderer, View};
-use crate::picture::scene::Scene;
+use crate::scene::Scene;
 
 /// Reasons why no GPU adapter can be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -21,7 +21,7 @@ macro_rules! twin {
         #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
         pub(super) struct $name { $(pub(super) $field: $type,)* }
         impl $name {
-            pub(super) const TWIN: $crate::picture::render::shader::SharedLayout = $crate::picture::render::shader::SharedLayout {
+            pub(super) const TWIN: $crate::render::shader::SharedLayout = $crate::render::shader::SharedLayout {
                 name: stringify!($name),
                 size: size_of::<Self>(),
                 fields: &[$((stringify!($field), std::mem::offset_of!(Self, $field))),*],
@@ -34,7 +34,7 @@ pub(crate) use twin;
 /// Expands to the name and the text at build time of `shaders/NAME.wgsl`.
 macro_rules! embedded {
     ($name:literal) => {
-        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")))
+        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/", $name, ".wgsl")))
     };
 }
 pub(crate) use embedded;
@@ -106,7 +106,7 @@ mod watch {
 
     impl ShaderWatch {
         pub(super) fn new(name: &'static str, text: &str) -> Self {
-            let path = [env!("CARGO_MANIFEST_DIR"), "shaders", &format!("{name}.wgsl")].iter().collect();
+            let path = [env!("CARGO_MANIFEST_DIR"), "../../shaders", &format!("{name}.wgsl")].iter().collect();
             Self { name, path, text: text.to_owned(), modified: None, looked: None }
         }
 

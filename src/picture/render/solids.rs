@@ -8,7 +8,7 @@ use bytemuck::Zeroable as _;
 
 use super::kit::{ENTRIES, List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
-use crate::picture::scene::{MeshSet, Scene};
+use crate::scene::{MeshSet, Scene};
 
 twin! {
     /// A vertex of a mesh, padded as WGSL lays it out.

@@ -2,7 +2,7 @@
 
 use super::kit::{ENTRIES, List, Recipe, SharedBindings, Upload};
 use super::shader::{Shader, embedded, twin};
-use crate::picture::scene::{self, Scene};
+use crate::scene::{self, Scene};
 use bytemuck::Zeroable as _;
 use wgpu::util::DeviceExt as _;
 

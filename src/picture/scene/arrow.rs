@@ -1,7 +1,7 @@
 //! Arrow heads.
 
 use super::point;
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Returns the polyline of an arrow head with its tip at `at`; `along` is the unit vector of its direction, `size` the
 /// length of its sides and `z` its height, m.

@@ -2,7 +2,7 @@
 
 use super::palette::{Palette, faded};
 use super::{Anchor, ItemChanges, Label, Polyline, Rgba, Scene};
-use crate::picture::numbers::signed;
+use crate::numbers::signed;
 
 /// One axis of the box: its quantity and interval.
 #[derive(Clone, Debug, PartialEq)]

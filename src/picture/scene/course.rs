@@ -1,10 +1,10 @@
 //! The planned motion for drawing: sampling of its path, the points of its task, and the position of the target.
 
-use crate::mechanics::planar::Vector;
-use crate::planning::Motion;
-use crate::session::Run;
-use crate::session::scenario::PathShape;
-use crate::simulation::frame::{Frame, Reach};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::Motion;
+use stillbase_session::Run;
+use stillbase_session::scenario::PathShape;
+use stillbase_simulation::frame::{Frame, Reach};
 
 /// Minimum number of intervals in which a path is drawn.
 const MIN_INTERVALS: usize = 256;

@@ -2,7 +2,7 @@
 
 use super::palette::{Palette, faded, mix};
 use super::{Measure, Rgba};
-use crate::planning::reactionless::PlaneMap;
+use stillbase_planning::reactionless::PlaneMap;
 
 /// Intervals per side of the initial search grid.
 const GRID_INTERVALS: i32 = 24;
@@ -73,7 +73,7 @@ impl Measure {
 fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
     let [l1, l2] = map.limits();
     let at = |i: i32, j: i32| {
-        let share = |l: crate::planning::reactionless::AngleLimit, i: i32| {
+        let share = |l: stillbase_planning::reactionless::AngleLimit, i: i32| {
             l.min + f64::from(i) / f64::from(GRID_INTERVALS) * (l.max - l.min)
         };
         [share(l1, i), share(l2, j)]

@@ -9,9 +9,9 @@ use super::palette::{Palette, faded, mix, palette};
 use super::pick::{DragAction, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
 use super::{Anchor, Label, Marker, Polyline, Scene, point};
-use crate::mechanics::machine::{Length, Machine};
-use crate::mechanics::planar::{UnitVectors, Vector, unit};
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::machine::{Length, Machine};
+use stillbase_mechanics::planar::{UnitVectors, Vector, unit};
+use stillbase_simulation::frame::Frame;
 
 /// Half the size of the cross at a centre of mass, as a fraction of the reach.
 const CROSS_HALF_SIZE: f64 = 0.0105;

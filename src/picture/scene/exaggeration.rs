@@ -1,9 +1,9 @@
 //! Exaggeration of the motion of a base, so that small motions are visible.
 
-use crate::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
-use crate::picture::numbers::round_up;
-use crate::picture::scene::course::target_handle;
-use crate::simulation::frame::Frame;
+use crate::numbers::round_up;
+use crate::scene::course::target_handle;
+use stillbase_mechanics::planar::{DriveAngles, Pose2, Vector, unit};
+use stillbase_simulation::frame::Frame;
 
 /// Height of a picture of the whole machine, as a multiple of its reach.
 const PICTURE_HEIGHT: f64 = 1.64;

@@ -3,8 +3,8 @@
 use super::linkage::LinkageModel;
 use super::palette::{Palette, faded};
 use super::{Polyline, Scene, Strips, point};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::round_up;
+use crate::numbers::round_up;
+use stillbase_mechanics::planar::Vector;
 
 /// Maximum number of squares over the reach of a machine.
 const MAX_SQUARES: f64 = 15.0;

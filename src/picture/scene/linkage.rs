@@ -7,8 +7,8 @@ use std::sync::Arc;
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
 use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
-use crate::mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
-use crate::mechanics::planar::{Pose2, UnitVectors, Vector, unit};
+use stillbase_mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
+use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 /// The meshes of a machine, and their placement in a pose.
 #[derive(Clone, Debug)]

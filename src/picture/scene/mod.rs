@@ -32,7 +32,7 @@ pub mod wall;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::planar::Vector;
 
 /// sRGB red, green, blue and straight alpha, each 0..1.
 pub type Rgba = [f32; 4];

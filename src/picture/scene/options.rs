@@ -6,9 +6,9 @@ use super::Measure;
 use super::exaggeration::Exaggeration;
 use super::palette::Theme;
 use super::reaction::Scale;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::session::Refusal;
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_session::Refusal;
+use stillbase_simulation::frame::Frame;
 
 /// Options of the view.
 #[derive(Clone, Debug, PartialEq)]

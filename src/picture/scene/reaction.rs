@@ -7,9 +7,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Rgba;
 use super::palette::Palette;
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::{round_up, signed};
-use crate::simulation::frame::{Frame, REACTIONLESS_SHARE};
+use crate::numbers::{round_up, signed};
+use stillbase_mechanics::planar::Vector;
+use stillbase_simulation::frame::{Frame, REACTIONLESS_SHARE};
 
 /// Length of a full arrow, as a fraction of the reach of the machine.
 pub const FULL_ARROW: f64 = 0.25;

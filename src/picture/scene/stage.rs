@@ -27,16 +27,16 @@ use super::palette::{Palette, palette};
 use super::pick::{DragAction, GrabPoint, LinkHold, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Measure, Scene, point};
-use crate::mechanics::planar::{DriveAngles, Vector, unit};
-use crate::planning::pose_space::{Planes, PoseSpace};
-use crate::query::{Queries, Shared};
-use crate::session::Run;
-use crate::simulation::frame::Frame;
 use base::BaseStage;
 use limits::LimitArcs;
 use path::PlannedPath;
 use pins::Pins;
 use ring::BaseRing;
+use stillbase_mechanics::planar::{DriveAngles, Vector, unit};
+use stillbase_planning::pose_space::{Planes, PoseSpace};
+use stillbase_query::{Queries, Shared};
+use stillbase_session::Run;
+use stillbase_simulation::frame::Frame;
 
 /// The parts of the machine's view that do not change from frame to frame.
 #[derive(Clone, Debug)]

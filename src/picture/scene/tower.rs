@@ -18,13 +18,13 @@ use super::pointer::Pointer;
 use super::stage::Workspace;
 use super::wall::Wall;
 use super::{Anchor, ItemChanges, Label, Marker, Mesh, MeshSet, Polyline, Scene, Solid, Strips, point, posed};
-use crate::mechanics::machine::place_of;
-use crate::mechanics::planar::{Vector, unit};
-use crate::picture::numbers::round_up;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::{AngleLimit, BSet, PlaneMap};
-use crate::session::Run;
-use crate::simulation::frame::{Frame, Reach};
+use crate::numbers::round_up;
+use stillbase_mechanics::machine::place_of;
+use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::reactionless::{AngleLimit, BSet, PlaneMap};
+use stillbase_session::Run;
+use stillbase_simulation::frame::{Frame, Reach};
 
 /// Length of the interval of b that is shown, rad.
 pub const TOWER_SPAN: f64 = 5.0;

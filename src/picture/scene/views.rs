@@ -14,13 +14,13 @@ use super::pick::{DragAction, Grip, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
 use super::stage::{OutlineQuery, PULL_STIFFNESS, Stage, Workspace};
 use super::tower::Tower;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::DriveAngles;
-use crate::planning::pose_space::PoseSpace;
-use crate::query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
-use crate::session::Run;
-use crate::settings::number::ShortNumber;
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::DriveAngles;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
+use stillbase_session::Run;
+use stillbase_settings::number::ShortNumber;
+use stillbase_simulation::frame::Frame;
 
 /// Distance within which the pointer picks a point of the path, a label or a joint limit, px.
 const POINT_PICK_PX: f64 = 9.0;

@@ -3,7 +3,7 @@
 //! At height z, a point p of the outline is rotated by τ = twist · z: P(p, z) = (p e^{iτ}, z).
 
 use super::Mesh;
-use crate::mechanics::planar::{Vector, cross, dot, unit};
+use stillbase_mechanics::planar::{Vector, cross, dot, unit};
 
 /// Maximum change of direction of an outline between two vertices of the wall, rad.
 const MAX_TURN_RAD: f64 = 0.045;

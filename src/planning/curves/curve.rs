@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use thiserror::Error;
 
-use crate::mechanics::planar::{Vector, cross, dot, unit};
-use crate::settings::number::counted;
+use stillbase_mechanics::planar::{Vector, cross, dot, unit};
+use stillbase_settings::number::counted;
 
 /// A point of a curve with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! A motion given by samples over time: of the drive angles, or of the end effector.
 //!
-//! A quintic [spline](crate::planning::curves::spline) with four continuous derivatives passes through every sample. It
+//! A quintic [spline](crate::curves::spline) with four continuous derivatives passes through every sample. It
 //! assumes nothing about the ends: the motion need not be at rest there. Its parameter is s = t/T, so a motion uses it
-//! with [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples, angles
+//! with [`Profile::running`](crate::timing::Profile::running). As a spline is linear in its samples, angles
 //! that lie on a plane b = const stay on it between the samples.
 
 use std::sync::Arc;
@@ -10,16 +10,16 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::low_pass::LowPass;
-use crate::planning::curves::spline::{Knots, MIN_SPLINE_SAMPLES};
-use crate::planning::curves::table::PathTable;
-use crate::settings::key::KeyType;
-use crate::settings::keyed::HasKeyType;
-use crate::settings::number::{ShortNumber, counted};
-use crate::settings::range::Range;
+use crate::curves::PathPoint;
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::low_pass::LowPass;
+use crate::curves::spline::{Knots, MIN_SPLINE_SAMPLES};
+use crate::curves::table::PathTable;
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use stillbase_settings::key::KeyType;
+use stillbase_settings::keyed::HasKeyType;
+use stillbase_settings::number::{ShortNumber, counted};
+use stillbase_settings::range::Range;
 
 /// Maximum number of samples.
 pub const MAX_SAMPLES: usize = 20_000;
@@ -250,7 +250,7 @@ impl Samples {
     }
 
     /// Returns the samples smoothed without delay: the amplitude at the cut-off, Hz, is halved; see
-    /// [`crate::planning::curves::low_pass`].
+    /// [`crate::curves::low_pass`].
     ///
     /// # Errors
     /// If the cut-off is not below half of the mean rate.
@@ -273,7 +273,7 @@ impl Samples {
         sizes.sort_by(f64::total_cmp);
         // The median of |x| is 0.6745 σ, and 924 is the sum of the squared binomial coefficients.
         let sigma = sizes.get(sizes.len() / 2).map_or(0.0, |median| median / (0.6745 * 924f64.sqrt()));
-        crate::planning::curves::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
+        crate::curves::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
     }
 
     /// Returns the first and second derivatives by s = t/T at each sample, for each column.

@@ -2,15 +2,15 @@
 
 use thiserror::Error;
 
-use crate::mechanics::kinematics::{
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::point::PathPoint;
+use crate::curves::table::PathTable;
+use crate::reactionless::{PlaneMap, PlanePoint};
+use stillbase_mechanics::kinematics::{
     acceleration, closest_turn, end_effector, minimum_norm, minimum_norm_with, two_link_rates, velocity,
 };
-use crate::mechanics::machine::Chain;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::point::PathPoint;
-use crate::planning::curves::table::PathTable;
-use crate::planning::reactionless::{PlaneMap, PlanePoint};
+use stillbase_mechanics::machine::Chain;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// A path of the drives.
 #[derive(Clone, Debug, PartialEq)]
@@ -288,7 +288,7 @@ pub fn least_rate_curve(
 
 /// Builds the path along a curve from the nodes of its pieces. `follow` takes the start pose, the interval of s, the
 /// piece over u from 0 to 1, and the number of intervals.
-pub(in crate::planning) fn by_pieces<E>(
+pub(crate) fn by_pieces<E>(
     curve: &Curve,
     start: DriveAngles,
     spaces: usize,

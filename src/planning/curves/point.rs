@@ -1,8 +1,8 @@
 //! [`PathPoint`]: a pose on a path with its derivatives.
 
-use crate::mechanics::planar::{DriveAngles, PerDrive};
-use crate::planning::reference::Reference;
-use crate::planning::timing::law::PathProgress;
+use crate::reference::Reference;
+use crate::timing::law::PathProgress;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 
 /// A pose on a path with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]

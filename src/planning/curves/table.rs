@@ -1,7 +1,7 @@
 //! A path as a table of nodes: poses with two derivatives, joined by quintics.
 
-use crate::mechanics::planar::PerDrive;
-use crate::planning::curves::PathPoint;
+use crate::curves::PathPoint;
+use stillbase_mechanics::planar::PerDrive;
 
 /// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls
 /// with the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.

@@ -9,12 +9,12 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::deviation::{angle_distance, least};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use crate::planning::curves::given::Samples;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::BSet;
-use crate::query::ProgressCallback;
+use crate::curves::given::Samples;
+use crate::pose_space::PoseSpace;
+use crate::reactionless::BSet;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase_query::ProgressCallback;
 
 /// Number of samples on which the deviation at a b is computed.
 const DEVIATION_SAMPLES: usize = 61;

@@ -1,13 +1,13 @@
 //! Distance between motions of equal timing in the metric of kinetic energy: see [`nearest`](super::nearest).
 
-use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::machine::{Chain, Inertia};
-use crate::mechanics::planar::PerDrive;
-use crate::planning::Motion;
-use crate::planning::curves::given::Samples;
-use crate::planning::golden::golden;
-use crate::planning::reactionless::BSet;
-use crate::query::ProgressCallback;
+use crate::Motion;
+use crate::curves::given::Samples;
+use crate::golden::golden;
+use crate::reactionless::BSet;
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{Chain, Inertia};
+use stillbase_mechanics::planar::PerDrive;
+use stillbase_query::ProgressCallback;
 
 /// Distance between two motions of equal timing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use super::braking::{LAG_TIME, approach, last_open, norm};
 use super::held::{HeldReference, Pull};
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::planning::Reference;
-use crate::planning::pose_space::{PoseSpace, Reach};
+use crate::Reference;
+use crate::pose_space::{PoseSpace, Reach};
+use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// Target position of the end effector, and whether it can be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]

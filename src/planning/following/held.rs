@@ -10,10 +10,10 @@
 use std::sync::Arc;
 
 use super::braking::{LAG_TIME, approach, last_open, norm};
-use crate::mechanics::machine::Chain;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
-use crate::planning::Reference;
-use crate::planning::pose_space::PoseSpace;
+use crate::Reference;
+use crate::pose_space::PoseSpace;
+use stillbase_mechanics::machine::Chain;
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// A point of a link, and the position it is dragged to.
 #[derive(Clone, Copy, Debug, PartialEq)]

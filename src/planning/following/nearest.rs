@@ -21,11 +21,11 @@ pub use super::closest::NoClosestMotion;
 pub use super::deviation::Deviation;
 use super::trace::{Blocked, Rule};
 use super::{closest, on_plane};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::PerDrive;
-use crate::planning::curves::given::Samples;
-use crate::planning::pose_space::PoseSpace;
-use crate::query::ProgressCallback;
+use crate::curves::given::Samples;
+use crate::pose_space::PoseSpace;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::PerDrive;
+use stillbase_query::ProgressCallback;
 
 /// Why a motion cannot be moved to a b with the same end effector path.
 #[derive(Clone, Debug, PartialEq, Error)]

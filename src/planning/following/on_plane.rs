@@ -2,14 +2,14 @@
 
 use super::deviation::{angle_distance, least};
 use super::trace::{self, Blocked, Rule};
-use crate::mechanics::kinematics::{acceleration, end_effector, velocity};
-use crate::mechanics::machine::{Chain, Inertia};
-use crate::mechanics::planar::DriveAngles;
-use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::given::Samples;
-use crate::planning::curves::table::PathTable;
-use crate::planning::reactionless::PlaneMap;
-use crate::query::ProgressCallback;
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::given::Samples;
+use crate::curves::table::PathTable;
+use crate::reactionless::PlaneMap;
+use stillbase_mechanics::kinematics::{acceleration, end_effector, velocity};
+use stillbase_mechanics::machine::{Chain, Inertia};
+use stillbase_mechanics::planar::DriveAngles;
+use stillbase_query::ProgressCallback;
 
 /// Number of b tried in each interval.
 const TRIES: usize = 32;

@@ -11,9 +11,9 @@
 //! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ))
 //! depends on δ alone. So b = q_1 + ∫_0^δ D_2/(D_1 + D_2) dδ, and angular momentum is (D_1 + D_2) ḃ.
 
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use crate::planning::curves::{PathPoint, PathTable};
+use crate::curves::{PathPoint, PathTable};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// b(q) of a machine with two drives and any couplings: it is constant exactly along motions of zero angular momentum.
 ///

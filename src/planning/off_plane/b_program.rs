@@ -5,10 +5,10 @@
 //! b″ is linear between even nodes. b and b′ of the nodes are unknowns too, with exact integration as equality
 //! constraints.
 
-use crate::convex::{LinearRow, Program};
-use crate::planning::off_plane::b_course::BCourse;
-use crate::planning::off_plane::corridor::{Corridor, Station};
-use crate::planning::reactionless::LIMIT_SLACK;
+use crate::off_plane::b_course::BCourse;
+use crate::off_plane::corridor::{Corridor, Station};
+use crate::reactionless::LIMIT_SLACK;
+use stillbase_convex::{LinearRow, Program};
 
 /// Number of stations of the corridor in each piece.
 pub(super) const PIECE_STATIONS: usize = 8;

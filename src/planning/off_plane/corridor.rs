@@ -6,9 +6,9 @@
 
 use thiserror::Error;
 
-use crate::mechanics::planar::Vector;
-use crate::planning::curves::curve::CurvePoint;
-use crate::planning::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, between, metres};
+use crate::curves::curve::CurvePoint;
+use crate::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, between, metres};
+use stillbase_mechanics::planar::Vector;
 
 /// Number of samples of a self-motion with which its parts are told apart.
 const SAMPLES: usize = 25;

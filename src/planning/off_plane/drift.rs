@@ -5,17 +5,15 @@
 
 use thiserror::Error;
 
-use crate::mechanics::kinematics::{acceleration, end_effector};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::path::by_pieces;
-use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::null_space::{
-    determines, least, lines, momentum_row_rate, rates, solve, turns_nothing,
-};
-use crate::settings::number::counted;
+use crate::curves::PathPoint;
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::path::by_pieces;
+use crate::curves::table::PathTable;
+use crate::off_plane::null_space::{determines, least, lines, momentum_row_rate, rates, solve, turns_nothing};
+use stillbase_mechanics::kinematics::{acceleration, end_effector};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase_settings::number::counted;
 
 /// Why no motion of zero momentum follows a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

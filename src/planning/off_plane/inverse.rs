@@ -8,13 +8,13 @@
 //!
 //! w′ = F_1 a_1′ + F_2 a_2′ and w″ = F_1 a_1″ + F_2 a_2″ − Σ_k c_k e^{i (u_k · a + v_k)} (u_k · a′)².
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::curve::CurvePoint;
-use crate::planning::reactionless::{PlaneMap, PlanePoint};
+use crate::curves::PathPoint;
+use crate::curves::curve::CurvePoint;
+use crate::reactionless::{PlaneMap, PlanePoint};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
 
 /// Returns (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.
-pub(in crate::planning) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
+pub(crate) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
     let arms = map.arms(a);
     let [c1, c2] = map.columns(&arms);
     let det = cross(c1, c2);

@@ -16,17 +16,17 @@
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use thiserror::Error;
 
-use crate::mechanics::machine::{Chain, Inertia};
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::curves::curve::CurvePoint;
-use crate::planning::curves::path::{PathError, minimum_norm_path};
-use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::b_course::{BCourse, BaseReaction};
-use crate::planning::off_plane::b_program::{PIECE_STATIONS, least_course};
-use crate::planning::off_plane::corridor::{Corridor, CorridorError};
-use crate::planning::off_plane::inverse::pose_along;
-use crate::planning::off_plane::price::{Price, PriceError};
-use crate::planning::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint, between};
+use crate::curves::curve::CurvePoint;
+use crate::curves::path::{PathError, minimum_norm_path};
+use crate::curves::table::PathTable;
+use crate::off_plane::b_course::{BCourse, BaseReaction};
+use crate::off_plane::b_program::{PIECE_STATIONS, least_course};
+use crate::off_plane::corridor::{Corridor, CorridorError};
+use crate::off_plane::inverse::pose_along;
+use crate::off_plane::price::{Price, PriceError};
+use crate::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint, between};
+use stillbase_mechanics::machine::{Chain, Inertia};
+use stillbase_mechanics::planar::{DriveAngles, Vector};
 
 /// Default number of pieces of b″.
 pub const DEFAULT_PIECES: usize = 96;

@@ -20,12 +20,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::mechanics::dynamics::mass_matrix;
-use crate::mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
-use crate::mechanics::machine::{BALANCE_TOLERANCE, Inertia};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::table::PathTable;
+use crate::curves::PathPoint;
+use crate::curves::table::PathTable;
+use stillbase_mechanics::dynamics::mass_matrix;
+use stillbase_mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
+use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Inertia};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
 /// Returns D_k at a pose, kg m², (A3).
 #[inline]

@@ -19,16 +19,16 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::path::Path;
-use crate::planning::curves::table::PathTable;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::PoseAngles;
-use crate::planning::reactionless::BSet;
-use crate::planning::timing::law::TimeLaw;
-use crate::settings::number::counted;
+use crate::curves::PathPoint;
+use crate::curves::path::Path;
+use crate::curves::table::PathTable;
+use crate::pose_space::PoseSpace;
+use crate::posed::PoseAngles;
+use crate::reactionless::BSet;
+use crate::timing::law::TimeLaw;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_settings::number::counted;
 
 /// Time law of b from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub enum PoseLaw {
     BangBang,
     /// 3 u² − 2 u³: the least ∫ n_B² dt.
     Cubic,
-    /// [`TimeLaw::Quintic`](crate::planning::timing::TimeLaw): n_B begins and ends at zero.
+    /// [`TimeLaw::Quintic`](crate::timing::TimeLaw): n_B begins and ends at zero.
     Quintic,
 }
 

@@ -11,7 +11,7 @@
 //! exact line search, ends after a few iterations. If no x in the box satisfies the equations, x approximates the least
 //! residual.
 
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot};
 
 /// Maximum number of Newton iterations.
 const MAX_ITERATIONS: usize = 30;

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::boxed::BoxedStep;
 use super::critical::CriticalPose;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// Maximum number of Newton iterations, and the greatest and least step, rad.
 const MAX_NEWTON_ITERATIONS: usize = 30;
@@ -74,7 +74,7 @@ impl PoseSpace {
     }
 
     /// Returns the end effector, m, and ∂p/∂a_i with b held, m.
-    pub(in crate::planning) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
+    pub(crate) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
         let i = Vector::new(0.0, 1.0);
         let mut arm = [Vector::default(); MAX_DRIVES];
         let mut lambda = *self.lambda.padded();
@@ -96,7 +96,7 @@ impl PoseSpace {
 
     /// Solves for a pose at p, m, and b, rad, by Newton's iteration from another one, within bounds of the relative
     /// angles.
-    pub(in crate::planning) fn solved(
+    pub(crate) fn solved(
         &self,
         p: Vector,
         b: f64,

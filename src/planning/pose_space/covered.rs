@@ -1,7 +1,7 @@
 //! [`BCoverage`]: the values of b at which points at a given distance from B can be reached.
 
 use super::critical::CriticalPose;
-use crate::planning::reactionless::BSet;
+use crate::reactionless::BSet;
 
 /// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it from one circle to
 /// the next.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::pattern::{LimitState, Pattern, SIGN_INTERVALS, Signs, place};
 use super::space::PoseSpace;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// A pose at which b is stationary, and whether b can rise or fall from there.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::joint::RelativeJoint;
 use super::pattern::Patterns;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// Number of whole turns of that drive tried on either side of the middle of its range.
 const MAX_TURNS: i32 = 3;

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use super::in_reach::Reach;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::reactionless::{BSet, Decimal};
+use crate::reactionless::{BSet, Decimal};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Residual below which a point counts as reached, as a fraction of the reach.
 const REACHED_TOLERANCE: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! [`Reach`]: whether the target of a drag can be reached while b is held.
 
-use crate::mechanics::planar::Vector;
-use crate::planning::reactionless::Decimal;
+use crate::reactionless::Decimal;
+use stillbase_mechanics::planar::Vector;
 
 /// Whether a target can be reached at the present b.
 #[derive(Clone, Copy, Debug, PartialEq)]

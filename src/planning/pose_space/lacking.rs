@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::reactionless::MAX_LIMIT_RANGE;
-use crate::settings::number::{ShortNumber, counted, significant};
+use crate::reactionless::MAX_LIMIT_RANGE;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_settings::number::{ShortNumber, counted, significant};
 
 /// Why a machine has no pose constant, in words.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -70,7 +70,7 @@ pub struct NotFollowable {
     pub drives: usize,
 }
 
-/// Even then two drives conserve an integral: see [`b_integral`](crate::planning::off_plane::b_integral).
+/// Even then two drives conserve an integral: see [`b_integral`](crate::off_plane::b_integral).
 const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
                         b, because its λ changes with the pose";
 
@@ -78,7 +78,7 @@ const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an inte
 const MAX_POSE_DEPENDENCE: f64 = 0.1;
 
 /// Whether holding Σ λ_k q_k keeps the base free of moments.
-pub(crate) fn is_reactionless(machine: &Machine) -> bool {
+pub fn is_reactionless(machine: &Machine) -> bool {
     Inertia::of(machine).is_invariant()
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn is_reactionless(machine: &Machine) -> bool {
 ///
 /// # Errors
 /// If the machine has no pose constant: the reason.
-pub(crate) fn constant_inertia(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
+pub fn constant_inertia(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
     let inertia = Inertia::of(machine);
     if inertia.pose_dependence() > MAX_POSE_DEPENDENCE {
         return Err(varies(machine, &inertia));

@@ -11,8 +11,8 @@ use std::f64::consts::{PI, TAU};
 use super::continuation::{Climb, MINIMAL_CONTINUATION};
 use super::critical::CriticalPose;
 use super::space::{BASE_RADIUS, PoseSpace};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
-use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
+use crate::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of these.
 const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];

@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 use super::rings::{BoundaryStep, Ring, Rings};
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Points within this fraction of the reach are equal; loops nowhere wider are dropped.
 const SAME_POINT: f64 = 1e-10;

@@ -46,7 +46,7 @@ mod toward;
 pub use in_reach::Reach;
 pub use joint::RelativeJoint;
 pub use lacking::{NoPoseSpace, NotFollowable};
-pub(crate) use lacking::{constant_inertia, is_reactionless};
+pub use lacking::{constant_inertia, is_reactionless};
 pub use outline::Outline;
 pub use planes::{PlaneError, Planes, plane_area, plane_map};
 pub use space::{GuidanceMode, PoseSpace};

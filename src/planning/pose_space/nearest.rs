@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 use super::boxed::BoxedStep;
 use super::continuation::within;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 100;

@@ -6,8 +6,8 @@
 
 use super::loops::TracedBoundary;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{Vector, dot, unit};
-use crate::planning::reactionless::BoundingBox;
+use crate::reactionless::BoundingBox;
+use stillbase_mechanics::planar::{Vector, dot, unit};
 
 /// The workspace of a b: a region, or a curve for two drives.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};
 
 use super::joint::RelativeJoint;
-use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector, unit};
 
 /// Number of cells in which a sign change is sought.
 pub(super) const SIGN_INTERVALS: usize = 24;

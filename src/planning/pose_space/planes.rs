@@ -5,10 +5,10 @@ use thiserror::Error;
 
 use super::in_reach::Reach;
 use super::lacking::{NoPoseSpace, constant_inertia, is_reactionless};
-use crate::mechanics::machine::{Machine, RelativeAngle};
-use crate::mechanics::planar::Vector;
-use crate::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, NotAPlaneMap, PlaneMap};
-use crate::settings::number::counted;
+use crate::reactionless::{AngleDefinition, AngleLimit, Boundary, NotAPlaneMap, PlaneMap};
+use stillbase_mechanics::machine::{Machine, RelativeAngle};
+use stillbase_mechanics::planar::Vector;
+use stillbase_settings::number::counted;
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
 #[derive(Clone, Debug)]

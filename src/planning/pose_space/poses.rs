@@ -3,7 +3,7 @@
 use super::continuation::{FULL_CONTINUATION, SHORT_CONTINUATION};
 use super::nearest::PreferredAngles;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// Tolerance of b of two drives, as a fraction of Σλ: b printed with nine digits keeps it. The point may miss by the
 /// same fraction of the reach.
@@ -107,7 +107,7 @@ impl PoseSpace {
     }
 
     /// Returns relative angles of an infinite sequence of samples that fills all ranges evenly.
-    pub(in crate::planning) fn spread(&self, i: usize) -> PerDrive {
+    pub(crate) fn spread(&self, i: usize) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |j| {
             let [low, high] = self.joints[j].limits;
             // Fractional parts of multiples of square roots of primes.

@@ -4,8 +4,8 @@ use super::covered::BCoverage;
 use super::critical::CriticalPose;
 use super::looks::{CriticalInterval, ReachGrid};
 use super::space::{BASE_RADIUS, PoseSpace};
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::reactionless::{BSet, NoReach};
+use crate::reactionless::{BSet, NoReach};
+use stillbase_mechanics::planar::{DriveAngles, Vector};
 
 /// Critical values of b within this tolerance are equal, rad.
 const SAME_B_RAD: f64 = 1e-10;
@@ -26,7 +26,7 @@ impl PoseSpace {
     }
 
     /// Does the same with a careful or a quick search for poses; a quick one may miss some b.
-    pub(in crate::planning) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
+    pub(crate) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         if let Some(map) = self.map() {
             return map.reach(p);
         }
@@ -57,7 +57,7 @@ impl PoseSpace {
 
     /// Returns the tolerance within which two single values of b are equal, rad. With one and two drives, points have
     /// single values of b that agree within rounding only.
-    pub(in crate::planning) fn b_slack(&self) -> f64 {
+    pub(crate) fn b_slack(&self) -> f64 {
         if self.drives() < 3 { SINGLE_B_TOLERANCE * self.sum } else { 0.0 }
     }
 

@@ -7,7 +7,7 @@ use super::covered::BCoverage;
 use super::critical::CriticalPoint;
 use super::reach::ReachBuffers;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Initial number of circles.
 const INITIAL_CIRCLES: usize = 128;

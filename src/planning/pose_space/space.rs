@@ -10,9 +10,9 @@ use super::joint::RelativeJoint;
 use super::lacking::{NoPoseSpace, NotFollowable, constant_inertia, is_reactionless};
 use super::pattern::{Pattern, Patterns};
 use super::planes::{PlaneError, Planes, plane_map};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
-use crate::planning::reactionless::{MAX_LIMIT_RANGE, PlaneMap, PlanePoint};
+use crate::reactionless::{MAX_LIMIT_RANGE, PlaneMap, PlanePoint};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// A point within this distance of the base pin B, as a fraction of the reach, is treated as B: turning the workspace
 /// does not move it.

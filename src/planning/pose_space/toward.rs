@@ -8,8 +8,8 @@
 //! derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a nearest pose.
 
 use super::space::{GuidanceMode, PoseSpace};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
 /// Rows of C: two for the point, one for b, one for each relative angle, and the last one for a drive that keeps its
 /// angle.

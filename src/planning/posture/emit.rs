@@ -4,8 +4,8 @@ use super::goal::{WeightMatrix, times};
 use super::refine::AngleBound;
 use super::rows::PoseConstraint;
 use super::stations::{GAUSS_NODES, PathLeg, Stations, weights};
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::planning::curves::{PathPoint, PathTable};
+use crate::curves::{PathPoint, PathTable};
+use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// Number of samples per interval at which limits are checked.
 const LIMIT_SAMPLES: usize = 4;
@@ -28,7 +28,7 @@ fn table(held: &PoseConstraint<'_>, leg: &PathLeg, q: &[PerDrive]) -> Option<Pat
         };
         let way = &leg.points[i];
         let (first, second) = held.along(&q[i], (&sum(1), &sum(2)), [way.first, way.second])?;
-        Some(PathPoint { q: crate::mechanics::planar::DriveAngles(q[i]), first, second })
+        Some(PathPoint { q: stillbase_mechanics::planar::DriveAngles(q[i]), first, second })
     });
     PathTable::new(leg.s.clone(), nodes.collect::<Option<_>>()?)
 }

@@ -1,7 +1,7 @@
 //! [`PostureCost`]: the objective of a path as a quadratic form of its poses at all stations.
 
 use super::stations::{Stations, weights};
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// Number of stations coupled in a row of a form: its own and the next three.
 const BAND: usize = 4;

@@ -3,9 +3,9 @@
 use nalgebra::SMatrix;
 
 use super::goal::WeightMatrix;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
-use crate::planning::pose_space::PoseSpace;
+use crate::pose_space::PoseSpace;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 
 /// Weight of every drive as a fraction of the trace, so that rates stay finite for a drive without inertia.
 const MIN_DRIVE_WEIGHT: f64 = 1e-9;

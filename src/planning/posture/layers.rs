@@ -7,8 +7,8 @@
 
 use super::rows::{lifted, null_directions};
 use super::stations::Stations;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
-use crate::planning::pose_space::PoseSpace;
+use crate::pose_space::PoseSpace;
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 
 /// Resolution of the search.
 #[derive(Clone, Copy, Debug)]

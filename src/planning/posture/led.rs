@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{Posture, PostureWeights};
-use crate::mechanics::machine::Machine;
-use crate::planning::pose_space::{GuidanceMode, PoseSpace};
-use crate::query::{ByIdentity, QuickQuery};
+use crate::pose_space::{GuidanceMode, PoseSpace};
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::{ByIdentity, QuickQuery};
 
 /// Query for a pose space of a machine with the rule of a posture for dragging. Its paths avoid change points or cross
 /// them.

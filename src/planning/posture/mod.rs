@@ -30,7 +30,7 @@ pub use hand::PostureWeights;
 pub use led::GuidedSpace;
 pub use search::{NoPosturePath, PosturePaths, PostureRequest};
 
-use crate::settings::word::words;
+use stillbase_settings::word::words;
 
 words! {
     /// Use of the degrees of freedom that are left at a given point and b.

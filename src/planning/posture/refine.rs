@@ -10,7 +10,7 @@ use super::envelope::Envelope;
 use super::goal::{PostureCost, times};
 use super::rows::{ConstraintJacobian, PoseConstraint, arms};
 use super::stations::Stations;
-use crate::mechanics::planar::{PerDrive, dot};
+use stillbase_mechanics::planar::{PerDrive, dot};
 
 /// Maximum number of Newton steps between updates of the multipliers.
 const MAX_STEPS: usize = 25;

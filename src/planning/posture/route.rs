@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::layers::{FEW_POSES, Layer, Layers, bounds, near, nearest};
 use super::rows::lifted;
 use super::stations::Stations;
-use crate::mechanics::planar::PerDrive;
+use stillbase_mechanics::planar::PerDrive;
 
 /// A continued pose is connected to the poses within this multiple of `apart`.
 const NEXT_POSE_FACTOR: f64 = 1.25;

@@ -1,7 +1,7 @@
 //! [`PoseConstraint`]: constraints on every pose of a path, and their null space.
 
 use super::super::pose_space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
 /// Maximum number of rows: two of the point, one of b, one of the last link's drive.
 const ROWS: usize = 4;

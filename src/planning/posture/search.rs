@@ -10,11 +10,11 @@ use super::layers::{Detail, Layers};
 use super::refine::{AngleBound, RefinementProblem};
 use super::rows::{PoseConstraint, lifted};
 use super::stations::Stations;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::curves::{Curve, PathTable};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::timing::TimeLaw;
+use crate::curves::{Curve, PathTable};
+use crate::pose_space::PoseSpace;
+use crate::timing::TimeLaw;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Resolutions of the search, each tried if the one before finds no path: number of layers, factor on
 /// [`POSE_SPACING_RAD`], and maximum number of poses of a layer.

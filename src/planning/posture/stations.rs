@@ -1,8 +1,8 @@
 //! [`Stations`]: points along the curves of a task at which poses are computed.
 
-use crate::mechanics::planar::Vector;
-use crate::planning::curves::{Curve, CurvePoint};
-use crate::planning::timing::{Profile, TimeLaw};
+use crate::curves::{Curve, CurvePoint};
+use crate::timing::{Profile, TimeLaw};
+use stillbase_mechanics::planar::Vector;
 
 /// Minimum number of intervals of a curve, as a fraction of the number for the whole path.
 const MIN_CURVE_SHARE: f64 = 1.0 / 3.0;

@@ -17,7 +17,7 @@ pub struct BSet {
 
 impl BSet {
     /// Returns the union of intervals [low, high] anywhere on the real line, rad.
-    pub(in crate::planning) fn union(mut parts: Vec<[f64; 2]>, period: f64) -> Self {
+    pub(crate) fn union(mut parts: Vec<[f64; 2]>, period: f64) -> Self {
         for part in &mut parts {
             let width = (part[1] - part[0]).min(period);
             part[0] = wrap(part[0], period);

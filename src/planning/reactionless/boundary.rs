@@ -36,7 +36,7 @@ pub use span::BoundaryCurve;
 use span::Surface;
 
 use super::PlaneMap;
-use crate::mechanics::planar::{Vector, cross, dot, unit};
+use stillbase_mechanics::planar::{Vector, cross, dot, unit};
 
 /// A region narrower than this has no area, only a curve, rad.
 const MIN_WIDTH_RAD: f64 = 1e-9;

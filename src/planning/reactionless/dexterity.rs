@@ -7,7 +7,7 @@
 //! | σ_1 ≥ σ_2 | singular values of J | m |
 
 use super::plane::PlaneMap;
-use crate::mechanics::planar::{UnitVectors, Vector, cross};
+use stillbase_mechanics::planar::{UnitVectors, Vector, cross};
 
 /// Three measures of a pose, independent of b.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

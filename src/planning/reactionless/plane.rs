@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, Matrix3, Vector3};
 use thiserror::Error;
 
-use crate::mechanics::planar::{Vector, cross, unit};
+use stillbase_mechanics::planar::{Vector, cross, unit};
 
 /// Bounds of a relative joint angle, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]

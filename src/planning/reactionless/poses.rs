@@ -8,7 +8,7 @@ use std::ops::Deref;
 
 use super::plane::{LIMIT_SLACK, PlaneMap, PlanePoint};
 use super::quadrilateral::{Quadrilateral, Site};
-use crate::mechanics::planar::{Vector, cross, unit};
+use stillbase_mechanics::planar::{Vector, cross, unit};
 
 /// Number of poses stored without heap memory: many more than exist within one turn of each angle.
 const INLINE: usize = 64;

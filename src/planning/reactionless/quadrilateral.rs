@@ -31,7 +31,7 @@ use std::f64::consts::{PI, TAU};
 use lifts::lifts;
 
 use super::plane::{AngleLimit, PlaneMap};
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Tolerance of the distance of a point at the limits of the reach, as a fraction of the reach.
 pub(super) const REACH_ROUNDING: f64 = 1e-12;

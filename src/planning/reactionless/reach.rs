@@ -9,7 +9,7 @@ use super::b_set::{BSet, wrap};
 use super::decimal::metres_apart;
 use super::plane::{LIMIT_SLACK, PlaneMap, PlanePoint};
 use super::quadrilateral::{MonotoneArc, Quadrilateral, REACH_ROUNDING, Site};
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::planar::Vector;
 
 /// At corners of the limits, and where the arms are flat, a rounding error of the point moves the curve by its square
 /// root. A pose there belongs to a curve that passes within this distance, rad.
@@ -74,7 +74,7 @@ impl PlaneMap {
 
     /// Visits intervals of b at which `p`, m, can be reached, unsorted and possibly overlapping; parts removed by
     /// rounding are missing. Faster than [`reach`](Self::reach) for tests at many points.
-    pub(in crate::planning) fn spans(&self, p: Vector, mut take: impl FnMut([f64; 2])) {
+    pub(crate) fn spans(&self, p: Vector, mut take: impl FnMut([f64; 2])) {
         if self.within_reach(p).is_err() {
             return;
         }

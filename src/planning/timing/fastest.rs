@@ -4,21 +4,19 @@
 //! the optimum has a closed form. Otherwise the motion is a time-optimal path parameterisation, and with limits on jerk
 //! a feasible motion near it.
 
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::PerDrive;
-use crate::planning::curves::path::Path;
-use crate::planning::timing::keep::{PhaseBound, greatest_of, slow_to_keep};
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::limits::{
-    ConstraintRow, Constraints, DriveLimit, DriveLimits, LimitedQuantity, Stretches,
-};
-use crate::planning::timing::outcome::{FastestMotion, TimeError};
-use crate::planning::timing::profile::{JerkPhase, Profile, after};
-use crate::planning::timing::s_curve::s_curve;
-use crate::planning::timing::smooth;
-use crate::planning::timing::topp::{NoTiming, PathConstraints, REPAIR_THRESHOLD, TimingSweep, UNLIMITED};
-use crate::planning::timing::usage::TimeShares;
+use crate::curves::path::Path;
+use crate::timing::keep::{PhaseBound, greatest_of, slow_to_keep};
+use crate::timing::law::PathProgress;
+use crate::timing::limits::{ConstraintRow, Constraints, DriveLimit, DriveLimits, LimitedQuantity, Stretches};
+use crate::timing::outcome::{FastestMotion, TimeError};
+use crate::timing::profile::{JerkPhase, Profile, after};
+use crate::timing::s_curve::s_curve;
+use crate::timing::smooth;
+use crate::timing::topp::{NoTiming, PathConstraints, REPAIR_THRESHOLD, TimingSweep, UNLIMITED};
+use crate::timing::usage::TimeShares;
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::PerDrive;
 
 /// Initial number of intervals of the grid on a curve, unless the caller gives stations.
 pub const GRID_INTERVALS: usize = 600;

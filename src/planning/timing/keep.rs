@@ -1,12 +1,12 @@
 //! Slowing a motion down so that it keeps its limits everywhere, not only at the nodes of its plan.
 
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Inertia;
-use crate::planning::Motion;
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::limits::DriveLimits;
-use crate::planning::timing::profile::{Profile, after};
-use crate::planning::timing::usage::Demand;
+use crate::Motion;
+use crate::timing::law::PathProgress;
+use crate::timing::limits::DriveLimits;
+use crate::timing::profile::{Profile, after};
+use crate::timing::usage::Demand;
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::machine::Inertia;
 
 /// Number of intervals of a phase that is sampled finely.
 const FINE_INTERVALS: usize = 16;

@@ -1,6 +1,6 @@
 //! Time laws: position along a path and its derivatives as functions of time.
 
-use crate::settings::word::words;
+use stillbase_settings::word::words;
 
 /// Position s on a path with its derivatives by time.
 #[derive(Clone, Copy, Debug, PartialEq)]

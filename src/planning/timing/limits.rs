@@ -15,12 +15,12 @@
 
 use std::fmt;
 
-use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
-use crate::mechanics::machine::{Inertia, Machine, Motors};
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::path::Path;
-use crate::planning::timing::law::PathProgress;
+use crate::curves::PathPoint;
+use crate::curves::path::Path;
+use crate::timing::law::PathProgress;
+use stillbase_mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase_mechanics::machine::{Inertia, Machine, Motors};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// A limited quantity of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl DriveLimits {
     /// Returns the limits of a machine's drives.
     pub fn of(machine: &Machine) -> Self {
         let drives = &machine.spec().drives;
-        let each = |f: fn(&crate::mechanics::machine::Drive) -> Option<f64>| {
+        let each = |f: fn(&stillbase_mechanics::machine::Drive) -> Option<f64>| {
             PerDrive::from_fn(drives.len(), |k| f(&drives[k]).unwrap_or(f64::INFINITY))
         };
         Self {

@@ -1,7 +1,7 @@
 //! Timings s(t): a time law over a duration, phases of constant jerk, both from rest to rest, or s proportional to
 //! time.
 
-use crate::planning::timing::law::{PathProgress, TimeLaw};
+use crate::timing::law::{PathProgress, TimeLaw};
 
 /// Timing of a motion on its path: s(t) from 0 to 1 with its derivatives, at rest before 0 and from T on.
 ///

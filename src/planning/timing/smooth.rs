@@ -1,22 +1,22 @@
 //! Limits on jerk along a curve: a motion near the optimum, checked against its limits, and its gap to a bound.
 //!
-//! With limits on jerk, the fastest motion on a curve is not a convex problem. [`crate::planning::timing::jerk`] finds
+//! With limits on jerk, the fastest motion on a curve is not a convex problem. [`crate::timing::jerk`] finds
 //! a local optimum on nodes, which are dense where the motion without these limits is slow and where the path bends. If
 //! the motion exceeds a limit between nodes, the whole motion is slowed down until it keeps the limit.
 
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Inertia;
-use crate::planning::Motion;
-use crate::planning::curves::path::Path;
-use crate::planning::timing::jerk::{JerkProgram, eased, uneased};
-use crate::planning::timing::keep::greatest;
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::limits::Constraints;
-use crate::planning::timing::outcome::{FastestMotion, TimeError};
-use crate::planning::timing::profile::{JerkPhase, Profile};
-use crate::planning::timing::s_curve::s_curve;
-use crate::planning::timing::topp::PathConstraints;
-use crate::planning::timing::usage::{Demand, Usage};
+use crate::Motion;
+use crate::curves::path::Path;
+use crate::timing::jerk::{JerkProgram, eased, uneased};
+use crate::timing::keep::greatest;
+use crate::timing::law::PathProgress;
+use crate::timing::limits::Constraints;
+use crate::timing::outcome::{FastestMotion, TimeError};
+use crate::timing::profile::{JerkPhase, Profile};
+use crate::timing::s_curve::s_curve;
+use crate::timing::topp::PathConstraints;
+use crate::timing::usage::{Demand, Usage};
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::machine::Inertia;
 
 /// Number of samples from which the active limits are determined.
 const USAGE_SAMPLES: usize = 2000;

@@ -9,9 +9,9 @@
 //! order in Δ. A second pass lets u change over the interval by as much as it does in the first pass. The limit is then
 //! met at both ends, and T is accurate to second order.
 
-use crate::planning::curves::path::Path;
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
+use crate::curves::path::Path;
+use crate::timing::law::PathProgress;
+use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
 /// An x of this or more counts as unlimited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;

@@ -1,12 +1,12 @@
 //! Utilisation of the drives' limits by a motion.
 
-use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
-use crate::planning::Motion;
-use crate::planning::curves::path::Path;
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use crate::Motion;
+use crate::curves::path::Path;
+use crate::timing::law::PathProgress;
+use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use stillbase_mechanics::dynamics::{Surroundings, holding_torque, inverse};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// A limit counts as active when at least this fraction of it is used.
 pub const ACTIVE_SHARE: f64 = 1.0 - 1e-3;

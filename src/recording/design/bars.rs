@@ -2,13 +2,13 @@
 
 use rerun::{BarChart, EntityPath};
 
-use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::machine::Machine;
-use crate::picture::scene::Rgba;
-use crate::picture::scene::palette::{Theme, palette};
-use crate::recording::rows::SparseRows;
-use crate::recording::store::{Instant, Store, StoreError};
-use crate::recording::style::{colour, under};
+use crate::rows::SparseRows;
+use crate::store::{Instant, Store, StoreError};
+use crate::style::{colour, under};
+use stillbase_mechanics::balance::{Breakdown, Condition};
+use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::Rgba;
+use stillbase_picture::scene::palette::{Theme, palette};
 
 /// Width of a group of bars, as a fraction of the distance between groups.
 const GROUP_WIDTH: f64 = 0.86;

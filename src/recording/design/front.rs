@@ -4,13 +4,13 @@
 use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
 use super::state::bare;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::picture::numbers::{at_step, round_ticks, signed};
-use crate::picture::scene::palette::{Theme, mix, palette};
-use crate::recording::rows::SparseRows;
-use crate::recording::store::{Instant, Store, StoreError};
-use crate::recording::style::{colour, under};
-use crate::session::design::DesignBrief;
+use crate::rows::SparseRows;
+use crate::store::{Instant, Store, StoreError};
+use crate::style::{colour, under};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_picture::numbers::{at_step, round_ticks, signed};
+use stillbase_picture::scene::palette::{Theme, mix, palette};
+use stillbase_session::design::DesignBrief;
 
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 13;

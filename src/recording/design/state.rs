@@ -1,11 +1,11 @@
 //! [`DesignState`]: the machine after a number of changes, with its balance and measures.
 
-use crate::mechanics::balance::Breakdown;
-use crate::mechanics::machine::{Machine, MachineSpec};
-use crate::planning::Motion;
-use crate::recording::store::Instant;
-use crate::session::DesignVersion;
-use crate::study::measures::Measures;
+use crate::store::Instant;
+use stillbase_mechanics::balance::Breakdown;
+use stillbase_mechanics::machine::{Machine, MachineSpec};
+use stillbase_planning::Motion;
+use stillbase_session::DesignVersion;
+use stillbase_study::measures::Measures;
 
 /// A state of a design.
 #[derive(Debug)]

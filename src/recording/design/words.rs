@@ -1,13 +1,13 @@
 //! Texts about a state of a design, as Markdown.
 
 use super::state::DesignState;
-use crate::mechanics::balance::Breakdown;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::signed;
-use crate::settings::number::counted;
-use crate::settings::range::shortened;
-use crate::study::comparison::{DESIGN_COLUMNS, DesignMeasures};
+use stillbase_mechanics::balance::Breakdown;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
+use stillbase_picture::numbers::signed;
+use stillbase_settings::number::counted;
+use stillbase_settings::range::shortened;
+use stillbase_study::comparison::{DESIGN_COLUMNS, DesignMeasures};
 
 /// Maximum number of conditions as columns of a table; of more conditions the table is transposed.
 const MAX_COLUMNS: usize = 10;
@@ -114,7 +114,7 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     let terms = &breakdown.terms;
     let heads = terms.iter().map(|term| format!("{} {}", term.condition.symbol(), term.condition.unit()));
     let heads: Vec<String> = ["link".to_owned()].into_iter().chain(heads).collect();
-    let row = |(link, own): (usize, &crate::mechanics::machine::Link)| {
+    let row = |(link, own): (usize, &stillbase_mechanics::machine::Link)| {
         let parts = terms.iter().map(|term| match complex(breakdown.of_link(term, link)) {
             none if none == "0.0000" => "·".to_owned(),
             part => part,

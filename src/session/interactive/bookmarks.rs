@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::Session;
 use super::change::HistoryStep;
-use crate::query::Shared;
-use crate::session::document::AnnotationKind;
-use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
-use crate::settings::range::shortened;
+use crate::document::AnnotationKind;
+use crate::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
+use stillbase_query::Shared;
+use stillbase_settings::range::shortened;
 
 impl Session {
     /// Returns the bookmarks in the order of time.

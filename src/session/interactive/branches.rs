@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::Session;
 use super::change::HistoryStep;
-use crate::query::{ByIdentity, QuickWork};
-use crate::session::Refusal;
-use crate::session::changes::in_order;
-use crate::session::document::{AnnotationKind, Document, LeftBranch, ProgressCallback};
-use crate::session::fork::{Fork, Forks};
-use crate::session::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
+use crate::Refusal;
+use crate::changes::in_order;
+use crate::document::{AnnotationKind, Document, LeftBranch, ProgressCallback};
+use crate::fork::{Fork, Forks};
+use crate::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
+use stillbase_query::{ByIdentity, QuickWork};
 
 impl Session {
     /// Returns the number of branches that are kept.

@@ -1,7 +1,7 @@
 //! [`HistoryStep`]: an undo entry.
 
-use crate::session::document::{AnnotationKind, Document};
-use crate::session::edit::{Edit, TimedEdit};
+use crate::document::{AnnotationKind, Document};
+use crate::edit::{Edit, TimedEdit};
 
 /// Undo entry.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! Applies edits to a session: at the present step, or to the run as a whole.
 
 use super::Session;
-use crate::query::ProgressCallback;
-use crate::session::changes::ScriptError;
-use crate::session::document::{Document, DocumentRun};
-use crate::session::edit::{Edit, TimedEdit};
-use crate::session::refusal::Refusal;
+use crate::changes::ScriptError;
+use crate::document::{Document, DocumentRun};
+use crate::edit::{Edit, TimedEdit};
+use crate::refusal::Refusal;
+use stillbase_query::ProgressCallback;
 
 impl Session {
     /// Applies an edit. Drags and pushes apply at the present step, and so do other edits while the machine moves. At

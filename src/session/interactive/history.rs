@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::Session;
 use super::change::HistoryStep;
-use crate::query::ProgressCallback;
-use crate::session::document::Document;
-use crate::session::edit::{Edit, TimedEdit};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::Scenario;
+use crate::document::Document;
+use crate::edit::{Edit, TimedEdit};
+use crate::refusal::Refusal;
+use crate::scenario::Scenario;
+use stillbase_query::ProgressCallback;
 
 impl Session {
     /// Adds an undo entry for an edit; edits of one gesture share one entry.

@@ -1,14 +1,14 @@
 //! Opens sessions.
 
 use super::Session;
-use crate::query::ProgressCallback;
-use crate::session::changes::{ScriptError, in_order};
-use crate::session::document::{Document, DocumentRun};
-use crate::session::edit::TimedEdit;
-use crate::session::refusal::Refusal;
-use crate::session::run::Run;
-use crate::session::scenario::{MAX_FRAMES, Scenario};
-use crate::session::script::Script;
+use crate::changes::{ScriptError, in_order};
+use crate::document::{Document, DocumentRun};
+use crate::edit::TimedEdit;
+use crate::refusal::Refusal;
+use crate::run::Run;
+use crate::scenario::{MAX_FRAMES, Scenario};
+use crate::script::Script;
+use stillbase_query::ProgressCallback;
 
 impl Session {
     /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.

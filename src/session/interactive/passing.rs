@@ -1,8 +1,8 @@
 //! Playback of a session: how time passes, and which frame is on display.
 
 use super::Session;
-use crate::query::ProgressCallback;
-use crate::session::document::REPORT_FRAMES;
+use crate::document::REPORT_FRAMES;
+use stillbase_query::ProgressCallback;
 
 impl Session {
     /// Starts playback. At the end of a finished motion it starts over.

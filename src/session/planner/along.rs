@@ -1,16 +1,16 @@
 //! Motions along curves and joint lines: the parts of a path, and their timing.
 
 use super::plan::{Plan, TimingBottleneck, dynamics_of, keeps_rules};
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::Motion;
-use crate::planning::curves::path::{PathChain, least_rate_curve, minimum_norm_curve};
-use crate::planning::curves::{Curve, Path};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::timing::{DriveLimits, Profile, TimeLaw, Usage, fastest};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Corners, PathShape, Scenario, Task};
+use crate::refusal::Refusal;
+use crate::scenario::{Corners, PathShape, Scenario, Task};
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::Motion;
+use stillbase_planning::curves::path::{PathChain, least_rate_curve, minimum_norm_curve};
+use stillbase_planning::curves::{Curve, Path};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::timing::{DriveLimits, Profile, TimeLaw, Usage, fastest};
 
 /// Paths from rest to rest, each with its length.
 pub(super) type PathSegments = Vec<(Path, f64)>;

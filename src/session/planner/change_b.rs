@@ -3,17 +3,17 @@
 use super::along::{slow_to_limits, timed};
 use super::plan::{Plan, PlannerSpace, dynamics_of, keeps_rules};
 use super::poses::{no_b_refusal, poses_at_b, refusal};
-use crate::mechanics::planar::Vector;
-use crate::planning::common::unreachable_reason;
-use crate::planning::curves::Path;
-use crate::planning::off_plane::Price;
-use crate::planning::off_plane::price::{INWARD_SHARES, bang_bang_in_b, joint_line, nearest_planes};
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::posed::{PoseAngles, nearest_poses};
-use crate::planning::timing::{DriveLimits, Profile, TimeLaw};
-use crate::planning::{Forecast, Motion};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Scenario, Task};
+use crate::refusal::Refusal;
+use crate::scenario::{Scenario, Task};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::unreachable_reason;
+use stillbase_planning::curves::Path;
+use stillbase_planning::off_plane::Price;
+use stillbase_planning::off_plane::price::{INWARD_SHARES, bang_bang_in_b, joint_line, nearest_planes};
+use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase_planning::posed::{PoseAngles, nearest_poses};
+use stillbase_planning::timing::{DriveLimits, Profile, TimeLaw};
+use stillbase_planning::{Forecast, Motion};
 
 /// Plans a motion from A at the b of the task to B at another b; a limit on |n_B| bounds the time from below.
 pub(super) fn change_b(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {

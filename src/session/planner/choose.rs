@@ -9,11 +9,11 @@ use super::momentum::zero_momentum;
 use super::plan::{Plan, PlannerSpace};
 use super::proposals::tried_refusal;
 use super::rates::{minimum_norm, same_tip};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::timing::TimeLaw;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::timing::TimeLaw;
 
-use crate::session::refusal::{Refusal, check_time};
-use crate::session::scenario::{Scenario, Task, TaskKind};
+use crate::refusal::{Refusal, check_time};
+use crate::scenario::{Scenario, Task, TaskKind};
 
 /// Plans the task of a scenario.
 ///

@@ -4,15 +4,15 @@
 use super::held::along_curves;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::start;
-use crate::planning::Motion;
-use crate::planning::curves::path::minimum_norm_curve;
-use crate::planning::curves::{Curve, Path, PathTable};
-use crate::planning::following::{Rule, trace};
-use crate::planning::forecast::Forecast;
-use crate::planning::pose_space::NoPoseSpace;
-use crate::planning::timing::{DriveLimits, Profile};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Scenario, TaskKind};
+use crate::refusal::Refusal;
+use crate::scenario::{Scenario, TaskKind};
+use stillbase_planning::Motion;
+use stillbase_planning::curves::path::minimum_norm_curve;
+use stillbase_planning::curves::{Curve, Path, PathTable};
+use stillbase_planning::following::{Rule, trace};
+use stillbase_planning::forecast::Forecast;
+use stillbase_planning::pose_space::NoPoseSpace;
+use stillbase_planning::timing::{DriveLimits, Profile};
 
 /// Number of instants of the forecast for each sample.
 const INSTANTS_PER_SAMPLE: usize = 8;

@@ -5,15 +5,15 @@ use super::plan::{Plan, PlannerSpace, PlanningEffort};
 use super::poses::{posed, poses_at_b, poses_facing, reached, refusal};
 use super::posture;
 use super::proposals::proved_refusal;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::unreached;
-use crate::planning::curves::{Curve, Path};
-use crate::planning::following::{Rule, trace};
-use crate::planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
-use crate::planning::posed::PoseAngles;
-use crate::planning::timing::TimeLaw;
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Corners, PathShape, Scenario, Task};
+use crate::refusal::Refusal;
+use crate::scenario::{Corners, PathShape, Scenario, Task};
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::common::unreached;
+use stillbase_planning::curves::{Curve, Path};
+use stillbase_planning::following::{Rule, trace};
+use stillbase_planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
+use stillbase_planning::posed::PoseAngles;
+use stillbase_planning::timing::TimeLaw;
 
 /// Plans a motion with b held. A refusal proposes only what has been tried.
 pub(super) fn held(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
@@ -64,7 +64,7 @@ pub(super) fn reactionless(
 }
 
 /// Follows curves of the end effector with b held, for a machine without planes; `law` as in
-/// [`PostureRequest`](crate::planning::posture::PostureRequest).
+/// [`PostureRequest`](stillbase_planning::posture::PostureRequest).
 pub(super) fn along_curves(
     scenario: &Scenario,
     space: &PoseSpace,

@@ -5,20 +5,20 @@ use super::held::reactionless;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::poses_at_b;
 use super::rates::minimum_norm;
-use crate::planning::curves::{Curve, CurvePoint, Path};
-use crate::planning::following::trace;
-use crate::planning::off_plane::LeastReaction;
-use crate::planning::off_plane::b_course::BaseReaction;
-use crate::planning::off_plane::least_reaction::{FixedB, MinimumNorm, ReactionNorm, Verdicts};
-use crate::planning::pose_constant::Unreachable;
-use crate::planning::pose_space::{PlaneError, Planes, PoseSpace};
-use crate::planning::reactionless::BSet;
-use crate::planning::timing::{DriveLimits, Profile, TimeLaw};
-use crate::planning::{Forecast, Motion};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{ReactionObjective, Scenario, Task, TaskKind};
-use crate::settings::number::nine_digits;
-use crate::settings::word::Choice;
+use crate::refusal::Refusal;
+use crate::scenario::{ReactionObjective, Scenario, Task, TaskKind};
+use stillbase_planning::curves::{Curve, CurvePoint, Path};
+use stillbase_planning::following::trace;
+use stillbase_planning::off_plane::LeastReaction;
+use stillbase_planning::off_plane::b_course::BaseReaction;
+use stillbase_planning::off_plane::least_reaction::{FixedB, MinimumNorm, ReactionNorm, Verdicts};
+use stillbase_planning::pose_constant::Unreachable;
+use stillbase_planning::pose_space::{PlaneError, Planes, PoseSpace};
+use stillbase_planning::reactionless::BSet;
+use stillbase_planning::timing::{DriveLimits, Profile, TimeLaw};
+use stillbase_planning::{Forecast, Motion};
+use stillbase_settings::number::nine_digits;
+use stillbase_settings::word::Choice;
 
 /// Plans the motion with the least reaction. On planes, b changes as little as its feasible corridor allows; on other
 /// machines b is held, if that is feasible.

@@ -6,15 +6,15 @@ use std::f64::consts::TAU;
 use super::along::{curves, in_rounds};
 use super::plan::{Plan, PlannerSpace, dynamics_of};
 use super::poses::{no_b_refusal, reached, start};
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::curves::Path;
-use crate::planning::off_plane::b_integral::BIntegral;
-use crate::planning::off_plane::drift::zero_momentum_curve;
-use crate::planning::off_plane::null_space::MomentumFreedom;
-use crate::planning::pose_space::PoseSpace;
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{PathShape, Scenario, Task};
-use crate::settings::number::fixed;
+use crate::refusal::Refusal;
+use crate::scenario::{PathShape, Scenario, Task};
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::curves::Path;
+use stillbase_planning::off_plane::b_integral::BIntegral;
+use stillbase_planning::off_plane::drift::zero_momentum_curve;
+use stillbase_planning::off_plane::null_space::MomentumFreedom;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_settings::number::fixed;
 
 /// A point lies on the curve of two drives if its distance is at most this fraction of the reach. Nine printed digits
 /// of a point are enough for that.

@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::dynamics::Surroundings;
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::curves::Path;
-use crate::planning::off_plane::Price;
-use crate::planning::off_plane::least_reaction::Verdicts;
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::timing::limits::DriveLimit;
-use crate::planning::timing::{DriveLimits, TimeLaw};
-use crate::planning::{Forecast, Motion};
-use crate::session::Refusal;
-use crate::session::scenario::Scenario;
+use crate::Refusal;
+use crate::scenario::Scenario;
+use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_planning::curves::Path;
+use stillbase_planning::off_plane::Price;
+use stillbase_planning::off_plane::least_reaction::Verdicts;
+use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase_planning::timing::limits::DriveLimit;
+use stillbase_planning::timing::{DriveLimits, TimeLaw};
+use stillbase_planning::{Forecast, Motion};
 
 /// The pose space of a machine, or why its b cannot be held.
 pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;

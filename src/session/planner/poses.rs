@@ -3,15 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use super::plan::PlannerSpace;
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::common::unreachable_reason;
-use crate::planning::pose_constant::Unreachable;
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::{self, PoseAngles};
-use crate::planning::reactionless::NoReach;
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Scenario, Task};
-use crate::settings::number::{ShortNumber, fixed, nine_digits};
+use crate::refusal::Refusal;
+use crate::scenario::{Scenario, Task};
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::common::unreachable_reason;
+use stillbase_planning::pose_constant::Unreachable;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posed::{self, PoseAngles};
+use stillbase_planning::reactionless::NoReach;
+use stillbase_settings::number::{ShortNumber, fixed, nine_digits};
 
 /// Returns a pose of each point at the b of the task.
 pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<PoseAngles>, Refusal> {

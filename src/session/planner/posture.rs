@@ -3,16 +3,16 @@
 use super::plan::PlanningEffort;
 use super::poses::{hand_of, posed, poses_facing};
 use super::proposals::inner_values;
-use crate::mechanics::planar::Vector;
-use crate::planning::common::common_b_set;
-use crate::planning::curves::path::least_rate_curve;
-use crate::planning::curves::{Curve, PathPoint, PathTable};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posture::{Posture, PostureRequest};
-use crate::planning::timing::TimeLaw;
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{Scenario, Task};
-use crate::settings::number::nine_digits;
+use crate::refusal::Refusal;
+use crate::scenario::{Scenario, Task};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::common_b_set;
+use stillbase_planning::curves::path::least_rate_curve;
+use stillbase_planning::curves::{Curve, PathPoint, PathTable};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posture::{Posture, PostureRequest};
+use stillbase_planning::timing::TimeLaw;
+use stillbase_settings::number::nine_digits;
 
 /// Number of intervals of each curve. A proposed b has to reach the ends of all of them.
 const INTERVALS_PER_CURVE: usize = 16;

@@ -1,13 +1,13 @@
 //! Refusals that propose only what has been tried.
 
 use super::plan::PlanningEffort;
-use crate::mechanics::planar::Vector;
-use crate::planning::common::common_b_set;
-use crate::planning::pose_constant::{PointCorrection, Unreachable};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::reactionless::{BSet, Decimal};
-use crate::session::refusal::Refusal;
-use crate::session::scenario::{PathShape, Task};
+use crate::refusal::Refusal;
+use crate::scenario::{PathShape, Task};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::common_b_set;
+use stillbase_planning::pose_constant::{PointCorrection, Unreachable};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::reactionless::{BSet, Decimal};
 
 /// Depths inside an interval of b at which values are tried, as fractions of half its width.
 const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];

@@ -3,12 +3,12 @@
 use super::along::{PathSegments, by_least_rates, curves};
 use super::plan::PlannerSpace;
 use super::poses::{posed, poses_at_b, reached, start};
-use crate::planning::curves::Path;
-use crate::planning::curves::path::{SameTip, same_tip_path};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::PoseAngles;
-use crate::session::refusal::Refusal;
-use crate::session::scenario::Scenario;
+use crate::refusal::Refusal;
+use crate::scenario::Scenario;
+use stillbase_planning::curves::Path;
+use stillbase_planning::curves::path::{SameTip, same_tip_path};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posed::PoseAngles;
 
 /// Follows the curves of the end effector with least joint rates, from a pose of A.
 pub(super) fn minimum_norm(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {

@@ -1,6 +1,6 @@
 //! Bounds on the duration and the step size of a run.
 
-use crate::settings::range::Range;
+use stillbase_settings::range::Range;
 
 /// Maximum duration of a run, s.
 pub const MAX_TIME: f64 = 3600.0;

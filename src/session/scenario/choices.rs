@@ -1,6 +1,6 @@
 //! The choices of a task: its kind, what joins its points, what happens at corners and what is kept small.
 
-use crate::settings::word::words;
+use stillbase_settings::word::words;
 
 words! {
     /// Kind of a task: how the redundancy of three drives over two coordinates is resolved.

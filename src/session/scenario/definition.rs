@@ -5,12 +5,12 @@ use super::error::ScenarioError;
 use super::kept::{Bookmark, Branch};
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{Machine, MachineError};
-use crate::session::TimedEdit;
-use crate::settings::range::RangeCheck;
-use crate::simulation::Setup;
-use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, PlantDifferences};
+use crate::TimedEdit;
+use stillbase_mechanics::machine::{Machine, MachineError};
+use stillbase_settings::range::RangeCheck;
+use stillbase_simulation::Setup;
+use stillbase_simulation::control::Control;
+use stillbase_simulation::plant::{Base, PlantDifferences};
 
 /// Machine, task and all settings from which a run starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl Scenario {
     }
 
     /// Returns the scenario without edits, bookmarks and branches.
-    pub(crate) fn without_edits(&self) -> Self {
+    pub fn without_edits(&self) -> Self {
         let Self { name, title, machine, plant, base, task, control, step, .. } = self;
         let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
         Self {

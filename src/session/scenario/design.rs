@@ -7,13 +7,13 @@ use std::ops::Deref;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::mechanics::balance::{ParameterBounds, Preset};
-use crate::mechanics::counterweights::{DENSITY_RANGE, Disc, THICKNESS_RANGE};
-use crate::mechanics::machine::{Drive, Machine, ranges};
-use crate::settings::change;
-use crate::settings::key::{self, HOLD_WORDS, Key, KeyType};
-use crate::settings::keyed::{HasKeyType, keyed};
-use crate::settings::range::{Range, RangeCheck, quote_clipped};
+use stillbase_mechanics::balance::{ParameterBounds, Preset};
+use stillbase_mechanics::counterweights::{DENSITY_RANGE, Disc, THICKNESS_RANGE};
+use stillbase_mechanics::machine::{Drive, Machine, ranges};
+use stillbase_settings::change;
+use stillbase_settings::key::{self, HOLD_WORDS, Key, KeyType};
+use stillbase_settings::keyed::{HasKeyType, keyed};
+use stillbase_settings::range::{Range, RangeCheck, quote_clipped};
 
 const LINK: &str = "a link of this name";
 const SOUGHT: &str = "a length that is sought";

@@ -3,9 +3,9 @@
 use thiserror::Error;
 
 use super::bounds::ordinal;
-use crate::mechanics::machine::{FileError, MachineError};
-use crate::settings::range::{Requirement, range_error};
-use crate::settings::text::MAX_TEXT_BYTES;
+use stillbase_mechanics::machine::{FileError, MachineError};
+use stillbase_settings::range::{Requirement, range_error};
+use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Why a file is not a scenario.
 #[derive(Debug, Error)]

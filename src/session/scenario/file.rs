@@ -11,13 +11,13 @@ use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineSpec};
-use crate::session::{TimedEdit, check_edits};
-use crate::settings::change;
-use crate::settings::range::{quote_clipped, shortened};
-use crate::settings::text::{control_character, plain};
-use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, PlantDifferences};
+use crate::{TimedEdit, check_edits};
+use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineSpec};
+use stillbase_settings::change;
+use stillbase_settings::range::{quote_clipped, shortened};
+use stillbase_settings::text::{control_character, plain};
+use stillbase_simulation::control::Control;
+use stillbase_simulation::plant::{Base, PlantDifferences};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

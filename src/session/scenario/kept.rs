@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::bounds::MAX_TIME;
-use crate::session::TimedEdit;
-use crate::settings::number::ShortNumber;
-use crate::settings::text::control_character;
+use crate::TimedEdit;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::text::control_character;
 
 /// A named instant of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

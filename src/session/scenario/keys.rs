@@ -6,11 +6,11 @@ use super::design::{self, DesignBrief};
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance;
-use crate::mechanics::machine;
-use crate::settings::change;
-use crate::settings::key::{Effect, Key};
-use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
+use stillbase_mechanics::machine;
+use stillbase_settings::change;
+use stillbase_settings::key::{Effect, Key};
+use stillbase_simulation::control::Control;
+use stillbase_simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, Load, PlantDifferences, Wheel};
 
 // Parts whose keys all change the plan, and parts on whose keys no frame depends.
 const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS);

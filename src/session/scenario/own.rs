@@ -2,8 +2,8 @@
 
 use super::bounds::{DURATION_RANGE, POSE_ACCELERATION, STEP_RANGE};
 use super::task::POSE_CONSTANT_RANGE;
-use crate::settings::key::{Effect, Key};
-use crate::settings::keyed::keyed;
+use stillbase_settings::key::{Effect, Key};
+use stillbase_settings::keyed::keyed;
 
 keyed! {
     /// Keys of a scenario that belong to no part.

@@ -1,7 +1,7 @@
 //! The points of a task: A, those between, B; and the changes that move, add, remove and reorder them.
 
 use super::task::{Task, TaskChange};
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::planar::Vector;
 
 impl Task {
     /// Returns all points in order, A first and B last, m.

@@ -11,11 +11,11 @@ use super::keys::{SCENARIO_TABLES, key_of, keys};
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{self, MACHINE_TABLES, is_of_machine};
-use crate::planning::curves::Samples;
-use crate::settings::change::{self, DEFAULT_WORD};
-use crate::settings::key::{self, Effect, Key, KeyType};
-use crate::settings::range::{RangeCheck, quote_clipped};
+use stillbase_mechanics::machine::{self, MACHINE_TABLES, is_of_machine};
+use stillbase_planning::curves::Samples;
+use stillbase_settings::change::{self, DEFAULT_WORD};
+use stillbase_settings::key::{self, Effect, Key, KeyType};
+use stillbase_settings::range::{RangeCheck, quote_clipped};
 
 /// Why settings cannot be applied to a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

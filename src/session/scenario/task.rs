@@ -4,18 +4,18 @@ use toml::Table;
 
 use super::bounds::MAX_TIME;
 use super::choices::{Corners, PathShape, ReactionObjective, TaskKind};
-use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{DriveAngles, PerDrive};
-use crate::planning::curves::Samples;
-use crate::planning::posture::Posture;
-use crate::planning::timing::TimeLaw;
-use crate::settings::change::{self, DEFAULT_WORD};
-use crate::settings::key::Key;
-use crate::settings::keyed::keyed;
-use crate::settings::number::{ShortNumber, counted};
-use crate::settings::range::{Range, RangeCheck};
-use crate::settings::word::Choice;
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::curves::Samples;
+use stillbase_planning::posture::Posture;
+use stillbase_planning::timing::TimeLaw;
+use stillbase_settings::change::{self, DEFAULT_WORD};
+use stillbase_settings::key::Key;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::number::{ShortNumber, counted};
+use stillbase_settings::range::{Range, RangeCheck};
+use stillbase_settings::word::Choice;
 
 /// Some keys of a task, as a file states them.
 pub type TaskChange = Table;

@@ -6,11 +6,11 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::machine::{Machine, MachineSpec};
-use crate::settings::change;
-use crate::settings::key::{Key, KeyType};
-use crate::settings::keyed::ANY_NUMBER;
-use crate::settings::range::{Range, quote_clipped};
+use stillbase_mechanics::machine::{Machine, MachineSpec};
+use stillbase_settings::change;
+use stillbase_settings::key::{Key, KeyType};
+use stillbase_settings::keyed::ANY_NUMBER;
+use stillbase_settings::range::{Range, quote_clipped};
 
 /// Maximum number of samples of one study.
 pub const MAX_SAMPLES: u64 = 1_000_000_000;

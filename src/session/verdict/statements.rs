@@ -12,11 +12,11 @@
 use serde::Serialize;
 
 use super::Verdict;
-use crate::mechanics::machine::Inertia;
-use crate::session::Run;
-use crate::settings::number::significant;
-use crate::simulation::Guide;
-use crate::simulation::frame::Frame;
+use crate::Run;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_settings::number::significant;
+use stillbase_simulation::Guide;
+use stillbase_simulation::frame::Frame;
 
 /// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;

@@ -1,9 +1,9 @@
 //! [`Base`]: settings of the base of the machine.
 
 use super::Wheel;
-use crate::settings::keyed::keyed;
-use crate::settings::range::Range;
-use crate::settings::word::words;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::range::Range;
+use stillbase_settings::word::words;
 
 keyed! {
     /// The base of the machine.

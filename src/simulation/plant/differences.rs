@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::friction::Friction;
 use super::load::Load;
-use crate::mechanics::machine::ranges::{INERTIA, LENGTH, MASS, PLACE};
-use crate::mechanics::machine::{Machine, MachineError};
-use crate::settings::key::Key;
-use crate::settings::keyed::keyed;
-use crate::settings::number::ShortNumber;
-use crate::settings::range::{Range, RangeCheck};
+use stillbase_mechanics::machine::ranges::{INERTIA, LENGTH, MASS, PLACE};
+use stillbase_mechanics::machine::{Machine, MachineError};
+use stillbase_settings::key::Key;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::{Range, RangeCheck};
 
 const AS_MODEL: &str = "as the model has it";
 
@@ -74,7 +74,7 @@ impl PlantDifferences {
     }
 
     /// Returns the checks that depend on several settings or on the number `n` of drives.
-    pub(crate) fn fits(&self, n: usize) -> Vec<RangeCheck> {
+    pub fn fits(&self, n: usize) -> Vec<RangeCheck> {
         let (load, friction) = (&self.payload, &self.friction);
         let later = |until| {
             let from = || format!("more than plant.payload.from, {} s", ShortNumber(load.from));

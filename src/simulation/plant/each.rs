@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::planar::PerDrive;
-use crate::settings::key::KeyType;
-use crate::settings::keyed::{ANY_NUMBER, DefaultFromText, HasKeyType};
-use crate::settings::range::RangeCheck;
+use stillbase_mechanics::planar::PerDrive;
+use stillbase_settings::key::KeyType;
+use stillbase_settings::keyed::{ANY_NUMBER, DefaultFromText, HasKeyType};
+use stillbase_settings::range::RangeCheck;
 
 /// One number for all drives, or one for each.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

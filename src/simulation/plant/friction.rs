@@ -12,10 +12,10 @@
 
 use super::each::DriveValues;
 use super::load::MAX_PAYLOAD;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::keyed::keyed;
-use crate::settings::range::Range;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::range::Range;
 
 const TORQUE_RANGE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
 const VISCOUS_RANGE: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");

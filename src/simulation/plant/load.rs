@@ -1,9 +1,9 @@
 //! [`Load`]: a temporary payload.
 
-use crate::mechanics::machine::{Machine, MachineError, Payload};
-use crate::settings::key::Key;
-use crate::settings::keyed::keyed;
-use crate::settings::range::Range;
+use stillbase_mechanics::machine::{Machine, MachineError, Payload};
+use stillbase_settings::key::Key;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::range::Range;
 
 /// Maximum mass of the temporary payload, kg; also the bound of its inertia, kg m², and of friction.
 pub const MAX_PAYLOAD: f64 = 1e4;

@@ -18,9 +18,9 @@
 //! Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
-use crate::mechanics::dynamics::{BaseWrench, Surroundings, assemble, matrix_times};
-use crate::mechanics::machine::{Inertia, Machine, MachineError};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, UnitVectors, Vector, cross, dot};
+use stillbase_mechanics::dynamics::{BaseWrench, Surroundings, assemble, matrix_times};
+use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, UnitVectors, Vector, cross, dot};
 
 const I: Vector = Vector::new(0.0, 1.0);
 
@@ -174,7 +174,7 @@ impl MovingBody {
         };
         let (q, qd) = (turns(q, base.angle), turns(qd, turning));
         let e = DriveAngles(q).units();
-        let (h, _) = crate::mechanics::dynamics::mass_matrix(&self.whole, &e, &qd);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &qd);
         let mut momenta = h.times(&qd);
         let (mut place, mut momentum) = (Vector::default(), Vector::default());
         if self.moves {
@@ -202,7 +202,7 @@ impl MovingBody {
         let mut wrench = x.wrench;
         if self.falls {
             let weight = self.arm.mass * self.around.gravity;
-            let moment = cross(crate::mechanics::dynamics::first_moment(&self.arm, &x.e), self.around.gravity);
+            let moment = cross(stillbase_mechanics::dynamics::first_moment(&self.arm, &x.e), self.around.gravity);
             wrench.statical.force -= weight;
             wrench.dynamic.force += weight;
             wrench.statical.moment -= moment;
@@ -245,9 +245,9 @@ impl MovingBody {
     pub fn arm_momentum(&self, x: &Slope) -> (Vector, f64) {
         let n = self.arm.drives;
         let qd = x.qd.first(n);
-        let lever = crate::mechanics::dynamics::first_moment(&self.arm, &x.e);
-        let p = crate::mechanics::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
-        let mut h = crate::mechanics::dynamics::angular_momentum(&self.arm, &x.e, &qd);
+        let lever = stillbase_mechanics::dynamics::first_moment(&self.arm, &x.e);
+        let p = stillbase_mechanics::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
+        let mut h = stillbase_mechanics::dynamics::angular_momentum(&self.arm, &x.e, &qd);
         if self.moves {
             h += self.arm.of_base(&x.qd);
         }
@@ -317,7 +317,7 @@ impl MovingBody {
     /// Returns the rates of a state, rad/s.
     pub fn rates(&self, state: &State) -> PerDrive {
         let e = DriveAngles(state.q).units();
-        let (h, _) = crate::mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
         h.solve(&self.own_momenta(state))
     }
 
@@ -347,7 +347,7 @@ impl MovingBody {
         }
         let n = self.arm.drives;
         let e = DriveAngles(state.q).units();
-        let (h, _) = crate::mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
         for _ in 0..8 {
             let mut fastest: f64 = 0.0;
             for i in (0..self.contacts.len()).filter(still) {

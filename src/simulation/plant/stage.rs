@@ -5,10 +5,10 @@
 //! the base moves is a compile-time parameter.
 
 use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
-use crate::mechanics::dynamics::{
+use stillbase_mechanics::dynamics::{
     BaseWrench, Factors, angular_rate, assemble, by_drives, leading_entries, matrix_times, wrench_with,
 };
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
 
 /// The part of a [`State`] on which the equations of motion depend.
 #[derive(Clone, Copy, Debug)]

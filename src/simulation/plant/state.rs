@@ -1,8 +1,8 @@
 //! [`State`]: positions and momenta of all moving parts, and its time derivative [`Slope`].
 
 use super::WheelState;
-use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
+use stillbase_mechanics::dynamics::BaseWrench;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vector};
 
 /// Positions and momenta of all moving parts.
 #[derive(Clone, Copy, Debug, PartialEq)]

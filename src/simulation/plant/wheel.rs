@@ -14,9 +14,9 @@
 //! in either direction, which brings the wheel to the limit at the end of the step. So the step in which the limit is
 //! reached has the right impulse, and later steps give no torque beyond the limit.
 
-use crate::settings::key::Key;
-use crate::settings::keyed::keyed;
-use crate::settings::range::Range;
+use stillbase_settings::key::Key;
+use stillbase_settings::keyed::keyed;
+use stillbase_settings::range::Range;
 
 keyed! {
     /// Settings of a reaction wheel.

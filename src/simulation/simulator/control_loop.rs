@@ -15,10 +15,10 @@
 
 use std::collections::VecDeque;
 
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
-use crate::planning::Reference;
-use crate::simulation::control::{Control, Controller, Reading};
-use crate::simulation::plant::{Actuation, ReducedState, Wheel, WheelState};
+use crate::control::{Control, Controller, Reading};
+use crate::plant::{Actuation, ReducedState, Wheel, WheelState};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
+use stillbase_planning::Reference;
 
 /// Control during a run.
 #[derive(Clone, Debug)]

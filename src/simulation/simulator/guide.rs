@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::machine::Machine;
-use crate::planning::following::Follower;
-use crate::planning::{Motion, Reference};
-use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, PlantDifferences};
+use crate::control::Control;
+use crate::plant::{Base, PlantDifferences};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::following::Follower;
+use stillbase_planning::{Motion, Reference};
 
 /// Source of the reference.
 #[derive(Clone, Debug)]

@@ -1,18 +1,16 @@
 //! [`Simulation`]: a run in progress and its present instant.
 
-use crate::mechanics::dynamics::{self, Surroundings, by_drives};
-use crate::mechanics::joint_forces::{InternalLoads, PinLoads};
-use crate::mechanics::kinematics::{end_effector, least_transmission};
-use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
-use crate::planning::Reference;
-use crate::planning::pose_space::plane_map;
-use crate::planning::reactionless::PlaneMap;
-use crate::simulation::control::{Controller, Reading};
-use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
-use crate::simulation::plant::{
-    Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState, SlipDirections, Slope, State,
-};
+use crate::control::{Controller, Reading};
+use crate::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
+use crate::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState, SlipDirections, Slope, State};
+use stillbase_mechanics::dynamics::{self, Surroundings, by_drives};
+use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
+use stillbase_mechanics::kinematics::{end_effector, least_transmission};
+use stillbase_mechanics::machine::{Machine, MachineError, RelativeAngle};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
+use stillbase_planning::Reference;
+use stillbase_planning::pose_space::plane_map;
+use stillbase_planning::reactionless::PlaneMap;
 
 use super::control_loop::ControlLoop;
 use super::guide::{Guide, Setup};
@@ -360,7 +358,7 @@ impl Simulation {
     /// Returns the figures that should be zero now; `plane` is b − b_ref, rad.
     fn audited(&self, plane: f64) -> Audit {
         let off = self.sources(self.body(), &self.now).less(&self.baseline);
-        let gap = |chain: &[f64; MAX_DRIVES]| crate::mechanics::machine::place_of(chain, &self.now.e).norm();
+        let gap = |chain: &[f64; MAX_DRIVES]| stillbase_mechanics::machine::place_of(chain, &self.now.e).norm();
         Audit {
             momentum: off.momentum.norm(),
             angular: off.angular,

@@ -1,8 +1,8 @@
 //! State within a step, error measures and the number of substeps.
 
-use crate::planning::Reference;
-use crate::simulation::frame::{Peaks, Totals};
-use crate::simulation::plant::{MAX_CONTACTS, SlipDirections, Slope, State};
+use crate::frame::{Peaks, Totals};
+use crate::plant::{MAX_CONTACTS, SlipDirections, Slope, State};
+use stillbase_planning::Reference;
 
 /// State at an instant within a step.
 #[derive(Clone, Copy, Debug)]

@@ -17,14 +17,12 @@
 use super::guide::Guide;
 use super::simulation::Simulation;
 use super::step_control::{Mismatch, Segment, StepState, Substep};
-use crate::mechanics::dynamics::by_drives;
-use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::planar::{DriveAngles, Vector, length};
-use crate::planning::{Motion, Reference};
-use crate::simulation::frame::Peaks;
-use crate::simulation::plant::{
-    MAX_CONTACTS, MovingBody, ReducedState, RungeKuttaStage, SlipDirections, Slope, StateRates,
-};
+use crate::frame::Peaks;
+use crate::plant::{MAX_CONTACTS, MovingBody, ReducedState, RungeKuttaStage, SlipDirections, Slope, StateRates};
+use stillbase_mechanics::dynamics::by_drives;
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::planar::{DriveAngles, Vector, length};
+use stillbase_planning::{Motion, Reference};
 
 /// Tolerance of the difference between two solutions, as a fraction of the peaks of the displayed quantities.
 const ERROR_TOLERANCE: f64 = 2e-5;
@@ -56,9 +54,10 @@ impl Simulation {
                 let r = motion.at(f64::from(i) / 16.0 * motion.duration());
                 level = level.max(MIN_JUMP_RATIO * r.qdd.max_abs());
                 let e = r.q.units();
-                let (torque, wrench) = crate::mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
+                let (torque, wrench) =
+                    stillbase_mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
                 let moments = &self.link_moments[usize::from(self.loaded)];
-                let pull = crate::mechanics::dynamics::inertial_pull(moments, &e, &r.qd, &r.qdd);
+                let pull = stillbase_mechanics::dynamics::inertial_pull(moments, &e, &r.qd, &r.qdd);
                 let torque = arm.motors().torques(&torque);
                 expected.torque_sum = expected.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
                 expected.force = expected.force.max(wrench.dynamic.force.norm());

@@ -11,7 +11,7 @@
 
 use super::simulation::Simulation;
 use super::step_control::{Mismatch, Segment, StepState, Substep};
-use crate::simulation::plant::{Contacts, MAX_CONTACTS, SlipDirections, Slope};
+use crate::plant::{Contacts, MAX_CONTACTS, SlipDirections, Slope};
 
 /// Maximum number of parts of one substep.
 const MAX_PARTS: usize = 100;

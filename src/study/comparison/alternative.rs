@@ -1,11 +1,11 @@
 //! [`Alternative`]: alternative motions for the same task.
 
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posed::poses_of_points;
-use crate::planning::timing::TimeLaw;
-use crate::session::scenario::{PathShape, Scenario, TaskChange, TaskKind, Value};
-use crate::session::with_start_edits;
-use crate::simulation::plant::Wheel;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posed::poses_of_points;
+use stillbase_planning::timing::TimeLaw;
+use stillbase_session::scenario::{PathShape, Scenario, TaskChange, TaskKind, Value};
+use stillbase_session::with_start_edits;
+use stillbase_simulation::plant::Wheel;
 
 /// A method of moving the end effector from A to B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::summary::{SummaryColumn, column};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::Motion;
-use crate::session::Run;
-use crate::session::scenario::Task;
-use crate::settings::number::counted;
-use crate::study::measures::{Beta, Measures};
+use crate::measures::{Beta, Measures};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_planning::Motion;
+use stillbase_session::Run;
+use stillbase_session::scenario::Task;
+use stillbase_settings::number::counted;
 
 /// A machine with its task and motion.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! [`SignalDifference`]: values of a signal at two instants, of one run or of two.
 
-use crate::simulation::frame::Frame;
-use crate::simulation::signals::Signal;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signals::Signal;
 
 /// Values of a signal at two instants.
 #[derive(Clone, Copy, Debug, PartialEq)]

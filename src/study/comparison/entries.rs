@@ -5,10 +5,10 @@ use std::sync::Arc;
 use super::{
     Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
 };
-use crate::query::{Portion, ProgressCallback, Query, Shared};
-use crate::session::Refusal;
-use crate::session::scenario::Scenario;
-use crate::settings::number::nine_digits;
+use stillbase_query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_session::Refusal;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::nine_digits;
 
 /// One row of the comparison.
 #[derive(Clone, Debug)]

@@ -14,11 +14,11 @@ pub use entries::{AlternativeRuns, Comparison, ComparisonEntry, ComparisonOutcom
 pub use row::{BaselineMachines, ComparisonRow, ComparisonTable};
 pub use summary::{SUMMARY_COLUMNS, Summary, SummaryColumn};
 
-use crate::mechanics::machine::Machine;
-use crate::query::Sequence;
-use crate::session::scenario::Scenario;
-use crate::session::{ProgressCallback, Refusal, replay_while};
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::Sequence;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{ProgressCallback, Refusal, replay_while};
+use stillbase_simulation::frame::Frame;
 
 /// Maximum number of frames stored per run. A longer run keeps every second, fourth, eighth … frame, and its last.
 const MAX_FRAMES: usize = 4000;

@@ -3,7 +3,7 @@
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::{ComparedRun, DesignCandidate, DesignMeasures, SUMMARY_COLUMNS, Summary};
-use crate::session::scenario::Scenario;
+use stillbase_session::scenario::Scenario;
 
 /// Results of a run, or why it failed.
 #[derive(Clone, Debug)]

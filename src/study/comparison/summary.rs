@@ -1,8 +1,8 @@
 //! [`Summary`]: results of a run, as one row of a table.
 
-use crate::session::scenario::Scenario;
-use crate::session::verdict::Verdict;
-use crate::simulation::frame::Frame;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::verdict::Verdict;
+use stillbase_simulation::frame::Frame;
 
 /// Results of a run.
 #[derive(Clone, Debug, PartialEq)]

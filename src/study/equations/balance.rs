@@ -8,10 +8,10 @@ use super::equation::{Equality, Equation, Origin, Term};
 use super::products::{coupling, first_moment, fixed_products};
 use super::reactions::{AXES, Reactions, VectorComponent, total};
 use super::symbol::indexed_symbol;
-use crate::mechanics::balance::{Body, Condition, Preset, conditions, design};
-use crate::mechanics::machine::{Inertia, Link, Machine};
-use crate::mechanics::planar::Vector;
-use crate::settings::number::subscript;
+use stillbase_mechanics::balance::{Body, Condition, Preset, conditions, design};
+use stillbase_mechanics::machine::{Inertia, Link, Machine};
+use stillbase_mechanics::planar::Vector;
+use stillbase_settings::number::subscript;
 
 /// Note for machines with masses off the axes of their links.
 const OFF_AXIS: &str = "Some masses lie off the axes of their links; the terms are what they do along them.";

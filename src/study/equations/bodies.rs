@@ -1,5 +1,5 @@
 //! [`Bodies`]: a machine link by link, with symbols. The equations compare sums over links, counterweights and payload
-//! with the closed forms of [`Inertia`](crate::mechanics::machine::Inertia).
+//! with the closed forms of [`Inertia`](stillbase_mechanics::machine::Inertia).
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -12,9 +12,9 @@
 use super::equation::Origin;
 use super::state::DriveState;
 use super::symbol::{indexed_symbol, symbol_of_name};
-use crate::mechanics::balance::Body;
-use crate::mechanics::machine::{Attach, Length, LinkPoint, Machine, PlaceOnLink};
-use crate::mechanics::planar::{MAX_DRIVES, Vector, cross, dot};
+use stillbase_mechanics::balance::Body;
+use stillbase_mechanics::machine::{Attach, Length, LinkPoint, Machine, PlaceOnLink};
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector, cross, dot};
 
 /// One step along a link, on the way from the base to a point.
 #[derive(Clone, Debug)]

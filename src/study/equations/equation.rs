@@ -1,7 +1,7 @@
 //! [`Equation`]: an equation of the paper with its present values.
 
-use crate::mechanics::balance::Body;
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::balance::Body;
+use stillbase_mechanics::machine::Machine;
 
 /// Body that a part of a term comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,10 +19,10 @@ mod stated;
 mod symbol;
 mod written;
 
-use crate::mechanics::balance::Preset;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::pose_space::constant_inertia;
-use crate::settings::number::ShortNumber;
+use stillbase_mechanics::balance::Preset;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_planning::pose_space::constant_inertia;
+use stillbase_settings::number::ShortNumber;
 
 pub use equation::{Equality, Equation, Origin, Term};
 pub use state::{DriveState, InstantKind, NoInstant};

@@ -5,8 +5,8 @@ use super::equation::{Equality, Equation, Origin, Term};
 use super::reactions::{AXES, Reactions, VectorComponent};
 use super::state::InstantKind;
 use super::symbol::{indexed_symbol, symbol_of_name};
-use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::machine::{Machine, RelativeAngle};
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{Machine, RelativeAngle};
 
 /// Tolerance of lines on the plane, as a fraction of the sum of |terms|: that of a simulated motion that counts as
 /// reactionless.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::bodies::{Arm, Bodies, BodyMass};
 use super::equation::{Origin, Term};
-use crate::mechanics::balance::{Body, Condition};
+use stillbase_mechanics::balance::{Body, Condition};
 
 /// Product of a mass and one or two lengths.
 struct Product {

@@ -4,9 +4,9 @@ use super::bodies::{Bodies, BodyMass, BodyMotion};
 use super::equation::{Equality, Equation, Origin, Term};
 use super::state::DriveState;
 use super::symbol::indexed_symbol;
-use crate::mechanics::dynamics::{self, MassMatrix, Surroundings};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
+use stillbase_mechanics::dynamics::{self, MassMatrix, Surroundings};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
 
 /// A machine at an instant: its bodies, and its closed forms.
 pub(super) struct Reactions<'a> {

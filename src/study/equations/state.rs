@@ -2,13 +2,13 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, PerDrive};
-use crate::planning::Reference;
-use crate::session::scenario::Scenario;
-use crate::session::{Refusal, Run, replay_while};
-use crate::settings::number::fixed;
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::Reference;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Refusal, Run, replay_while};
+use stillbase_settings::number::fixed;
+use stillbase_simulation::frame::Frame;
 
 /// Angles, rates and accelerations of the drives relative to the base.
 #[derive(Clone, Copy, Debug, PartialEq)]

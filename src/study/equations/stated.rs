@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::equation::{Equality, Equation, Origin, Term};
 use super::state::{DriveState, InstantKind};
 use super::symbol::plain;
-use crate::mechanics::machine::Machine;
+use stillbase_mechanics::machine::Machine;
 
 /// Equations of a machine at an instant.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! [`EquationCell`]: layout of an equation's line, with each value below its symbol.
 
 use super::equation::{Equality, Term};
-use crate::settings::number::fixed;
+use stillbase_settings::number::fixed;
 
 /// A term, or the sign between the sides.
 #[derive(Clone, Debug, PartialEq)]

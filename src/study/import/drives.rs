@@ -3,13 +3,13 @@
 use super::judge::{MotionCandidate, MotionEvaluator};
 use super::request::{MotionImportError, PreservedPath, Request};
 use super::ways::{MotionProposals, timed_path};
-use crate::planning::curves::Samples;
-use crate::planning::following::Rule;
-use crate::planning::following::nearest::{nearest_b, same_tip, turned_to_plane};
-use crate::planning::pose_space::{NotFollowable, PoseSpace};
-use crate::query::{ProgressCallback, part};
-use crate::session::scenario::{Task, TaskKind};
-use crate::settings::number::counted;
+use stillbase_planning::curves::Samples;
+use stillbase_planning::following::Rule;
+use stillbase_planning::following::nearest::{nearest_b, same_tip, turned_to_plane};
+use stillbase_planning::pose_space::{NotFollowable, PoseSpace};
+use stillbase_query::{ProgressCallback, part};
+use stillbase_session::scenario::{Task, TaskKind};
+use stillbase_settings::number::counted;
 
 /// Fraction of the work for assessing the given motion; the rest is the search.
 const ACCOUNT_SHARE: f64 = 0.3;

@@ -2,15 +2,15 @@
 //! can be planned.
 
 use super::judge::{MotionCandidate, MotionEvaluator};
-use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::curves::{Curve, Samples};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::posture::Posture;
-use crate::planning::reactionless::{BSet, between};
-use crate::query::ProgressCallback;
-use crate::session::scenario::{Task, TaskKind};
-use crate::settings::number::fixed;
-use crate::study::advice::Advice;
+use crate::advice::Advice;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_planning::curves::{Curve, Samples};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::posture::Posture;
+use stillbase_planning::reactionless::{BSet, between};
+use stillbase_query::ProgressCallback;
+use stillbase_session::scenario::{Task, TaskKind};
+use stillbase_settings::number::fixed;
 
 /// Number of points of a path at which the reachable b are computed.
 const PATH_POINTS: usize = 25;

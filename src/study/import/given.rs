@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::mechanics::machine::Machine;
-use crate::planning::curves::given::SamplesError;
-use crate::planning::curves::{Coordinates, Samples};
+use stillbase_mechanics::machine::Machine;
+use stillbase_planning::curves::given::SamplesError;
+use stillbase_planning::curves::{Coordinates, Samples};
 
 /// A motion given by samples.
 #[derive(Clone, Debug, PartialEq)]

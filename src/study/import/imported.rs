@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::given::GivenMotion;
 use super::judge::{MotionEffects, MotionEvaluator, Proposal};
-use crate::planning::curves::Coordinates;
-use crate::session::scenario::Scenario;
-use crate::settings::number::fixed;
-use crate::study::advice::{Advice, Remedy};
+use crate::advice::{Advice, Remedy};
+use stillbase_planning::curves::Coordinates;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::fixed;
 
 /// The reactions of a given motion, and the motion proposed in its place.
 #[derive(Clone, Debug, Serialize)]

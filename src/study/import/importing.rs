@@ -7,10 +7,10 @@ use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
 use super::request::{MotionImportError, PreservedPath, Request};
 use super::tip::of_tip;
 use super::ways::{MotionProposals, unchanged_motion};
-use crate::planning::curves::Coordinates;
-use crate::planning::pose_space::NoPoseSpace;
-use crate::query::{Portion, ProgressCallback, Query, part};
-use crate::session::Refusal;
+use stillbase_planning::curves::Coordinates;
+use stillbase_planning::pose_space::NoPoseSpace;
+use stillbase_query::{Portion, ProgressCallback, Query, part};
+use stillbase_session::Refusal;
 
 /// Minimum integration step of a proposal's scenario, s.
 const MIN_STEP: f64 = 1e-4;

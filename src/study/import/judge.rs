@@ -3,19 +3,19 @@
 use serde::Serialize;
 
 use super::given::GivenMotion;
-use crate::mechanics::dynamics::{Surroundings, angular_momentum, inverse_with_wrench};
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::planning::Motion;
-use crate::planning::curves::Coordinates;
-use crate::planning::following::nearest::Deviation;
-use crate::planning::forecast::Forecast;
-use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
-use crate::planning::timing::DriveLimits;
-use crate::query::{ProgressCallback, part};
-use crate::session::scenario::{Scenario, Task, TaskKind};
-use crate::session::{Refusal, Run, replay_while};
-use crate::study::advice::{Advice, Remedy};
+use crate::advice::{Advice, Remedy};
+use stillbase_mechanics::dynamics::{Surroundings, angular_momentum, inverse_with_wrench};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::Motion;
+use stillbase_planning::curves::Coordinates;
+use stillbase_planning::following::nearest::Deviation;
+use stillbase_planning::forecast::Forecast;
+use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase_planning::timing::DriveLimits;
+use stillbase_query::{ProgressCallback, part};
+use stillbase_session::scenario::{Scenario, Task, TaskKind};
+use stillbase_session::{Refusal, Run, replay_while};
 
 /// Fraction of the work for simulating a proposal; the rest is its assessment.
 const SIMULATION_SHARE: f64 = 0.8;

@@ -1,14 +1,14 @@
 //! A motion of the end effector on a plane b = const, for machines with closed-form planes: followed on one sheet.
 
 use super::judge::{MotionCandidate, MotionEvaluator};
-use crate::mechanics::planar::DriveAngles;
-use crate::planning::curves::{Curve, Samples};
-use crate::planning::following::{Rule, trace};
-use crate::planning::pose_space::{Planes, PoseSpace};
-use crate::planning::posed::poses_of_points;
-use crate::planning::reactionless::{BSet, between};
-use crate::session::scenario::{Task, TaskKind};
-use crate::study::advice::Advice;
+use crate::advice::Advice;
+use stillbase_mechanics::planar::DriveAngles;
+use stillbase_planning::curves::{Curve, Samples};
+use stillbase_planning::following::{Rule, trace};
+use stillbase_planning::pose_space::{Planes, PoseSpace};
+use stillbase_planning::posed::poses_of_points;
+use stillbase_planning::reactionless::{BSet, between};
+use stillbase_session::scenario::{Task, TaskKind};
 
 /// Number of points of a path at which the reachable b are computed.
 const PATH_POINTS: usize = 257;

@@ -3,9 +3,9 @@
 use thiserror::Error;
 
 use super::given::GivenMotion;
-use crate::planning::pose_space::NoPoseSpace;
-use crate::query::Shared;
-use crate::session::scenario::Scenario;
+use stillbase_planning::pose_space::NoPoseSpace;
+use stillbase_query::Shared;
+use stillbase_session::scenario::Scenario;
 
 /// What the proposal keeps of given drive angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,14 +5,14 @@ use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
 use super::plane;
 use super::request::{MotionImportError, Request};
 use super::ways::{MotionProposals, timed_path};
-use crate::planning::curves::Samples;
-use crate::planning::curves::path::minimum_norm_curve;
-use crate::planning::following::nearest::turned_to_plane;
-use crate::planning::pose_space::PoseSpace;
-use crate::query::{ProgressCallback, part};
-use crate::session::scenario::{Task, TaskKind};
-use crate::settings::number::{counted, fixed};
-use crate::study::advice::{Advice, Remedy};
+use crate::advice::{Advice, Remedy};
+use stillbase_planning::curves::Samples;
+use stillbase_planning::curves::path::minimum_norm_curve;
+use stillbase_planning::following::nearest::turned_to_plane;
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_query::{ProgressCallback, part};
+use stillbase_session::scenario::{Task, TaskKind};
+use stillbase_settings::number::{counted, fixed};
 
 /// Fraction of the work for the search for a b; the rest is the assessment of minimum-norm rates.
 const SEARCH_SHARE: f64 = 0.6;

@@ -2,14 +2,14 @@
 
 use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
 use super::request::MotionImportError;
-use crate::planning::Motion;
-use crate::planning::curves::path::minimum_norm_curve;
-use crate::planning::curves::{Path, PathTable, Samples};
-use crate::planning::pose_space::PoseSpace;
-use crate::planning::timing::Profile;
-use crate::query::ProgressCallback;
-use crate::session::scenario::{Task, TaskKind};
-use crate::study::advice::Advice;
+use crate::advice::Advice;
+use stillbase_planning::Motion;
+use stillbase_planning::curves::path::minimum_norm_curve;
+use stillbase_planning::curves::{Path, PathTable, Samples};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::timing::Profile;
+use stillbase_query::ProgressCallback;
+use stillbase_session::scenario::{Task, TaskKind};
 
 /// The given motion, and candidates for the proposal.
 pub(super) struct MotionProposals {

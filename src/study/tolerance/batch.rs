@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::deviate::CHUNK;
 use super::ensemble::{Ensemble, SampleOutcome, Sampler};
 use super::simulate::simulate;
-use crate::session::{Refusal, Run};
+use stillbase_session::{Refusal, Run};
 
 /// Method of computing outcomes.
 #[derive(Clone, Copy, Debug)]

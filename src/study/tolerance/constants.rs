@@ -9,8 +9,8 @@
 
 use super::deviate::CHUNK;
 use super::parameter::{UncertainParameter, VariedQuantity};
-use crate::mechanics::machine::{Inertia, Machine, MachineError};
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
 
 /// Returns the number of constants of a machine with n drives.
 pub(super) const fn count(n: usize) -> usize {

@@ -25,11 +25,11 @@ use super::constants::{self, BLOCK_MACHINES, Lanes, LinkConstants, count, evalua
 use super::deviate::{CHUNK, RandomStream};
 use super::moments::Moments;
 use super::parameter::{UncertainParameter, parameters};
-use crate::mechanics::dynamics::{Surroundings, base_wrench};
-use crate::mechanics::machine::{Inertia, Machine, MachineError};
-use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::planning::{Motion, Reference};
-use crate::session::scenario::Spread;
+use stillbase_mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
+use stillbase_planning::{Motion, Reference};
+use stillbase_session::scenario::Spread;
 
 /// Reactions of one machine on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::MachineError;
+use stillbase_mechanics::machine::MachineError;
 
 /// Why a study of tolerances cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]

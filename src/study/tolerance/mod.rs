@@ -13,7 +13,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | parameters that vary, and their spreads | [`UncertainParameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
+//! | parameters that vary, and their spreads | [`UncertainParameter`]; `Tolerance` and `Spread` of [scenarios](stillbase_session::scenario) |
 //! | random machines, a million per second | [`Ensemble`], [`Sampler`], [`SampleOutcome`] |
 //! | means and standard deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | contribution of each tolerance | [`Share`] |

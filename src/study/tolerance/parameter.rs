@@ -18,9 +18,9 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use super::ToleranceError;
 use super::deviate::inverse_normal;
-use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
-use crate::session::scenario::{Amount, Spread};
-use crate::settings::key::names;
+use stillbase_mechanics::machine::{Machine, MachineError, MachineSpec};
+use stillbase_session::scenario::{Amount, Spread};
+use stillbase_settings::key::names;
 
 /// The number of a machine that a parameter varies, with the index of its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::{
     Agreement, Bands, Distributions, Ensemble, SampleOutcome, Shares, TrackingComparison, UncertainParameter, Yields,
     simulate,
 };
-use crate::session::scenario::Tolerance;
-use crate::session::{Refusal, Run};
+use stillbase_session::scenario::Tolerance;
+use stillbase_session::{Refusal, Run};
 
 /// Consecutive machines of an ensemble with their outcomes.
 #[derive(Clone, Copy, Debug)]

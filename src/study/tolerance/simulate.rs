@@ -1,10 +1,10 @@
 //! Simulation of a varied machine under control that knows only the nominal one.
 
 use super::ensemble::SampleOutcome;
-use crate::mechanics::machine::Machine;
-use crate::session::{Refusal, Run};
-use crate::simulation::plant::{Load, PlantDifferences};
-use crate::simulation::{Guide, Setup, Simulation};
+use stillbase_mechanics::machine::Machine;
+use stillbase_session::{Refusal, Run};
+use stillbase_simulation::plant::{Load, PlantDifferences};
+use stillbase_simulation::{Guide, Setup, Simulation};
 
 /// Simulates a planned motion, control included, with another machine as the plant.
 ///

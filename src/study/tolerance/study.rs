@@ -6,13 +6,13 @@ use std::sync::Arc;
 use super::{
     Agreement, Bands, CHUNK, Ensemble, Histogram, Quantiles, SampleOutcome, Share, Shares, ToleranceError, Yield,
 };
-use crate::query::{Portion, ProgressCallback, Query};
-use crate::session::Run;
-use crate::session::scenario::{Scenario, Spread, Tolerance};
-use crate::simulation::control::Control;
-use crate::simulation::plant::PlantDifferences;
-use crate::study::base_spectrum::{BaseSpectrum, PerAxis};
-use crate::study::spectrum::{Spectrum, WindowFunction};
+use crate::base_spectrum::{BaseSpectrum, PerAxis};
+use crate::spectrum::{Spectrum, WindowFunction};
+use stillbase_query::{Portion, ProgressCallback, Query};
+use stillbase_session::Run;
+use stillbase_session::scenario::{Scenario, Spread, Tolerance};
+use stillbase_simulation::control::Control;
+use stillbase_simulation::plant::PlantDifferences;
 
 /// Number of instants at which a motion is evaluated.
 pub const STUDY_INSTANTS: usize = 200;

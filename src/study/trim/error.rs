@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::settings::number::{counted, fixed};
+use stillbase_settings::number::{counted, fixed};
 
 /// Why a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]

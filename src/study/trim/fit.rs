@@ -6,7 +6,7 @@ use super::error::TrimError;
 use super::long_run::{bartlett_lags, long_run, t_quantile};
 use super::rows::{Channel, Regressor, RegressorSource, TREND_PARAMETERS};
 use super::unknowns::Unknowns;
-use crate::mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::machine::{Inertia, Machine};
 
 /// Result of the least-squares fit.
 #[derive(Clone, Debug)]

@@ -5,13 +5,13 @@ use thiserror::Error;
 
 use super::taken::AdoptedParameters;
 use super::way::TrimMethod;
-use crate::mechanics::balance::{
+use stillbase_mechanics::balance::{
     Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceError, RebalanceRequest, rebalance_with,
     unreachable_by_changes,
 };
-use crate::mechanics::counterweights::{CounterweightError, place_weights_with, unreachable_by_weights};
-use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError, MachineSpec};
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::counterweights::{CounterweightError, place_weights_with, unreachable_by_weights};
+use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError, MachineSpec};
+use stillbase_mechanics::planar::Vector;
 
 /// Change of one number.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -9,7 +9,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | f, n | measured force and moment on the base, as in [`dynamics`](crate::mechanics::dynamics) | N, N m |
+//! | f, n | measured force and moment on the base, as in [`dynamics`](stillbase_mechanics::dynamics) | N, N m |
 //! | p | Σ i g_k q̇_k e_k, linear momentum: f = −ṗ + a constant | kg m/s |
 //! | h | Σ D_k q̇_k + Σ_{k<l} Re(C_kl e^{i(q_l − q_k)}) (q̇_k + q̇_l): n = −ḣ + Σ g_k e_k × gravity + a constant | kg m²/s |
 //! | x | g_k and C_kl, along and across, then D_k: the unknowns | kg m, kg m² |

@@ -7,8 +7,8 @@ use super::fit::Fit;
 use super::recording::{MeasuredMotion, MeasurementSet};
 use super::rows::{LinearTrend, Regressor};
 use super::unknowns::Unknowns;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 
 /// A motion to measure next: each drive moves as a sine about the middle of its measured range.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! [`MeasurementSet`]: the measured data.
 
 use super::error::TrimError;
-use crate::mechanics::planar::{PerDrive, Vector};
+use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// Samples of one motion. All lists have one entry per time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,9 +8,9 @@ use super::next::{Excitation, NextMeasurement};
 use super::rows::{Regressor, RegressorSource};
 use super::taken::AdoptedParameters;
 use super::worth::CorrectionBenefit;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::Vector;
-use crate::settings::number::{fixed, shown};
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::Vector;
+use stillbase_settings::number::{fixed, shown};
 
 /// Identified values of a machine, their correction, and the next measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]

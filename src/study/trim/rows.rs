@@ -7,8 +7,8 @@ use super::error::TrimError;
 use super::recording::{MeasuredMotion, MeasurementSet};
 use super::unknowns::Unknowns;
 use super::window::SmoothingWindow;
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Origin of the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::fit::Fit;
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::planar::Vector;
 
 /// The machine as identified.
 #[derive(Clone, Debug, PartialEq)]

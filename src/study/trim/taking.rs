@@ -2,10 +2,10 @@
 
 use super::mend::{corrected_as_built, identified_machine};
 use super::trimming::TrimResult;
-use crate::mechanics::machine::Machine;
-use crate::session::Edit;
-use crate::session::design::machine_edit;
-use crate::session::scenario::Scenario;
+use stillbase_mechanics::machine::Machine;
+use stillbase_session::Edit;
+use stillbase_session::design::machine_edit;
+use stillbase_session::scenario::Scenario;
 
 /// Returns the edit that replaces the session's machine by the identified one, as built or with its correction; `None`
 /// if it is that already. `measured` is the machine of the file with which the measurement was evaluated.

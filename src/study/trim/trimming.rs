@@ -13,8 +13,8 @@ use super::rows::{Regressor, RegressorSource};
 use super::taken::{AdoptedParameters, adopt_parameters};
 use super::way::TrimMethod;
 use super::worth::correction_benefit;
-use crate::mechanics::machine::Machine;
-use crate::query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_mechanics::machine::Machine;
+use stillbase_query::{Portion, ProgressCallback, Query, Shared};
 
 /// A measurement, with the options for its evaluation.
 #[derive(Clone, Debug, PartialEq)]

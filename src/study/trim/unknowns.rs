@@ -1,8 +1,8 @@
 //! [`Unknowns`]: the unknowns of a measurement, and their linear relation to force, moment and momentum.
 
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, UnitVectors, Vector, cross};
+use stillbase_mechanics::balance::Condition;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{PerDrive, UnitVectors, Vector, cross};
 
 /// Part of a complex coefficient of (7) or (8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,9 +1,9 @@
 //! [`TrimMethod`]: the numbers that may change in a correction.
 
-use crate::mechanics::balance::{Body, BodyQuantity, Parameter, ParameterBounds, RebalanceRequest};
-use crate::mechanics::counterweights::CounterweightSpec;
-use crate::mechanics::machine::{Counterweight, Machine};
-use crate::session::scenario::DesignBrief;
+use stillbase_mechanics::balance::{Body, BodyQuantity, Parameter, ParameterBounds, RebalanceRequest};
+use stillbase_mechanics::counterweights::CounterweightSpec;
+use stillbase_mechanics::machine::{Counterweight, Machine};
+use stillbase_session::scenario::DesignBrief;
 
 /// Numbers that may change in a correction.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,8 +19,8 @@ use super::fit::Fit;
 use super::mend::MachineCorrection;
 use super::rows::Regressor;
 use super::taken::AdoptedParameters;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::settings::number::shown;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_settings::number::shown;
 
 /// Effect of a change over the measured motions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

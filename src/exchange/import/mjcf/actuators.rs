@@ -3,13 +3,13 @@
 use roxmltree::Node;
 
 use super::coupled::{CoupledBodies, HingeSum, RelativeSet, unsigned};
-use crate::exchange::import::defaults::Element;
-use crate::exchange::import::linkage::{ImportedMotor, MAX_PARTS};
-use crate::exchange::import::read::{AttributeSource, each, number, numbers, several};
-use crate::exchange::import::refusal::{ImportError, element_error};
-use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::number::ShortNumber;
-use crate::settings::range::quote_clipped;
+use crate::import::defaults::Element;
+use crate::import::linkage::{ImportedMotor, MAX_PARTS};
+use crate::import::read::{AttributeSource, each, number, numbers, several};
+use crate::import::refusal::{ImportError, element_error};
+use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::quote_clipped;
 
 impl<'a> CoupledBodies<'a> {
     /// Returns the actuators as motors. Several that turn the same sum of hinges become one, with the sum of their

@@ -6,11 +6,11 @@ use nalgebra::Vector3;
 use roxmltree::Node;
 
 use super::together::CoupledSets;
-use crate::exchange::import::bodies::{AttachmentPoint, MjcfBodies};
-use crate::exchange::import::linkage::{MAX_PARTS, common_axis, owners, plane};
-use crate::exchange::import::read::{AttributeSource, each, number, word};
-use crate::exchange::import::refusal::{ImportError, element_error};
-use crate::settings::range::quote_clipped;
+use crate::import::bodies::{AttachmentPoint, MjcfBodies};
+use crate::import::linkage::{MAX_PARTS, common_axis, owners, plane};
+use crate::import::read::{AttributeSource, each, number, word};
+use crate::import::refusal::{ImportError, element_error};
+use stillbase_settings::range::quote_clipped;
 
 /// The couplings that are supported, for messages.
 pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \

@@ -3,13 +3,13 @@
 use roxmltree::Node;
 
 use super::coupled::{CoupledBodies, GearedPart, HingeSum, PARALLEL_WANTED, unsigned};
-use crate::exchange::import::bodies::{is_active, polynomial};
-use crate::exchange::import::defaults::Element;
-use crate::exchange::import::linkage::MAX_PARTS;
-use crate::exchange::import::read::{AttributeSource, each};
-use crate::exchange::import::refusal::{ImportError, element_error};
-use crate::settings::number::ShortNumber;
-use crate::settings::range::quote_clipped;
+use crate::import::bodies::{is_active, polynomial};
+use crate::import::defaults::Element;
+use crate::import::linkage::MAX_PARTS;
+use crate::import::read::{AttributeSource, each};
+use crate::import::refusal::{ImportError, element_error};
+use stillbase_settings::number::ShortNumber;
+use stillbase_settings::range::quote_clipped;
 
 /// Tolerance of an equality of a tendon in the pose of the file, rad.
 const EQUALITY_TOLERANCE_RAD: f64 = 1e-6;

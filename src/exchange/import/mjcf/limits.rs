@@ -1,9 +1,9 @@
 //! Limits of hinges and tendons.
 
 use super::coupled::{CoupledBodies, HingeSum, RelativeSet};
-use crate::exchange::import::linkage::{ImportedMotor, JointLimit};
-use crate::exchange::import::read::{each, several};
-use crate::exchange::import::refusal::ImportError;
+use crate::import::linkage::{ImportedMotor, JointLimit};
+use crate::import::read::{each, several};
+use crate::import::refusal::ImportError;
 
 /// A sum of hinges, its value in the reference pose, and its limits, rad.
 type Limited = (HingeSum, f64, [f64; 2]);

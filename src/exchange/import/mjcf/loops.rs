@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use roxmltree::Node;
 
 use super::coupled::CoupledBodies;
-use crate::exchange::import::bodies::AttachmentPoint;
-use crate::exchange::import::refusal::{ImportError, element_error};
-use crate::mechanics::planar::Vector;
+use crate::import::bodies::AttachmentPoint;
+use crate::import::refusal::{ImportError, element_error};
+use stillbase_mechanics::planar::Vector;
 
 /// Closure tolerance: vectors of a loop cancel if their sum is at most this fraction of the largest.
 const CLOSURE_TOLERANCE: f64 = 1e-9;

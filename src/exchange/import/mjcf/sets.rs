@@ -1,8 +1,8 @@
 //! The motor that turns each part, and the parts that are rotors.
 
 use super::coupled::{CoupledBodies, GearedPart, PARALLEL_WANTED, RelativeSet};
-use crate::exchange::import::linkage::{ImportedMotor, ImportedPart};
-use crate::exchange::import::refusal::{ImportError, element_error};
+use crate::import::linkage::{ImportedMotor, ImportedPart};
+use crate::import::refusal::{ImportError, element_error};
 
 impl CoupledBodies<'_> {
     /// Returns the rotors: the part, its motor, and the gear ratio.

@@ -3,8 +3,8 @@
 use super::super::breakdown::Body;
 use super::super::parameter::{BodyQuantity, Parameter};
 use super::refusal::RebalanceError;
-use crate::mechanics::machine::Machine;
-use crate::settings::number::ShortNumber;
+use crate::machine::Machine;
+use stillbase_settings::number::ShortNumber;
 
 /// Bounds of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ impl RebalanceRequest {
     /// Lists the positions of all links' centres of mass along the links, with default bounds about their present
     /// values. `penalty` holds one penalty a link, such as those of a [`Preset`](super::super::Preset).
     pub fn coms(machine: &Machine, penalty: &[f64]) -> Self {
-        let adjusted = |(j, link): (usize, &crate::mechanics::machine::Link)| ListedParameter {
+        let adjusted = |(j, link): (usize, &crate::machine::Link)| ListedParameter {
             parameter: Parameter::com(j),
             hold: ParameterBounds::Free,
             penalty: penalty.get(j).copied().unwrap_or(1.0),

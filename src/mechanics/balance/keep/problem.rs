@@ -9,9 +9,9 @@ use super::super::plane::{LinearEquation, SolutionSpace};
 use super::asked::{ListedParameter, MIN_MASS, ParameterBounds, RebalanceRequest};
 use super::refusal::{LimitRelaxation, LimitSide, ParameterLimit, RebalanceError};
 use super::search::{MassVariable, RebalanceSearch};
-use crate::convex::{LinearRow, Program, infeasible_bounds};
-use crate::mechanics::machine::{BALANCE_TOLERANCE, Inertia, Machine, MachineError, MachineSpec};
-use crate::mechanics::planar::Vector;
+use crate::machine::{BALANCE_TOLERANCE, Inertia, Machine, MachineError, MachineSpec};
+use crate::planar::Vector;
+use stillbase_convex::{LinearRow, Program, infeasible_bounds};
 
 /// A machine that has been kept balanced.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use super::super::parameter::Parameter;
-use crate::settings::number::nine_digits;
+use stillbase_settings::number::nine_digits;
 
 /// Lower or upper limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

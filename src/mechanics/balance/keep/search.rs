@@ -17,7 +17,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::super::distance::nearest;
 use super::super::plane::{LinearEquation, SolutionSpace};
-use crate::convex::LinearRow;
+use stillbase_convex::LinearRow;
 
 /// Maximum number of Newton steps from one start.
 const MAX_NEWTON_STEPS: usize = 60;

@@ -1,10 +1,10 @@
 //! Items of joint space for any number of drives: axes, pose, and ends of the planned path.
 
-use crate::picture::numbers::round_up;
-use crate::picture::scene::axes::Axis;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Marker, Scene};
-use crate::simulation::frame::Frame;
+use crate::numbers::round_up;
+use crate::scene::axes::Axis;
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{Anchor, Label, Marker, Scene};
+use stillbase_simulation::frame::Frame;
 
 /// Symbols of the drive angles.
 pub const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];

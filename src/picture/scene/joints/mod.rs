@@ -22,8 +22,8 @@ use super::camera::Camera;
 use super::options::ViewOptions;
 use super::pick::{DragAction, Pick};
 use super::pointer::Pointer;
-use crate::session::Run;
-use crate::simulation::frame::Frame;
+use stillbase_session::Run;
+use stillbase_simulation::frame::Frame;
 
 /// Joint space of a run. The unit of the scene is the radian.
 #[derive(Clone, Debug)]

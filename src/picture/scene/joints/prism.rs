@@ -11,20 +11,20 @@ use std::sync::Arc;
 
 use super::items;
 use super::range::ShownRange;
-use crate::picture::numbers::degrees;
-use crate::picture::scene::camera::{Camera, Orbit};
-use crate::picture::scene::course::stations;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded, palette};
-use crate::picture::scene::pick::{DragAction, PICK_RADIUS, Pick};
-use crate::picture::scene::pointer::{Pointer, dot};
-use crate::picture::scene::{
+use crate::numbers::degrees;
+use crate::scene::camera::{Camera, Orbit};
+use crate::scene::course::stations;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded, palette};
+use crate::scene::pick::{DragAction, PICK_RADIUS, Pick};
+use crate::scene::pointer::{Pointer, dot};
+use crate::scene::{
     Anchor, IN_PLACE, ItemChanges, Label, Marker, Mesh, MeshSet, Polyline, Scene, Solid, Strips, Transform, axes, place,
 };
-use crate::planning::pose_space::Planes;
-use crate::planning::reactionless::PlanePoint;
-use crate::session::Run;
-use crate::simulation::frame::Frame;
+use stillbase_planning::pose_space::Planes;
+use stillbase_planning::reactionless::PlanePoint;
+use stillbase_session::Run;
+use stillbase_simulation::frame::Frame;
 
 /// Centre of the shown interval of b while the present b is well inside, rad.
 const HOME_B_RAD: f64 = 2.5;

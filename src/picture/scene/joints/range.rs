@@ -1,6 +1,6 @@
 //! [`ShownRange`]: the interval of b that joint space shows.
 
-use crate::picture::scene::{ItemChanges, axes};
+use crate::scene::{ItemChanges, axes};
 
 /// Minimum length of the interval, rad.
 const MIN_LENGTH_RAD: f64 = 3.0;

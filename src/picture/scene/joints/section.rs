@@ -8,18 +8,18 @@ use std::sync::Arc;
 
 use super::items::{self, TITLES};
 use super::range::ShownRange;
-use crate::mechanics::planar::{DriveAngles, PerDrive};
-use crate::picture::numbers::{degrees, round_up, signed};
-use crate::picture::scene::camera::{Camera, FlatCamera, Orbit};
-use crate::picture::scene::course::stations;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded, palette};
-use crate::picture::scene::pick::{DragAction, PICK_RADIUS, Pick};
-use crate::picture::scene::pointer::{Pointer, dot};
-use crate::picture::scene::{Anchor, IN_PLACE, ItemChanges, Label, Mesh, MeshSet, Polyline, Scene, Solid, axes};
-use crate::planning::pose_space::{PoseSpace, RelativeJoint};
-use crate::session::Run;
-use crate::simulation::frame::Frame;
+use crate::numbers::{degrees, round_up, signed};
+use crate::scene::camera::{Camera, FlatCamera, Orbit};
+use crate::scene::course::stations;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded, palette};
+use crate::scene::pick::{DragAction, PICK_RADIUS, Pick};
+use crate::scene::pointer::{Pointer, dot};
+use crate::scene::{Anchor, IN_PLACE, ItemChanges, Label, Mesh, MeshSet, Polyline, Scene, Solid, axes};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::pose_space::{PoseSpace, RelativeJoint};
+use stillbase_session::Run;
+use stillbase_simulation::frame::Frame;
 
 /// Centre of the shown interval of b while the present b is well inside, rad.
 const HOME_B_RAD: f64 = 1.5;

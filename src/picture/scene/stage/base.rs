@@ -3,18 +3,18 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{Pose2, UnitVectors, Vector, unit};
-use crate::picture::numbers::{signed, three_digits};
-use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded, mix};
-use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Transform, point, posed};
-use crate::session::Run;
-use crate::simulation::frame::Frame;
-use crate::simulation::plant::{Base, BaseKind, Load};
+use crate::numbers::{signed, three_digits};
+use crate::scene::arrow::head;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded, mix};
+use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Transform, point, posed};
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
+use stillbase_session::Run;
+use stillbase_simulation::frame::Frame;
+use stillbase_simulation::plant::{Base, BaseKind, Load};
 
 /// Base and payload of a stage; they can change without a new stage.
 #[derive(Clone, Debug)]

@@ -2,16 +2,16 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::mechanics::kinematics::closest_turn;
-use crate::mechanics::machine::{MAX_ANGLE, Machine, RelativeAngle};
-use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::pick::{Grip, Pick, Pivot};
-use crate::picture::scene::pointer::Pointer;
-use crate::picture::scene::{Marker, Name, Polyline, Scene, Strips, Transform, place, point, posed};
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::LinkageModel;
+use crate::scene::options::Handle;
+use crate::scene::palette::{Palette, faded};
+use crate::scene::pick::{Grip, Pick, Pivot};
+use crate::scene::pointer::Pointer;
+use crate::scene::{Marker, Name, Polyline, Scene, Strips, Transform, place, point, posed};
+use stillbase_mechanics::kinematics::closest_turn;
+use stillbase_mechanics::machine::{MAX_ANGLE, Machine, RelativeAngle};
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector, unit};
 
 /// Radius of the innermost arc, as a fraction of the reach.
 const ARC_RADIUS: f64 = 0.062;

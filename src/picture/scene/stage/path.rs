@@ -1,12 +1,12 @@
 //! The planned path with its points, curves drawn with the pointer, and refused curves.
 
-use crate::mechanics::machine::place_of;
-use crate::mechanics::planar::{UnitVectors, Vector};
-use crate::picture::scene::course::{stations, waypoints};
-use crate::picture::scene::options::{Handle, RefusedCurve, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point};
-use crate::session::{Run, WaitReason};
+use crate::scene::course::{stations, waypoints};
+use crate::scene::options::{Handle, RefusedCurve, ViewOptions};
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point};
+use stillbase_mechanics::machine::place_of;
+use stillbase_mechanics::planar::{UnitVectors, Vector};
+use stillbase_session::{Run, WaitReason};
 
 /// A planned motion for drawing.
 #[derive(Clone, Debug)]

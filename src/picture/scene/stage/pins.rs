@@ -1,14 +1,14 @@
 //! Pin forces: an arrow at each pin, and a label with their scale.
 
-use crate::mechanics::joint_forces::Joints;
-use crate::mechanics::machine::{Chain, Machine, place_of};
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::{round_number, round_up, signed};
-use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::{Anchor, Label, Name, Polyline, Scene, point};
+use crate::numbers::{round_number, round_up, signed};
+use crate::scene::arrow::head;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::LinkageModel;
+use crate::scene::palette::Palette;
+use crate::scene::{Anchor, Label, Name, Polyline, Scene, point};
+use stillbase_mechanics::joint_forces::Joints;
+use stillbase_mechanics::machine::{Chain, Machine, place_of};
+use stillbase_mechanics::planar::Vector;
 
 /// The pins of a machine; empty if their forces are statically indeterminate.
 #[derive(Clone, Debug)]

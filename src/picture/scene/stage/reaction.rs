@@ -2,16 +2,16 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::mechanics::planar::{Vector, unit};
-use crate::picture::numbers::round_number;
-use crate::picture::scene::arrow::head;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::reaction::{ARC_RADIUS, FULL_ARROW, ReactionGlyph, Scale};
-use crate::picture::scene::{Anchor, Label, Polyline, Scene, Strips, point, posed};
-use crate::simulation::frame::Frame;
+use crate::numbers::round_number;
+use crate::scene::arrow::head;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::LinkageModel;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::Palette;
+use crate::scene::reaction::{ARC_RADIUS, FULL_ARROW, ReactionGlyph, Scale};
+use crate::scene::{Anchor, Label, Polyline, Scene, Strips, point, posed};
+use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_simulation::frame::Frame;
 
 /// Draws the reaction on the base and the centre of mass; `rest` is the name of the constant force.
 pub fn draw(

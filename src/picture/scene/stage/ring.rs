@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use crate::mechanics::kinematics::closest_turn;
-use crate::mechanics::planar::{Vector, unit};
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point, posed};
-use crate::planning::pose_space::PoseSpace;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point, posed};
+use stillbase_mechanics::kinematics::closest_turn;
+use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_planning::pose_space::PoseSpace;
 
 /// Number of vertices of the circle.
 const CIRCLE_VERTICES: u32 = 96;

@@ -1,11 +1,11 @@
 //! Further poses: snapshots along the motion as in Fig. 5, and other runs at the same instant.
 
-use crate::mechanics::planar::{Vector, unit};
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::options::ViewOptions;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Polyline, Scene, point};
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::LinkageModel;
+use crate::scene::options::ViewOptions;
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{Anchor, Label, Polyline, Scene, point};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Draws the links between base and end effector at instants along the motion; later ones are more opaque.
 pub fn snapshots(scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, options: &ViewOptions) {

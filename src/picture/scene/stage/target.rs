@@ -1,13 +1,13 @@
 //! The target and its labels.
 
-use crate::mechanics::planar::Vector;
-use crate::picture::numbers::signed;
-use crate::picture::scene::course::target_handle;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Marker, Polyline, Scene, point};
-use crate::simulation::frame::{Frame, Reach};
+use crate::numbers::signed;
+use crate::scene::course::target_handle;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{Anchor, Label, Marker, Polyline, Scene, point};
+use stillbase_mechanics::planar::Vector;
+use stillbase_simulation::frame::{Frame, Reach};
 
 /// Text at the target while it can be dragged.
 const INVITATION: &str = "drag me";

@@ -3,14 +3,14 @@
 
 use std::f64::consts::PI;
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, dot};
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::Bar;
-use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{ANGLE_SNAP, DragAction, GrabPoint, Grip, LinkHold, Pick};
-use crate::picture::scene::pointer::Pointer;
-use crate::planning::reactionless::{PlaneMap, PlanePoint};
-use crate::simulation::frame::Frame;
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::Bar;
+use crate::scene::options::Handle;
+use crate::scene::pick::{ANGLE_SNAP, DragAction, GrabPoint, Grip, LinkHold, Pick};
+use crate::scene::pointer::Pointer;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, dot};
+use stillbase_planning::reactionless::{PlaneMap, PlanePoint};
+use stillbase_simulation::frame::Frame;
 
 /// Step of the search for the angle of a drive, rad.
 const SEARCH_STEP_RAD: f64 = 0.02;

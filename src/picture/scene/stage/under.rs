@@ -1,13 +1,13 @@
 //! Picking of the machine and the items around it, and their highlighting.
 
 use super::reaction;
-use crate::mechanics::planar::Vector;
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, Theme, mix, palette};
-use crate::picture::scene::pointer::Pointer;
-use crate::picture::scene::{Polyline, Scene, Solid, place};
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, Theme, mix, palette};
+use crate::scene::pointer::Pointer;
+use crate::scene::{Polyline, Scene, Solid, place};
+use stillbase_mechanics::planar::Vector;
 
 /// Distances within which the pointer picks a link, a line, a pin and a payload, px.
 const LINK_PICK_PX: f64 = 6.0;

@@ -3,19 +3,19 @@
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
-use crate::mechanics::planar::{Pose2, Vector, unit};
-use crate::picture::scene::exaggeration::DrawnFrame;
-use crate::picture::scene::linkage::LinkageModel;
-use crate::picture::scene::options::{Handle, ViewOptions};
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{
+use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::linkage::LinkageModel;
+use crate::scene::options::{Handle, ViewOptions};
+use crate::scene::palette::{Palette, faded};
+use crate::scene::{
     Anchor, Area, ItemChanges, Label, Marker, Measure, Mesh, Name, Polyline, Rgba, Scene, Shade, Solid, Strips,
     dexterity, fill, point, posed,
 };
-use crate::planning::pose_space::{Planes, PoseSpace};
-use crate::planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
-use crate::query::{Portion, ProgressCallback, Query, Shared};
-use crate::simulation::frame::Frame;
+use stillbase_mechanics::planar::{Pose2, Vector, unit};
+use stillbase_planning::pose_space::{Planes, PoseSpace};
+use stillbase_planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
+use stillbase_query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_simulation::frame::Frame;
 
 /// Maximum distance of chords from the boundary, m for an arm of 1 m: less than a pixel.
 const CHORD_TOLERANCE: f64 = 5e-4;

@@ -3,8 +3,8 @@
 use super::remedy::blocked;
 use super::rule::{Blocked, Rule, SheetEnd, TraceEnd};
 use super::walk::{starting_poses, tables};
-use crate::planning::curves::{Curve, PathTable};
-use crate::planning::reactionless::PlaneMap;
+use crate::curves::{Curve, PathTable};
+use crate::reactionless::PlaneMap;
 
 /// Follows curves that join end to end on the plane b, rad, and returns a table of nodes for each. Of several poses at
 /// the start it takes the one nearest to `prefer`, rad, from which all curves can be followed.

@@ -3,9 +3,9 @@
 use super::rule::{Blocked, Rule, SheetEnd};
 use super::track::PlaneTrack;
 use super::walk::{TRIAL_STATIONS, at, common_b, is_feasible, part, starting_poses, tables, whole_s};
-use crate::mechanics::planar::unit;
-use crate::planning::curves::curve::Curve;
-use crate::planning::reactionless::{BSet, Decimal, PlaneMap};
+use crate::curves::curve::Curve;
+use crate::reactionless::{BSet, Decimal, PlaneMap};
+use stillbase_mechanics::planar::unit;
 
 /// Number of intervals of the curve that is drawn.
 const DRAWN_INTERVALS: i32 = 160;

@@ -3,8 +3,8 @@
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
-use crate::mechanics::planar::Vector;
-use crate::planning::reactionless::{DRIVE_PAIRS, Decimal, PlaneMap};
+use crate::reactionless::{DRIVE_PAIRS, Decimal, PlaneMap};
+use stillbase_mechanics::planar::Vector;
 
 /// Why a curve cannot be followed further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

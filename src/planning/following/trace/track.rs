@@ -1,12 +1,12 @@
 //! Following a curve on a plane step by step: poses with derivatives, and the reason for a stop.
 
 use super::rule::{Rule, SheetEnd, TraceEnd, crossed};
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::inverse::rates;
-use crate::planning::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint};
+use crate::curves::PathPoint;
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::table::PathTable;
+use crate::off_plane::inverse::rates;
+use crate::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Minimum step of s; if even this fails, the curve cannot be followed further.
 const MIN_STEP: f64 = 1e-11;

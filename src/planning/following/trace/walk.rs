@@ -2,9 +2,9 @@
 
 use super::rule::{Rule, TraceEnd};
 use super::track::PlaneTrack;
-use crate::mechanics::planar::{Vector, unit};
-use crate::planning::curves::{Curve, PathTable};
-use crate::planning::reactionless::{BSet, PlaneMap};
+use crate::curves::{Curve, PathTable};
+use crate::reactionless::{BSet, PlaneMap};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Number of stations at which a curve is checked for other b, or for its longest part.
 pub(super) const TRIAL_STATIONS: usize = 96;

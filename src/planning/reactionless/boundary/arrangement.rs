@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::balance::{self, CurveEdge};
 use super::cycle::Cycle;
 use super::span::{BoundarySpan, Surface};
-use crate::mechanics::planar::{Vector, cross, dot};
+use stillbase_mechanics::planar::{Vector, cross, dot};
 
 /// Intersections on a span are equal if their parameters differ by less than this.
 const INTERSECTION_TOLERANCE: f64 = 1e-11;

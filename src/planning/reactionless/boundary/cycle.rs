@@ -1,7 +1,7 @@
 //! The weighted cycle of all spans, whose winding number about a point is its number of poses.
 
 use super::span::{BoundarySpan, Surface};
-use crate::mechanics::planar::Vector;
+use stillbase_mechanics::planar::Vector;
 
 /// Number of rows in y into which spans are sorted, so that a ray is tested against few of them.
 const ROWS: usize = 64;

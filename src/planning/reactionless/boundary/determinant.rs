@@ -6,8 +6,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::mechanics::planar::{Vector, cross};
-use crate::planning::reactionless::PlaneMap;
+use crate::reactionless::PlaneMap;
+use stillbase_mechanics::planar::{Vector, cross};
 
 /// Limits that coincide with a straight fold are moved inwards by this, rad, so that a sheet lies beside them.
 pub(super) const FOLD_INSET: f64 = 4e-10;

@@ -2,7 +2,7 @@
 
 use super::arrangement::SpanPart;
 use super::{Boundary, from_chord};
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Tolerance of distances, as a fraction of the unit of the map.
 const DISTANCE_TOLERANCE: f64 = 2e-10;

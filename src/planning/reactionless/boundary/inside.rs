@@ -4,14 +4,14 @@ use super::Boundary;
 use super::arrangement::{Arrangement, SpanPart};
 use super::line::{BoundaryLine, BoundaryVertex};
 use super::span::BoundaryCurve;
-use crate::mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Vector, unit};
 
 impl Boundary {
     /// Returns the number of poses within the limits that put the end effector on p, m, on the plane b, rad. It is the
     /// winding number of all limits and folds about p; no pose is solved for.
     ///
     /// On a fold or a limit, within 1e-12 m, it is the number on one of its sides. Elsewhere it equals the number of
-    /// poses from [`PlaneMap::poses`](crate::planning::reactionless::PlaneMap::poses).
+    /// poses from [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses).
     pub fn pose_count(&self, p: Vector, b: f64) -> usize {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return 0;

@@ -2,8 +2,8 @@
 
 use super::arrangement::SpanPart;
 use super::span::{BoundaryCurve, BoundarySpan, Surface};
-use crate::mechanics::planar::{Vector, cross, unit};
-use crate::planning::reactionless::PlaneMap;
+use crate::reactionless::PlaneMap;
+use stillbase_mechanics::planar::{Vector, cross, unit};
 
 /// Maximum deviation of chords from the curve, m.
 const CHORD_TOLERANCE_M: f64 = 0.8e-5;
@@ -92,7 +92,7 @@ impl BoundaryLine {
         self.closed
     }
 
-    /// Returns the vertices turned by b*, rad: [`PlaneMap::turn`](crate::planning::reactionless::PlaneMap::turn) of b.
+    /// Returns the vertices turned by b*, rad: [`PlaneMap::turn`](crate::reactionless::PlaneMap::turn) of b.
     pub fn turned(&self, turn: f64) -> Vec<[f64; 2]> {
         turned(&self.vertices, turn)
     }

@@ -3,7 +3,7 @@
 use super::determinant::FOLD_INSET;
 use super::fold::{self, FoldCurves};
 use super::span::{BoundaryCurve, BoundarySpan, Surface};
-use crate::mechanics::planar::{Vector, dot};
+use stillbase_mechanics::planar::{Vector, dot};
 
 /// Maximum length of a span along an edge, rad.
 const MAX_STEP_RAD: f64 = 0.35;

@@ -7,8 +7,8 @@ use super::line::BoundaryLine;
 use super::region::{HalfPlane, Region, along};
 use super::span::{BoundaryCurve, BoundarySpan, Surface};
 use super::{Boundary, MIN_WIDTH_RAD};
-use crate::planning::reactionless::PlaneMap;
-use crate::planning::reactionless::change::{AngleDifference, CHANGE_POINT_MARGIN, DRIVE_PAIRS};
+use crate::reactionless::PlaneMap;
+use crate::reactionless::change::{AngleDifference, CHANGE_POINT_MARGIN, DRIVE_PAIRS};
 
 /// The change points of a pair of drives within the limits: a straight line in (a_1, a_2), a curve in the workspace.
 #[derive(Clone, Debug)]

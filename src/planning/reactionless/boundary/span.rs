@@ -5,9 +5,9 @@
 //! are a weighted cycle whose winding number about p is the number of poses of p.
 
 use super::determinant::{Determinant, FOLD_INSET, upright};
-use crate::mechanics::planar::{Vector, cross, dot};
-use crate::planning::golden::golden;
-use crate::planning::reactionless::{AngleLimit, PlaneMap};
+use crate::golden::golden;
+use crate::reactionless::{AngleLimit, PlaneMap};
+use stillbase_mechanics::planar::{Vector, cross, dot};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

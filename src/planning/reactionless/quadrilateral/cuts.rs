@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::few::SmallList;
 use super::lifts::lifts;
 use super::{Quadrilateral, bend};
-use crate::mechanics::planar::{Vector, unit};
-use crate::planning::reactionless::plane::AngleLimit;
+use crate::reactionless::plane::AngleLimit;
+use stillbase_mechanics::planar::{Vector, unit};
 
 /// Folds outside the bounds of β by less than this are still included, rad.
 const BOUND_MARGIN_RAD: f64 = 1e-3;

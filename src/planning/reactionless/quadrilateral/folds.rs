@@ -2,7 +2,7 @@
 
 use super::Quadrilateral;
 use super::few::SmallList;
-use crate::mechanics::planar::{Vector, cross, unit};
+use stillbase_mechanics::planar::{Vector, cross, unit};
 
 impl Quadrilateral {
     /// Returns the coefficients (A, B, C) of det ∝ A sin α + B sin β + C sin(α − β).

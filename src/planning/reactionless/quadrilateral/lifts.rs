@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::planning::reactionless::plane::AngleLimit;
+use crate::reactionless::plane::AngleLimit;
 
 /// Returns the angles within bounds that equal `angle` modulo whole turns, ascending.
 pub(super) fn lifts(angle: f64, bound: AngleLimit) -> impl Iterator<Item = f64> {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Quadrilateral, bend};
-use crate::mechanics::planar::unit;
+use stillbase_mechanics::planar::unit;
 
 impl Quadrilateral {
     /// Visits the poses of a point at B within the limits: the triangle of the arms and its mirror image.

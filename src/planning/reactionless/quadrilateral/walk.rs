@@ -7,8 +7,8 @@ use super::cuts::{CUTS, GraphCut};
 use super::few::SmallList;
 use super::lifts::lifts;
 use super::{Quadrilateral, REACH_ROUNDING, bend};
-use crate::mechanics::planar::{cross, unit};
-use crate::planning::reactionless::plane::AngleLimit;
+use crate::reactionless::plane::AngleLimit;
+use stillbase_mechanics::planar::{cross, unit};
 
 impl Quadrilateral {
     /// Returns the point of an arc at a parameter s.

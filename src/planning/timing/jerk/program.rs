@@ -2,10 +2,10 @@
 
 use super::easing::eased;
 use super::spline::share;
-use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
-use crate::planning::curves::PathPoint;
-use crate::planning::curves::path::Path;
-use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
+use crate::curves::PathPoint;
+use crate::curves::path::Path;
+use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// Points in every interval at which limits are imposed, as fractions of it, each with half of its weight: two-point
 /// Gaussian quadrature.

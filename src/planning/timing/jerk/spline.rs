@@ -1,8 +1,8 @@
 //! [`Timing`]: y as a quadratic spline over the nodes.
 
 use super::easing::eased;
-use crate::planning::timing::law::PathProgress;
-use crate::planning::timing::profile::Profile;
+use crate::timing::law::PathProgress;
+use crate::timing::profile::Profile;
 
 /// Points and weights of Gaussian quadrature over an interval, for its time.
 const GAUSS_TIMES: [(f64, f64); 4] = [

@@ -5,12 +5,12 @@ use super::odds::{FitTrial, likelihood_ratio, shares, try_fit};
 use super::possible::impossible_numbers;
 use super::said::{Cause, Doubt, MeasuredValue};
 use super::tolerances::{Tolerances, known_numbers};
-use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::Vector;
-use crate::study::trim::error::TrimError;
-use crate::study::trim::recording::{MeasuredMotion, MeasurementSet};
-use crate::study::trim::rows::Regressor;
-use crate::study::trim::unknowns::{Unknown, Unknowns};
+use crate::trim::error::TrimError;
+use crate::trim::recording::{MeasuredMotion, MeasurementSet};
+use crate::trim::rows::Regressor;
+use crate::trim::unknowns::{Unknown, Unknowns};
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::Vector;
 
 /// Threshold of ln Λ above which a fault is accepted: odds of 10⁴.
 const MIN_LOG_ODDS: f64 = 9.21;

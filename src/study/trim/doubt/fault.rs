@@ -7,9 +7,9 @@
 //! | u | the true force is u f or u conj(f), where f is the given force as a complex number |
 //! | s | the true moment is s n, where n is the given moment |
 
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::{PerDrive, Vector};
-use crate::study::trim::{MeasuredMotion, MeasurementSet};
+use crate::trim::{MeasuredMotion, MeasurementSet};
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// A fault: its description, the remedy, and the correction of the measurement.
 #[derive(Clone, Debug)]

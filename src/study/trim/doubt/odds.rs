@@ -1,10 +1,10 @@
 //! Likelihood ratio of a measurement corrected for a fault to the measurement as given.
 
 use super::tolerances::Tolerances;
-use crate::mechanics::machine::Machine;
-use crate::study::trim::error::TrimError;
-use crate::study::trim::fit::{Fit, estimate};
-use crate::study::trim::rows::Regressor;
+use crate::trim::error::TrimError;
+use crate::trim::fit::{Fit, estimate};
+use crate::trim::rows::Regressor;
+use stillbase_mechanics::machine::Machine;
 
 /// ln Λ for keeping joint limits instead of violating them: odds of 10⁶.
 const LIMITS_LOG_ODDS: f64 = 13.8;

@@ -11,10 +11,10 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::study::trim::{Fit, Unknown};
+use crate::trim::{Fit, Unknown};
+use stillbase_mechanics::balance::Condition;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
 
 /// Upper bound on M, as a multiple of that of the file.
 const MAX_MASS_FACTOR: f64 = 2.0;

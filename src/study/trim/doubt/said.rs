@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
-use crate::settings::number::shown;
+use stillbase_settings::number::shown;
 
 /// Why a measurement is rejected.
 #[derive(Clone, Debug, PartialEq)]

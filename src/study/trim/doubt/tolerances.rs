@@ -15,10 +15,10 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::mechanics::balance::Condition;
-use crate::mechanics::machine::{Inertia, Machine};
-use crate::mechanics::planar::Vector;
-use crate::study::trim::{Fit, Unknown, Unknowns};
+use crate::trim::{Fit, Unknown, Unknowns};
+use stillbase_mechanics::balance::Condition;
+use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::planar::Vector;
 
 /// Relative tolerance of a link's mass, counterweights included.
 const MASS_TOLERANCE: f64 = 0.03;

@@ -16,12 +16,12 @@
 //! | `design/state`, `design/links`, `design/balance` | tables of measures, masses, and the residuals of (7) and (8) |
 //! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
-//! | `signals/<topic>` | every row of the table of [`signals`](crate::simulation::signals), at every step, as a series |
+//! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals), at every step, as a series |
 //! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
 //!
-//! Each item of the [`Scene`](crate::picture::scene::Scene) that the window opens with is an entity with the name of
-//! the item. The plots are the [`charts`](crate::picture::charts) of the window. So a new item of the scene, or a new
+//! Each item of the [`Scene`](stillbase_picture::scene::Scene) that the window opens with is an entity with the name of
+//! the item. The plots are the [`charts`](stillbase_picture::charts) of the window. So a new item of the scene, or a new
 //! signal in a chart, is recorded without a change here. Options that are off by default in the window are not
 //! recorded: snapshots of the arm, and pin forces (pictures can show the latter, `pin_forces`). Hints at what can be
 //! dragged are not recorded either.
@@ -58,14 +58,14 @@ use std::path::{Path, PathBuf};
 use rerun::{EntityPath, RecordingInfo, TextDocument};
 use thiserror::Error;
 
-use crate::files::{NewFile, WriteError};
-use crate::session::Refusal;
-use crate::session::scenario::Scenario;
-use crate::session::verdict::{Statements, Verdict};
 use hash::Hash;
 use pictures::PictureSeries;
 use preview::Preview;
 use recorder::RecordingSetup;
+use stillbase_files::{NewFile, WriteError};
+use stillbase_session::Refusal;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::verdict::{Statements, Verdict};
 use stop::CaseError;
 use store::{Store, StoreError};
 
@@ -219,7 +219,7 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
     hash.add(env!("CARGO_PKG_VERSION"));
     for scenario in scenarios {
         hash.add(&scenario.to_toml());
-        hash.add(&crate::mechanics::machine::to_toml(&scenario.machine));
+        hash.add(&stillbase_mechanics::machine::to_toml(&scenario.machine));
     }
     if let Some(p) = options.pictures {
         hash.add(&format!("{} {} {} {}", p.fps, p.width, p.height, p.pin_forces));

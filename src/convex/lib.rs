@@ -10,7 +10,7 @@ use thiserror::Error;
 
 /// One row of a constraint: Σ value x_j, and the right side.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct LinearRow {
+pub struct LinearRow {
     /// Pairs of j and value; values at a repeated j add up.
     pub terms: Vec<(usize, f64)>,
     pub right: f64,
@@ -24,7 +24,7 @@ impl LinearRow {
 
 /// A convex program, built row by row.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Program {
+pub struct Program {
     /// Upper triangle of P, diagonal included: row, column, value. Repeated places add up.
     quadratic: Vec<(usize, usize, f64)>,
     /// q.
@@ -39,7 +39,7 @@ pub(crate) struct Program {
 
 /// Solution of a program.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Optimum {
+pub struct Optimum {
     pub x: Vec<f64>,
     /// Value of the objective at `x`.
     pub value: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Optimum {
 
 /// Why a program has no solution.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum NoOptimum {
+pub enum NoOptimum {
     /// The program is infeasible. The multiplier of each inequality in the proof of infeasibility.
     #[error("what is wanted contradicts itself")]
     Contradiction(Vec<f64>),
@@ -144,7 +144,7 @@ fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64>
 ///
 /// Starts from the bounds with nonzero `weights` in the solver's proof of infeasibility, or from all bounds if those do
 /// not contradict each other. Then removes each bound without which the rest still contradicts itself.
-pub(crate) fn infeasible_bounds<B: Clone>(
+pub fn infeasible_bounds<B: Clone>(
     bounds: Vec<(B, LinearRow)>,
     weights: &[f64],
     contradicts: impl Fn(&[(B, LinearRow)]) -> bool,

@@ -7,12 +7,12 @@ mod check;
 mod compare;
 mod csv_file;
 mod design;
-pub(crate) mod dynamics;
+pub mod dynamics;
 mod ends;
 mod exit;
 mod export;
 mod export_model;
-pub(crate) mod failure;
+pub mod failure;
 #[cfg(feature = "ui")]
 mod figures;
 #[cfg(feature = "record")]
@@ -20,7 +20,7 @@ mod headless;
 mod holds;
 mod import;
 mod import_model;
-pub(crate) mod input;
+pub mod input;
 mod interrupt;
 mod joints;
 mod keys;
