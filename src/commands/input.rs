@@ -169,7 +169,7 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
     Ok(scenario)
 }
 
-/// Does the same as [`studied`], but accepts settings without an effect, because other arguments may give them one.
+/// Does the same as [`overlay_for_study`], but accepts settings without an effect, because other arguments may give them one.
 ///
 /// # Errors
 /// As [`overlay_for_study`], except for settings without an effect.

@@ -51,6 +51,7 @@ macro_rules! subcommands {
     ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident,)*) => {
         /// What the program can be asked to do.
         #[derive(clap::Subcommand)]
+        #[expect(missing_docs, reason = "a line of documentation would replace the help of the arguments")]
         pub enum Subcommand {
             $($(#[$gate])? $name($file::$command),)*
         }

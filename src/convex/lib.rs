@@ -13,10 +13,12 @@ use thiserror::Error;
 pub struct LinearRow {
     /// Pairs of j and value; values at a repeated j add up.
     pub terms: Vec<(usize, f64)>,
+    /// Right side.
     pub right: f64,
 }
 
 impl LinearRow {
+    /// A row from its terms and its right side.
     pub fn new(terms: impl Into<Vec<(usize, f64)>>, right: f64) -> Self {
         Self { terms: terms.into(), right }
     }
@@ -40,6 +42,7 @@ pub struct Program {
 /// Solution of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
+    /// Unknowns.
     pub x: Vec<f64>,
     /// Value of the objective at `x`.
     pub value: f64,

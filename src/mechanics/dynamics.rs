@@ -109,6 +109,7 @@ fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
     solve(&h.trimmed::<N>(), *leading_entries(x.padded())).into()
 }
 
+/// Returns H x.
 #[inline(always)]
 pub fn matrix_times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
@@ -123,6 +124,7 @@ pub struct Factors<const N: usize> {
 }
 
 impl<const N: usize> Factors<N> {
+    /// Factors a symmetric positive definite H.
     #[inline(always)]
     pub fn of(h: &Square<N>) -> Self {
         let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
@@ -167,6 +169,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, qd: &PerDr
     (MassMatrix { n: N, h, taken_up: inertia.taken_up }, v.into())
 }
 
+/// Returns the mass matrix H, kg m², and the velocity terms V, N m, from unit vectors e(q_k) and rates, rad/s.
 #[inline(always)]
 pub fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
     let mut h = [[0.0; N]; N];
@@ -297,6 +300,7 @@ pub fn angular_rate<const N: usize>(inertia: &Inertia, inertial: &[f64; N], v: &
     (0..N).map(|k| inertial[k] + v[k] + inertia.taken_up[k] * qdd[k]).sum()
 }
 
+/// Returns what the base feels, force in N and moment about B in N m, at one state of motion.
 #[inline(always)]
 pub fn wrench_with<const N: usize>(
     inertia: &Inertia,

@@ -149,7 +149,7 @@ impl Chart {
     }
 }
 
-/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS`] times
+/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS_SHARE`] times
 /// its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);

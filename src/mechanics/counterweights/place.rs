@@ -54,7 +54,7 @@ pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Pla
     place_weights_with(machine, asked, &[])
 }
 
-/// As [`place`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
+/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
 /// the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
 ///
 /// # Errors

@@ -9,12 +9,16 @@ const MAX_NUMBER: f64 = 1e6;
 pub(super) const MIN_POSITIVE: f64 = 1e-9;
 
 pub(super) const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");
+/// Range of a length that must be positive.
 pub const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
+/// Range of a coordinate.
 pub const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
 /// The mass of a link may be nearly zero, but not zero.
 pub const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
+/// Range of a mass that may be zero.
 pub const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
 pub(super) const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
+/// Range of a moment of inertia.
 pub const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
 pub(super) const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
 /// Gear ratios are limited either way; a ratio of 0 is refused by its own check.

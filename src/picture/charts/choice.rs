@@ -147,7 +147,7 @@ impl PlotChoice {
 /// A plot to be drawn.
 #[derive(Clone, Debug)]
 pub struct Plot<'a> {
-    /// Name in the [`Choice`].
+    /// Name in the [`PlotChoice`].
     pub name: String,
     /// Title.
     pub title: String,

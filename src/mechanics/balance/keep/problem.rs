@@ -50,7 +50,7 @@ pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<Rebalanc
     rebalance_with(machine, asked, &[])
 }
 
-/// As [`keep`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
+/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
 /// computed and additional residuals are to vanish.
 ///
 /// # Errors
@@ -80,7 +80,7 @@ pub fn rebalance_with(
 }
 
 /// Returns the residual of each condition, kg m or kg m², that no values of the listed parameters remove: the least
-/// squares residual, with all equations scaled to unit norm. `beyond`: see [`keep_with`].
+/// squares residual, with all equations scaled to unit norm. `beyond`: see [`rebalance_with`].
 ///
 /// # Errors
 /// If the list is not valid.
