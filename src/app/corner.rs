@@ -11,7 +11,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_picture::scene::{Measure, dexterity};
 
-/// Returns the rectangle that they cover in a scene.
+/// Returns the strip along the lower edge of a scene that both corners occupy.
 pub fn strip(rect: Rect) -> Rect {
     Rect::from_min_max(pos2(rect.left(), rect.bottom() - 28.0), rect.right_bottom())
 }
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
         plain(11.5),
         colour(p.dim),
     );
-    // Long text is truncated before the grid width.
+    // Long text is truncated so that it does not overlap the text of the grid width.
     let left = pos2(rect.left() + 16.0, low);
     let room = Rect::from_min_max(left - vec2(0.0, 12.0), pos2(grid.left() - 12.0, low + 12.0));
     let layout = egui::Layout::left_to_right(egui::Align::Center);

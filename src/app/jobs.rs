@@ -7,7 +7,7 @@ use std::time::Duration;
 use self::priority::{step_back, thread};
 use stillbase_query::{Work, Workers};
 
-/// Each running job has a thread of its own; if no thread can be started, the job runs at once.
+/// Each running job has a thread of its own; if no thread can be started, it runs on the calling thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
     /// The job runs with lower priority than the window.
@@ -28,7 +28,7 @@ impl Workers for Threads {
         }
     }
 
-    /// Waits a short time for the work; if it takes longer, its priority is lowered.
+    /// Waits a short time for the work; background work that takes longer gets a lower priority.
     fn start_short(&self, work: Work) {
         let (report, ended) = channel();
         let work = Box::new(move || {
@@ -45,7 +45,7 @@ impl Workers for Threads {
     }
 }
 
-/// Runs the work on a new thread in this way; if no thread can be started, runs it at once.
+/// Passes the work to `way` on a new thread; if no thread can be started, runs it on the calling thread.
 fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
     // A thread that cannot start drops its closure; the work is sent separately, so that it is not lost.
     let (hand, take) = channel::<Work>();
@@ -60,8 +60,8 @@ fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
     }
 }
 
-/// Threads of lower priority. They stay for the next job: a new thread starts with the priority of the window, and
-/// would delay it until the priority is lowered.
+/// Threads of lower priority. They are reused, because a new thread starts with the priority of the window. It would
+/// delay the window until its priority is lowered.
 static BACKGROUND_POOL: Pool = Pool { idle: Mutex::new(Vec::new()) };
 
 /// Idle threads, the most recently used last.
@@ -111,7 +111,7 @@ mod priority {
         Some(rustix::thread::gettid())
     }
 
-    /// Lowers the priority of a thread, or of the present one. A refusal is ignored.
+    /// Lowers the priority of a thread, or of the present one. An error is ignored.
     pub fn step_back(thread: Option<Thread>) {
         let _ = rustix::process::setpriority_process(thread.or_else(self::thread), 19);
     }

@@ -7,7 +7,7 @@ pub fn score(sought: &str, name: &str) -> Option<i32> {
     sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
 }
 
-/// Returns the score of a name with further search words; in those, words have to be found contiguously.
+/// Like [`score`], but a word may also be found contiguously in `also`, for half the score.
 pub fn score_with(sought: &str, name: &str, also: &str) -> Option<i32> {
     let [name, also] = [name, also].map(|text| text.to_lowercase().chars().collect::<Vec<_>>());
     let best = |word: String| {
@@ -31,7 +31,7 @@ fn starts(name: &[char], i: usize) -> bool {
 fn whole(word: &[char], name: &[char]) -> Option<i32> {
     let starts = |i: usize| starts(name, i);
     let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
-    // A whole word is worth more than its beginning, and that more than its middle.
+    // A whole word scores more than the beginning of a word, and that more than the middle of one.
     let ends = |i: usize| name.get(i + word.len()).is_none_or(|c| !c.is_alphanumeric());
     let best = whole.map(|i| 60 + 40 * i32::from(starts(i)) + 10 * i32::from(starts(i) && ends(i)) - i.min(30) as i32);
     best.max()

@@ -2,19 +2,19 @@
 
 use stillbase_mechanics::machine::Machine;
 
-/// A sum of pin angles with signs. The angle of the pin at a link's root is that of its drive relative to its parent's
-/// drive, or to the x axis of the base.
+/// A signed sum of pin angles. A link's root pin has the angle q of the link's drive, less that of its parent's drive.
+/// On the base nothing is subtracted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinAngleSum {
-    /// Indices of the links whose root pins these are, each with sign 1 or −1.
+    /// For each pin, the index of the link at whose root it is, and its sign, 1 or −1.
     pub pins: Vec<(usize, f64)>,
 }
 
 impl PinAngleSum {
-    /// Returns the angle from the drive of link `from` to that of link `to`; `None`: from the x axis of the base.
+    /// Returns the angle from the drive of link `from` to that of link `to`; `None` stands for the x axis of the base.
     pub fn between(machine: &Machine, from: Option<usize>, to: usize) -> Self {
         let (down, up) = (pins(machine, Some(to)), pins(machine, from));
-        // Pins that hold both links cancel.
+        // Pins that both chains share cancel.
         let shared = down.iter().rev().zip(up.iter().rev()).take_while(|(a, b)| a == b).count();
         let kept = |list: &[usize]| list[..list.len() - shared].to_vec();
         let down = kept(&down).into_iter().rev().map(|j| (j, 1.0));

@@ -1,4 +1,4 @@
-//! Whether a machine has a pose constant b, in words; and cached queries for its pose space and for the b of points.
+//! Whether a machine has a pose constant b, in words; and queries for its pose space and for the b that reach points.
 
 use std::sync::Arc;
 
@@ -62,10 +62,10 @@ pub enum PoseConstant {
         /// Largest |C_kl|, kg m².
         residual: f64,
     },
-    /// There is none, and none is needed.
+    /// No pose constant exists, and none is needed.
     #[error("none is needed: every motion is reactionless, as no drive turns the base")]
     Unneeded,
-    /// There is none, for this reason.
+    /// No pose constant exists, for the given reason.
     #[error("none: {0}")]
     None(NoPoseSpace),
 }
@@ -81,7 +81,7 @@ impl PoseConstant {
         }
     }
 
-    /// Returns one word for it, the value of a JSON key.
+    /// Returns the word for this case in JSON output.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Exact => "exact",

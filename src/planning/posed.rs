@@ -1,5 +1,5 @@
-//! Poses of the points of a task: one pose for each point at a b, the nearest two poses at two b, and how points are
-//! carried along when b changes.
+//! Poses of the points of a task: one pose for each point at one b, or the nearest two poses at two b. Also how points
+//! move when b changes.
 
 use crate::common;
 use crate::pose_space::PoseSpace;
@@ -69,7 +69,7 @@ pub fn poses_of_points(space: &PoseSpace, points: &[Vector], b: f64) -> Result<V
     let poses: Vec<Vec<PerDrive>> = points.iter().map(|p| space.sheets(*p, b)).collect();
     let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
     let det = |a: &PerDrive| planes.map().det([a[0], a[1]]);
-    // From each point the pose nearest to the previous one, optionally on the sheet of the first.
+    // For each point, the pose nearest to the previous one, optionally only among those on the sheet of the first.
     let chain = |start: &PerDrive, one_sheet: bool| {
         let sheet = det(start);
         let mut served = vec![*start];
@@ -108,8 +108,8 @@ pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Opt
     pairs.into_iter().min_by(|x, y| x.1.total_cmp(&y.1)).map(|(pair, _)| pair)
 }
 
-/// Returns where points, m, go when b changes from `old` to `new`, rad. They stay if all can be reached at `new`, else
-/// they turn with the workspace: with planes from the nearest b that all share, otherwise from `old`.
+/// Returns where points, m, go when b changes from `old` to `new`, rad. They stay if all can be reached at `new`.
+/// Otherwise they turn with the workspace: with planes from the b nearest to `new` that all share, else from `old`.
 pub fn carried_points(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
     if points.iter().all(|p| space.reaches(*p, new)) {
         return points.to_vec();

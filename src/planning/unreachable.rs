@@ -1,4 +1,4 @@
-//! Why points cannot be reached at a b, or have no b in common, and a correction.
+//! Why points cannot be reached at a pose constant b, or have no b in common, and a correction.
 
 use serde::{Serialize, Serializer};
 use thiserror::Error;
@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::reactionless::{Decimal, NoReach, metres};
 use stillbase_mechanics::planar::Vector;
 
-/// Why a point cannot be reached at a b, and which b would be feasible.
+/// Why points cannot be reached at a given b, and which b would be feasible.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unreachable {
     /// The point cannot be reached at any b.
@@ -35,7 +35,7 @@ pub enum Unreachable {
         /// That b as displayed: rounded to a value that is still feasible.
         shown_b: Option<Decimal>,
     },
-    /// Each point can be reached at some b, but all of them at none.
+    /// Each point can be reached at some b, but no single b reaches all of them.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
     NoCommonPlane(NoCommonB),
 }
@@ -50,7 +50,7 @@ pub struct NoCommonB {
 }
 
 impl NoCommonB {
-    /// Describes it in words; `name` gives each point a name.
+    /// Describes the reason and the correction in words; `name` returns the name of a point.
     pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
         let who = match self.pair {
             Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),

@@ -1,4 +1,4 @@
-//! Table of signals: each row is a plot, a series of the recording and a column of the CSV.
+//! Table of signals: each is a curve of a plot, a series of the recording and a column of the CSV.
 
 use crate::frame::Frame;
 use stillbase_mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
@@ -29,7 +29,7 @@ enum Quantity {
     Whole(fn(&Frame) -> f64),
 }
 
-/// Compares paths and indices among the drives, angles or pins: the same path may mean another drive on another
+/// Compares the paths and the indices of the drive, angle or pin: the same path may mean another drive on another
 /// machine.
 impl PartialEq for Signal {
     fn eq(&self, other: &Self) -> bool {
@@ -185,7 +185,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
     table
 }
 
-/// Returns the signals of pin forces, if statics determines them, of tilting moments and of change points.
+/// Returns the signals of pin forces, if they can be determined, of tilting moments and of change points.
 fn inside(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {

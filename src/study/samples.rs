@@ -67,7 +67,7 @@ impl IncrementalQuery for SignalSamples {
 }
 
 impl SignalSamples {
-    /// Returns signals by path with their sampling times, s. A signal with another number of samples is left out.
+    /// Returns signals by path with their sampling times, s. Signals with more or fewer samples are left out.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
         Self { times, series, signals: Vec::new() }
@@ -89,7 +89,7 @@ impl SignalSamples {
         start..self.times.partition_point(|t| *t <= to + 1e-9).max(start)
     }
 
-    /// Returns the same indices with one more sample on each side, so that a line extends to the edges.
+    /// Returns the indices of [`within`](Self::within) and one more on each side, so that a line extends to the edges.
     fn beyond(&self, shown: [f64; 2]) -> Range<usize> {
         let range = self.within(shown);
         range.start.saturating_sub(1)..(range.end + 1).min(self.times.len())

@@ -26,7 +26,7 @@ const MOMENT_PLOT_WIDTH_PT: f32 = 300.0;
 /// Maximum number of decimals.
 const MAX_DECIMALS: usize = 6;
 
-/// Returns number, quantity and duration of the samples.
+/// Returns a text of the number of samples, what they describe, and their duration.
 pub(super) fn summary(motion: &GivenMotion) -> String {
     let of = if motion.coordinates == Coordinates::Drives { "the drives" } else { "the end effector" };
     let (samples, time) = (counted(motion.samples.count(), "sample"), fixed(motion.samples.duration(), 3));

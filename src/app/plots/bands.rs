@@ -1,4 +1,4 @@
-//! The chart *Which b?* of machines without planes: intervals of b that reach the points of the task, or the target.
+//! The chart *Which b?* of machines without planes in closed form: intervals of b that reach the points or the target.
 
 use std::sync::Arc;
 
@@ -17,12 +17,12 @@ use stillbase_planning::pose_space::PoseSpace;
 use stillbase_query::{ByIdentity, Queries, QuickWork};
 use stillbase_session::Session;
 
-/// Maximum number of points with a bar.
+/// Maximum number of bars; with more points, only the first and the last have one.
 const MAX_BARS: usize = 8;
 /// Bars narrower than this are drawn as dots, rad.
 const MIN_BAR_RAD: f64 = 1e-3;
 
-/// Draws a bar of the feasible b for each point, with b across; a click chooses b.
+/// Draws a bar of the feasible b for each point, with b on the horizontal axis; a click chooses b.
 pub fn bars(
     ui: &mut Ui,
     p: &Palette,
@@ -38,7 +38,7 @@ pub fn bars(
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
     let serving = queries.ask_beside::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
-    // While the intervals are being computed, those of other points are not shown.
+    // While new intervals are computed, the last ones are shown, unless they belong to another number of points.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");
     let b_now = now.b_reference;

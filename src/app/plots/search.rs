@@ -48,18 +48,18 @@ fn typed_id() -> Id {
     Id::unique("text of the signal sought")
 }
 
-/// Moves the keyboard focus to the field, for a new plot.
+/// Moves the keyboard focus to the search field, for a new plot.
 pub fn focus(ctx: &Context) {
     start(ctx, SearchPurpose::Plot);
 }
 
-/// Moves the keyboard focus to the field.
+/// Moves the keyboard focus to the empty search field, for the given purpose.
 pub fn start(ctx: &Context, sought: SearchPurpose) {
     ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { sought, ..Typed::default() }));
     ctx.memory_mut(|memory| memory.request_focus(id()));
 }
 
-/// Draws the row, with this margin on the right, points.
+/// Draws the row with a margin `right` at its right edge, points.
 pub fn show(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], right: i8, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right, top: 6, bottom: 0 });
     Panel::bottom("find a signal").resizable(false).show_separator_line(false).frame(frame).show(ui, |ui| {
@@ -174,7 +174,7 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
         typed = Typed::default();
         ui.memory_mut(|memory| memory.surrender_focus(id()));
     } else {
-        // A press on a result takes the focus away; it is a click only with its release.
+        // A press on a result takes the focus away but is a click only when released; until then the results stay open.
         let (pressing, pressed) =
             ui.input(|i| (i.pointer.any_down() || i.pointer.any_released(), i.pointer.any_pressed()));
         let here = response.contains_pointer() || answers.is_some_and(|answers| answers.response.contains_pointer());

@@ -115,7 +115,7 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     ui.data_mut(|data| data.insert_temp(id, at));
 }
 
-/// Draws the box that fixes a link while the balance is kept.
+/// Draws the checkbox that keeps a link unchanged while the balance is kept.
 fn fixed(ui: &mut Ui, link: &str, brief: &DesignBrief, commands: &mut Vec<Command>) {
     let mut is_fixed = brief.fixed.contains(link);
     let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip_of("design.fixed.*"));

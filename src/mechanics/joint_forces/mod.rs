@@ -1,4 +1,4 @@
-//! Forces inside the machine: those of pins and bearings, the distance to change points, and the moment that tilts the
+//! Forces of pins and bearings inside the machine, the distance to change points, and the moment that tilts the
 //! base.
 //!
 //! The base wrench is a sum over all links, in which the forces between links cancel. This module computes these forces
@@ -19,17 +19,17 @@
 //!
 //! # Method
 //! Cutting every closure leaves a tree, in which each link's root carries the link and all that hangs on it. A drive
-//! turns the links at B that follow it, or one link in a joint. No couple acts on the other links but the friction of
+//! with links at B turns these; any other drive turns one link. No couple acts on the other links but the friction of
 //! their pins, which is known. So their moments determine the closure forces: Σ_c w_jc e_j × λ_c = μ_j. The levers w
 //! are constants of the machine. In the nine-link machine six links and three closures give six equations in six
-//! unknowns, which fall into three pairs: each parallelogram has two links that no drive turns, of drives k and l, and
+//! unknowns, which fall into three pairs. Each parallelogram has two links that no drive turns, of drives k and l:
 //! λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops whose equations do not fall into such pairs are solved
 //! together. The torques of the drives follow from the same equations.
 //!
 //! # What is assumed
-//! A motor sits on the base or in a joint. In a joint it sits on the parent of the link that it turns, or else on the
-//! link that is turned by the drive which carries it. A drive on the base without a link at B turns the one link that
-//! follows it by a belt, so its couple acts between that link and the base. Part of the couple accelerates the rotor;
+//! A motor sits on the base or in a joint. In a joint, its stator is on the parent of the link it turns, or else on
+//! the link turned by the drive that carries it. A drive on the base without a link at B turns its only link by a belt.
+//! Its couple then acts between that link and the base. Part of the couple accelerates the rotor;
 //! the rotor's weight belongs to the link that carries it. Where several links share an axle, each attachment and each
 //! closure in the file is a pin of its own. All pins have the same friction; the torque that keeps the pins between two
 //! drives stuck is shared equally among them. Friction in the bearing of a drive acts between the base and the link

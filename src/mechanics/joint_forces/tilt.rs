@@ -1,6 +1,6 @@
 //! Moments that tilt the base out of the plane of motion, which arise from the heights of the links.
 //!
-//! The motion is plane, but links lie one above the other. A force f in the plane at height z has the moment
+//! The motion is planar, but the links lie at different heights. A force f in the plane at height z has the moment
 //! (−z f_y, z f_x, …) about B; as complex number x + iy it is i z f. So a force balanced machine, whose forces cancel,
 //! may still transmit a couple.
 //!
@@ -9,16 +9,16 @@
 //! |---|---|---|
 //! | z_j | height of the CM of link j, or of the payload, along the drives' axis from the plane of reference through B | m |
 //! | S | Σ_j m_j z_j | kg m |
-//! | s_k | Σ_j m_j z_j a_jk: first moments weighted with z | complex, kg m² |
+//! | s_k | Σ_j m_j z_j a_jk: first moments weighted with z; the CM of link j is at Σ_k a_jk e_k | complex, kg m² |
 //! | n_t | moment about B that tilts the base, n_x + i n_y | N m |
 //! | z̄ | S / M, height of the centre of mass | m |
 //!
 //! # Closed form
-//! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with F at the payload's height z_e. The couple of the motion
-//! is the sum over k with s_k − z̄ g_k in place of s_k: the moment about height z̄ instead of 0.
+//! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with gravity g and a force F at the payload's height z_e. The
+//! couple of the motion has s_k − z̄ g_k, g_k = Σ_j m_j a_jk, in place of s_k: it is the moment about height z̄.
 //!
 //! # What is assumed
-//! Products of inertia I_xz, I_yz of each link about its own CM are zero: each link is symmetric about a plane normal
+//! Products of inertia I_xz, I_yz of each link about its own CM are zero. Each link is symmetric about a plane normal
 //! to the drives' axis. With all z_j = 0, the default, n_t = 0.
 
 use crate::dynamics::Surroundings;
@@ -40,7 +40,7 @@ pub struct AxialMoments {
     flat: bool,
 }
 
-/// Moment about B, x + iy, N m, that the manipulator exerts on the base and that tilts it, in two parts.
+/// Tilting moment n_x + i n_y about B, N m, that the manipulator exerts on the base, in two parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TiltMoment {
     /// Part from motion.
@@ -83,12 +83,12 @@ impl AxialMoments {
         }
     }
 
-    /// Returns whether all heights are zero, as without any in the machine file: then n_t = 0.
+    /// Returns whether all heights are zero, the default in a machine file; then n_t = 0.
     pub fn is_flat(&self) -> bool {
         self.flat
     }
 
-    /// Returns the largest |s_k − z̄ g_k|, kg m²: 0 if motion transmits no tilting couple, force balanced or not.
+    /// Returns the largest |s_k − z̄ g_k|, kg m²: 0 if motion transmits no tilting couple, even with forces unbalanced.
     pub fn residual(&self) -> f64 {
         self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
     }

@@ -4,11 +4,11 @@
 //! system's library. Plain IEEE operations give the same bits on every computer, which no such library guarantees.
 //!
 //! # Source
-//! Cody and Waite's reduction in two parts, and e^{i(a + r)} = e^{ia} e^{ir} with a a multiple of π/64.
+//! Cody and Waite's reduction in two parts, and e^{i(a + r)} = e^{ia} e^{ir}, where a is a multiple of π/64.
 
 use super::Vector;
 
-/// Limit of |q|, rad, for the table: below it k times the first part of a step is exact and the error below 2e-16.
+/// Limit of |q|, rad, for the table: below it, k steps times their first part is exact and the error below 2e-16.
 const MAX_TABLE_RAD: f64 = 1e5;
 /// Number of steps of the table in a turn.
 const STEPS: usize = 128;
@@ -25,7 +25,7 @@ pub fn unit(q: f64) -> Vector {
     if q.abs() < MAX_TABLE_RAD {
         by_table(q)
     } else {
-        // For larger |q| the reduction needs more bits of π.
+        // For larger |q| the reduction needs more bits of π: the system's library is used, without identical bits.
         let (sin, cos) = q.sin_cos();
         Vector::new(cos, sin)
     }
@@ -67,8 +67,8 @@ const fn turn() -> [[f64; 2]; STEPS] {
     table
 }
 
-/// Returns (cos, sin) of j steps, up to π/4, by Taylor series; the first part of the angle is corrected by its
-/// remainder.
+/// Returns (cos, sin) of j steps, up to π/4, by Taylor series of the first part of the angle; the
+/// remainder is added to first order.
 const fn eighth(j: usize) -> [f64; 2] {
     let (x, rest) = (j as f64 * STEP[0], j as f64 * STEP[1]);
     // The series are summed without their leading terms 1 and x, which are added last: only that sum loses bits.

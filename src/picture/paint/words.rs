@@ -9,7 +9,7 @@ use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::{Anchor, Label, Scene};
 
-/// Maximum vertical shift that avoids an overlap, points.
+/// Maximum vertical shift to avoid an overlap, points.
 const MAX_SHIFT_PT: f32 = 36.0;
 /// Labels that exceed the right edge by at most this much are shifted left only, not down as well, points.
 const MAX_OVERHANG_PT: f32 = 4.0;

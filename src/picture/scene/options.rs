@@ -19,7 +19,7 @@ pub struct ViewOptions {
     pub dexterity: Option<Measure>,
     /// Whether labels say what can be dragged.
     pub invites: bool,
-    /// Whether the second workspace is shown for comparison.
+    /// Whether the workspace of a second b is shown for comparison.
     pub compares: bool,
     /// Handle that is under the pointer or dragged.
     pub hot: Option<Handle>,
@@ -31,7 +31,7 @@ pub struct ViewOptions {
     pub stroke: Vec<[f64; 2]>,
     /// Curve that was requested last and refused.
     pub refused: Option<Arc<RefusedCurve>>,
-    /// Poses along the motion, in order of time, as in Fig. 5.
+    /// Poses along the motion, in order of time, as in Fig. 5 of the paper.
     pub snapshots: Vec<DriveAngles>,
     /// Other runs at the same instant.
     pub others: Vec<OtherRun>,
@@ -84,7 +84,7 @@ impl Default for ViewOptions {
 pub enum Handle {
     /// The end effector's target.
     Target,
-    /// The end effector, to which a force is applied.
+    /// The end effector; dragging it applies a force to it.
     EndEffector,
     /// The knob of the b ring.
     Ring,
@@ -164,7 +164,7 @@ pub struct OtherRun {
 pub struct RefusedCurve {
     /// Points of the curve, m.
     pub curve: Vec<Vector>,
-    /// Point where following stops, m.
+    /// Point from which the curve cannot be followed, m.
     pub at: Vector,
     /// Reason, in a few words.
     pub why: String,

@@ -8,7 +8,7 @@
 //!
 //! # Method
 //! The dual is a concave, piecewise quadratic function of the two components of ν. Newton's iteration on it, with an
-//! exact line search, ends after a few iterations. If no x in the box satisfies the equations, x approximates the least
+//! exact line search, ends after a few iterations. If no x in the box satisfies the equations, x nearly minimises their
 //! residual.
 
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot};
@@ -84,8 +84,8 @@ impl BoxedStep<'_> {
         x.iter().zip(self.columns).map(|(x, c)| *c * *x).sum()
     }
 
-    /// Exact line search: returns where the dual is greatest along a direction. Its slope decreases piecewise linearly
-    /// to 0.
+    /// Line search: returns where the dual is greatest along a direction, or 1 if near enough. The slope of the dual
+    /// decreases piecewise linearly.
     fn along(&self, nu: Vector, way: Vector, slope: impl Fn(&PerDrive, Vector) -> f64) -> Option<f64> {
         let at = |t: f64| slope(&self.at(nu + t * way), nu + t * way);
         let first = at(0.0);

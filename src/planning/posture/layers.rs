@@ -1,9 +1,9 @@
-//! [`Layers`]: samples of the poses at stations along a path that can be reached from its start.
+//! [`Layers`]: samples, at stations along a path, of the poses that can be reached from the start of the path.
 //!
 //! # Method
-//! The first layer begins with one pose or more on every component of the set of poses. A layer is filled along the
-//! free directions until it covers its component. Then each pose is continued to the next station, within the limits.
-//! If no pose reaches a station in this way, no path is assumed to reach it.
+//! The first layer begins with at least one pose on every connected component of the set of poses. A layer is filled
+//! along the null space until it covers its components. Then each pose is continued to the next station within limits.
+//! If no pose reaches a station in this way, the station is treated as unreachable.
 
 use super::rows::{lifted, null_directions};
 use super::stations::Stations;
@@ -45,11 +45,11 @@ pub(super) struct Layers<'a> {
 
 /// A pose nearer to another than this fraction of `apart` is omitted.
 const THINNING_SHARE: f64 = 0.5;
-/// With fewer poses than this, all poses of a station are computed as well.
+/// If fewer poses than this reach a station, all its poses are computed, to replace failed continuations.
 pub(super) const FEW_POSES: usize = 8;
 /// Rank tolerance: rows shorter than this fraction of the reach after orthogonalisation are treated as dependent.
 const RANK_TOLERANCE: f64 = 1e-9;
-/// Distance beyond its limits up to which an unbounded angle is sampled, rad.
+/// Distance beyond [−π, π] up to which an angle without limits is sampled, rad.
 const FILLED_BEYOND_RAD: f64 = std::f64::consts::PI;
 
 impl<'a> Layers<'a> {
@@ -168,7 +168,7 @@ pub(super) fn near(a: &PerDrive, b: &PerDrive, square: f64) -> bool {
     sum <= square
 }
 
-/// Fills the set of poses of a point from start poses along the free directions, with a minimum distance.
+/// Extends the start poses of a point along the null space, with a minimum distance between poses.
 fn filled(
     (space, p, b): (&PoseSpace, Vector, f64),
     starts: Vec<PerDrive>,

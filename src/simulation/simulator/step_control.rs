@@ -11,7 +11,7 @@ pub(super) struct StepState {
     pub at: f64,
     pub state: State,
     pub slope: Slope,
-    /// Reference of control.
+    /// Reference of the controller.
     pub aim: Reference,
     pub slip: SlipDirections,
     /// Torques of stuck contacts, N m.
@@ -25,12 +25,12 @@ pub(super) struct Segment {
     pub(super) from: f64,
     /// Its end, s since the step began.
     pub to: f64,
-    /// First and last time of the motion in it, s.
+    /// Interval of motion time in which the reference is evaluated, else extrapolated, s.
     pub(super) window: [f64; 2],
 }
 
-/// Difference between two numerical solutions, or a scale for it: net moment on the base, N m, dynamic f_B, N, motor
-/// torques, N m, end effector, m.
+/// Difference between two numerical solutions, or a scale for it. Entries: net moment on the base (N m), dynamic f_B
+/// (N), motor torques (N m), end effector (m).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Mismatch(pub(super) [f64; 4]);
 
@@ -52,7 +52,7 @@ impl Mismatch {
         (0..4).map(share).fold(0.0, f64::max)
     }
 
-    /// Returns the scales of errors: the peaks, bounded from below by fractions of torques, inertial forces and arm
+    /// Returns the scales of errors: peaks, bounded from below, and for the end effector a fraction of the arm
     /// length.
     pub fn measure(peaks: &Peaks, reach: f64) -> Self {
         let (torque, pull) = (peaks.torque_sum.max(MIN_SCALE), peaks.inertial_pull.max(MIN_SCALE));
@@ -67,7 +67,7 @@ pub(super) const MIN_SCALE_SHARE: f64 = 1e-4;
 /// Scale of end effector errors, as a fraction of the arm length.
 pub(super) const TIP_SCALE_SHARE: f64 = 1e-2;
 
-/// Lower bound of all scales: N m, N, m.
+/// Lower bound of torques, inertial forces and arm length in the scales: N m, N, m.
 pub(super) const MIN_SCALE: f64 = 1e-6;
 
 /// Accumulated position errors: of the end effector and of B, m, and of the base angle, rad.
@@ -103,7 +103,7 @@ impl StepControl {
         Self { substeps: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
     }
 
-    /// Continues another step control with its errors.
+    /// Takes over the number of substeps and the errors of another step control.
     pub fn resume(&mut self, other: &Self) {
         (self.substeps, self.worst, self.drift) = (other.substeps, other.worst, other.drift);
     }

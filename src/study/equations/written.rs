@@ -3,7 +3,7 @@
 use super::equation::{Equality, Term};
 use stillbase_settings::number::fixed;
 
-/// A term, or the sign between the sides.
+/// A term, the equals sign, or the 0 of an empty right side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EquationCell<'a> {
     /// Sign before the symbol: `+`, `−`, `=` or empty.

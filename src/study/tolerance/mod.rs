@@ -5,10 +5,10 @@
 //! machines within limits, and the contribution of each tolerance.
 //!
 //! # Limits of linearity
-//! With perfect tracking of the motion, the wrench is linear in the constants g, C and H. [`Ensemble`] uses that
-//! exactly, for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l), nor is the norm
-//! |f_B| or a peak over time. Tracking is not perfect with finite feedback gains and a model that differs from the
-//! machine, with torque limits, unequal gains, uncompensated friction, or a moving base. All of these change the motion
+//! With perfect tracking of the motion, the wrench is linear in g, C and the mass matrix diagonal H. [`Ensemble`] is
+//! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l), nor is the norm
+//! |f_B| or a peak over time. Tracking is not perfect with finite feedback gains if the model differs from the
+//! machine. Nor is it with torque limits, unequal gains, uncompensated friction, or a moving base. All alter the motion
 //! itself; then [`simulate()`] simulates each machine.
 //!
 //! | what | modules |

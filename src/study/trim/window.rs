@@ -26,7 +26,7 @@ pub(super) struct SmoothingWindow {
 }
 
 impl SmoothingWindow {
-    /// Returns the window with a half width, s, centred at a time; `None` if it contains too few samples.
+    /// Returns the window of half width `half`, s, about the time `centre`, s; `None` if it contains too few samples.
     pub fn about(t: &[f64], centre: f64, half: f64) -> Option<Self> {
         let from = t.partition_point(|t| *t <= centre - half);
         let samples = from..t.partition_point(|t| *t < centre + half);
@@ -34,7 +34,7 @@ impl SmoothingWindow {
             return None;
         }
         let u: Vec<f64> = samples.clone().map(|j| (t[j] - centre) / half).collect();
-        // Half the distance between the two neighbours, at the ends of the record to the one neighbour.
+        // Half the distance between the two neighbours; at the ends of the record, half that to the only neighbour.
         let place = |j: usize| t[j.min(t.len() - 1)];
         let space = |j: usize| 0.5 * (place(j + 1) - place(j.saturating_sub(1))) / half;
         let phi: Vec<f64> = samples.clone().zip(&u).map(|(j, u)| space(j) * (1.0 - u * u).powi(4)).collect();

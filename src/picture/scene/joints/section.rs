@@ -1,6 +1,6 @@
-//! [`JointSection`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a line.
-//! With four or more drives it is a three-dimensional section, at the present angles of the drives without an axis. In
-//! this section constant b is a plane.
+//! [`JointSection`]: joint space of a machine without planes in closed form. With two drives it is a plane; b = const
+//! is a line. With more it is three-dimensional, a section at the present angles of drives that have no axis. In it,
+//! b = const is a plane.
 //!
 //! The unit of the scene is the radian, the chosen drives are along x, y and z, and the origin moves with b.
 
@@ -41,8 +41,8 @@ pub(super) struct JointSection {
 }
 
 impl JointSection {
-    /// Prepares a run without planes that has a b. With an interval `all` of b, rad, the shown interval is constant and
-    /// contains it, and coordinates of the scene are q itself.
+    /// Prepares the joint space of a run; `None` with one drive only. If an interval `all` of b is given, rad, the
+    /// shown interval is constant and contains it, and the coordinates of the scene are q itself.
     pub fn of(run: &Run, space: &Arc<PoseSpace>, all: Option<[f64; 2]>) -> Option<Self> {
         let range = all.map_or_else(|| ShownRange::sliding(HOME_B_RAD), |all| ShownRange::over(all, HOME_B_RAD));
         let n = space.drives();
@@ -94,7 +94,7 @@ impl JointSection {
         at
     }
 
-    /// Converts a point of the scene to q, rad; drives without an axis have their angles in the frame.
+    /// Converts a point of the scene to q, rad; drives without an axis have the same angles as in `frame`.
     pub fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
         let origin = self.origin(frame.b_reference);
         let mut q = now(frame);
@@ -149,7 +149,7 @@ impl JointSection {
     }
 
     /// Returns the ends or corners, in order, of the line or plane of constant b within the joint limits and the box.
-    /// Drives without an axis have their angles in the frame.
+    /// Drives without an axis have the same angles as in `frame`.
     pub fn surface(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
         let normal = self.normal();
         let size = dot(normal, normal);
@@ -336,7 +336,7 @@ impl JointSection {
         let Some(joint) = self.space.joints().first().filter(|joint| joint.bounds()[0].is_finite()) else { return };
         let bounds = self.bounds;
         for limit in joint.limits() {
-            // Along (1, 1) between two edges of the grid.
+            // The line has the direction (1, 1) and ends at edges of the grid.
             let off = limit - joint.of(&self.angles([0.0; 3], frame));
             let rise = joint.of(&self.angles([0.0, 1.0, 0.0], frame)) - joint.of(&self.angles([0.0; 3], frame));
             let lift = off / rise;

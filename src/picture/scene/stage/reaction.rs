@@ -81,7 +81,7 @@ pub fn draw(
     }
 }
 
-/// Returns the text of the position of the centre of mass; `reach` of the machine in m.
+/// Returns the text of the position of the centre of mass; `reach` is the reach of the machine, m.
 fn centre_of_mass(frame: &Frame, reach: f64) -> String {
     let off = (frame.com - frame.base.at).norm();
     match off < 1e-6 * reach {

@@ -1,4 +1,4 @@
-//! Further poses: snapshots along the motion as in Fig. 5, and other runs at the same instant.
+//! Further poses: snapshots along the motion as in Fig. 5 of the paper, and other runs at the same instant.
 
 use crate::scene::exaggeration::DrawnFrame;
 use crate::scene::linkage::LinkageModel;

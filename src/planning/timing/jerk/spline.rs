@@ -1,10 +1,10 @@
-//! [`Timing`]: y as a quadratic spline over the nodes.
+//! [`Timing`]: y = θ̇³ as a quadratic spline over the nodes.
 
 use super::easing::eased;
 use crate::timing::law::PathProgress;
 use crate::timing::profile::Profile;
 
-/// Points and weights of Gaussian quadrature over an interval, for its time.
+/// Points and weights of Gaussian quadrature, for the time that an interval takes.
 const GAUSS_TIMES: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
     (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
@@ -12,7 +12,7 @@ const GAUSS_TIMES: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
 ];
 
-/// A timing y(θ).
+/// A timing law, given by y = θ̇³ as a function of θ.
 pub struct Timing {
     /// Nodes θ_i.
     pub nodes: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Returns y at both ends of interval i, and the coefficient between.
+    /// Returns the Bernstein coefficients of y on interval i: y at its start, c_(i+1), and y at its end.
     fn interval(&self, i: usize) -> [f64; 3] {
         let (c, ends) = (&self.c[i..i + 3], [share(&self.nodes, i), share(&self.nodes, i + 1)]);
         [(1.0 - ends[0]) * c[0] + ends[0] * c[1], c[1], (1.0 - ends[1]) * c[1] + ends[1] * c[2]]
@@ -41,7 +41,7 @@ impl Timing {
         let mut t = 0.0;
         for i in 0..spaces {
             let (h, y) = (self.nodes[i + 1] - self.nodes[i], self.interval(i));
-            // y′ at the node is twice the slope to the coefficient between.
+            // At the node, y′ = 2 (y[1] − y[0]) / h.
             let [s, first, second, _] = eased(self.nodes[i]);
             let rate = y[0].cbrt();
             let turn = 2.0 * (y[1] - y[0]) / (3.0 * h * rate);
@@ -55,7 +55,7 @@ impl Timing {
     }
 }
 
-/// Evaluates the quadratic with given ends and a coefficient between, at the fraction u.
+/// Evaluates the quadratic with Bernstein coefficients `y` at the fraction u.
 #[inline]
 fn curved(y: [f64; 3], u: f64) -> f64 {
     let v = 1.0 - u;

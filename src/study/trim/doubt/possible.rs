@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | a_j | (1, a_j1 … a_jn): mass m_j is at Σ_k a_jk e(q_k) | m |
-//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J): M, g_k, C_kl and, on its diagonal, D_k without the rotors | |
+//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J_k), J_k the inertia of drive k's links: M, g_k, C_kl, and D_k without the rotors | |
 //!
 //! If no mass or inertia is negative, Z has no negative eigenvalue. D_k < 0 is the simplest violation; |C_kl|² > D_k
 //! D_l and |g_k|² > M D_k are others.
@@ -25,8 +25,8 @@ const EIGENVALUE_ROUNDING: f64 = 1e-6;
 /// Maximum number of iterations of the eigenvalue solver.
 const MAX_ITERATIONS: usize = 10_000;
 
-/// Returns the unknowns whose values are impossible together, the most involved first; empty if positive masses explain
-/// them.
+/// Returns up to three unknowns whose values are impossible together, the most involved first; empty if positive masses
+/// explain them.
 pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let unknowns = &fit.unknowns;
@@ -60,7 +60,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             let own = fit.measured[from + k] - rotors(*k);
             z[(i + heavy, i + heavy)] = Vector::new(own * scale(i + heavy).powi(2), 0.0);
         }
-        // Place of each line of (7) and (8) in Z.
+        // Row and column in Z of each condition: g_k for (7), C_kl for (8).
         let places: Vec<Option<(usize, usize)>> = unknowns
             .conditions()
             .iter()
@@ -78,7 +78,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         let Some(eigen) = SymmetricEigen::try_new(z, f64::EPSILON, MAX_ITERATIONS) else { continue };
         let least = eigen.eigenvalues.imin();
         let (value, v) = (eigen.eigenvalues[least], eigen.eigenvectors.column(least));
-        // Derivative of the eigenvalue by the unknowns, for fixed eigenvector.
+        // Derivative of the eigenvalue with respect to the unknowns, at fixed eigenvector.
         let mut slope = DVector::zeros(unknowns.count());
         for (i, k) in of.iter().enumerate() {
             slope[from + k] = v[i + heavy].norm_sqr() * scale(i + heavy).powi(2);
