@@ -55,7 +55,7 @@ const MIN_SEPARATION_PT: f64 = 10.0;
 /// Maximum number of lines in the text of a group.
 const MAX_LINES: usize = 6;
 
-/// Number of frames read in one repaint: a few milliseconds.
+/// Number of frames read in one repaint, which takes a few milliseconds.
 const FRAMES_PER_REPAINT: usize = 20_000;
 
 /// Query for all marks, by time; of marks at one instant, the most important first.
@@ -127,7 +127,7 @@ fn within(marks: &[TimelineMark], length: f64) -> &[TimelineMark] {
     &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
 }
 
-/// All marks, as far as the frames of the run have been read.
+/// All marks of the frames that have been read so far.
 pub(super) struct Marks {
     queries: Queries,
     marks: Arc<Vec<TimelineMark>>,
@@ -159,7 +159,7 @@ impl Marks {
     }
 }
 
-/// Returns the time of the next mark after the instant on display (`on`), or of the last mark before it, s.
+/// Returns the time, s, of the next mark after the instant on display if `on`, otherwise of the last mark before it.
 pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
     let marks = queries.last::<QuickWork<MarksByTime>>()?;
@@ -186,7 +186,7 @@ fn worst(title: &str, run: &ComparedRun) -> Option<TimelineMark> {
 
 /// Groups marks, sorted by time, so that drawn marks are at least `min_separation` apart, s.
 fn grouped(marks: &[TimelineMark], min_separation: f64) -> Vec<MarkGroup> {
-    // Start index and most important mark of each group, the first of equals: the group is drawn there.
+    // First index and most important mark of each group, the earliest of equal ones. The group is drawn at this mark.
     let mut groups: Vec<(usize, &TimelineMark)> = Vec::new();
     for (i, mark) in marks.iter().enumerate() {
         let (mut start, mut best) = (i, mark);

@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use super::layout::{Layout, Panel, Panels, WindowArrangement};
 use stillbase_picture::scene::palette::Theme;
 
-/// Preferences for the window. A file of an older or newer program is read as far as its keys are known.
+/// Preferences for the window. In a file, unknown keys are ignored, and missing keys have their defaults.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
     /// Colour theme.
     pub theme: Theme,
-    /// Width and height of the window, points of the screen.
+    /// Width and height of the window, logical points.
     pub size: [f32; 2],
     /// Whether to show the hints at the next start.
     pub hints: bool,
@@ -21,23 +21,23 @@ pub struct Preferences {
     pub layout: Layout,
     /// Whether settings are on the right and plots on the left.
     pub swapped: bool,
-    /// Whether the design view shows the equations in place of the balance.
+    /// Whether the design view shows the equations instead of the balance.
     pub learns: bool,
     /// Whether *Explore* shows the panel of settings.
     pub side: bool,
-    /// Its width if set by the user, points of the screen.
+    /// Width of this panel if set by the user, logical points.
     pub side_width: Option<f32>,
     /// Whether *Explore* shows the panel of plots.
     pub plots: bool,
-    /// Its width if set by the user, points of the screen.
+    /// Width of this panel if set by the user, logical points.
     pub plots_width: Option<f32>,
     /// Whether *Compare* shows the panel of settings.
     pub compare_side: bool,
-    /// Its width if set by the user, points of the screen.
+    /// Width of this panel if set by the user, logical points.
     pub compare_side_width: Option<f32>,
     /// Whether *Compare* shows the panel of plots.
     pub compare_plots: bool,
-    /// Its width if set by the user, points of the screen.
+    /// Width of this panel if set by the user, logical points.
     pub compare_plots_width: Option<f32>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
@@ -100,7 +100,7 @@ impl Preferences {
         WindowArrangement { swapped: self.swapped, learns: self.learns, panels, ..WindowArrangement::usual(self.theme) }
     }
 
-    /// Limits all sizes to those that a window can have, and removes invalid recent files.
+    /// Limits all sizes to those that a window can have, and drops recent files with relative paths or after the 32nd.
     #[must_use]
     pub fn sound(mut self) -> Self {
         let usual = Self::default();

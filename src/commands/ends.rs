@@ -1,4 +1,4 @@
-//! Parses lower and upper bound in an argument of the command line, alone or after a name.
+//! Parses a lower and an upper bound in an argument of the command line, alone or after a name.
 
 /// Parses LO,HI, both finite.
 pub fn ends(text: &str) -> Option<[f64; 2]> {

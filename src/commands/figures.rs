@@ -103,7 +103,7 @@ impl Shown {
     }
 }
 
-/// Shows two alternatives in plots and scene, and snapshots along the motion.
+/// Opens the comparison with two alternatives in plots and scene, and snapshots along the motion.
 fn side_by_side() -> Vec<Command> {
     let show = |row| Command::Window(WindowCommand::Comparison(ComparisonCommand::Show(row, true)));
     vec![
@@ -114,7 +114,7 @@ fn side_by_side() -> Vec<Command> {
     ]
 }
 
-/// Shows the bare bars with counterweights between those of least mass and those of least inertia.
+/// Shows the bare bars with counterweights from within the Pareto front, between least mass and least inertia.
 fn designed() -> Vec<Command> {
     vec![
         Command::View(ViewChange::Kind(ViewKind::Design)),

@@ -73,11 +73,11 @@ struct Row {
     peak_torque: Vec<f64>,
     peak_base_force: f64,
     peak_base_moment: f64,
-    /// Largest moment past the reaction wheel, N m, if there is a wheel.
+    /// Peak moment that reaches the base after the reaction wheel, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
-    /// Limit of a drive that is exceeded by the largest factor, and that factor.
+    /// Drive limit exceeded by the largest factor, and this factor, if any limit is exceeded.
     #[serde(skip_serializing_if = "Option::is_none")]
     over: Option<(String, f64)>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -186,7 +186,7 @@ impl From<RecordError> for Failure {
 fn table(answer: &Answer) -> String {
     let drives = answer.recordings.iter().map(|r| r.peak_torque.len()).max().unwrap_or(0);
     let torques = (1..=drives).map(|k| format!("peak |τ_{k}| N m"));
-    // The moment past a reaction wheel is another quantity than the moment that the arm transmits.
+    // The moment after a reaction wheel is a different quantity from the moment that the arm transmits.
     let wheels = answer.recordings.iter().any(|r| r.peak_moment_past_wheel.is_some());
     let past = wheels.then(|| "peak past the wheel N m".to_owned());
     let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);

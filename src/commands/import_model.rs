@@ -83,7 +83,7 @@ struct OfBase {
 }
 
 impl ImportModelArguments {
-    /// Reads the model, prints a summary, and writes the machine if asked.
+    /// Reads the model, prints a summary, and writes the machine and a scenario if requested.
     pub fn run(&self) -> Result<(), Failure> {
         for file in [&self.output, &self.scenario].into_iter().flatten() {
             check_output(file, self.force, &["toml"])?;
@@ -143,11 +143,11 @@ impl ImportModelArguments {
     }
 }
 
-/// Returns a scenario with a task for a machine, on the base of its file, if it has one.
+/// Returns a scenario with a task for a machine; if its model file has a base, the machine floats on it.
 fn scenario(machine: &Machine, base: Option<BaseBody>) -> Result<Scenario, Failure> {
     let scenario = gentle_motion(machine)?;
     let Some(BaseBody { mass, inertia, com }) = base else { return Ok(scenario) };
     let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
-    // Parsed again, so that what a file may not hold is refused.
+    // Parsed again, so that values outside of the ranges of a scenario are rejected.
     Ok(Scenario::parse(&Scenario { base, ..scenario }.to_toml(), "[base] of the file", None)?)
 }

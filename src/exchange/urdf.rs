@@ -1,14 +1,14 @@
-//! A machine as URDF, the format of ROS and Pinocchio: a tree of links and joints, all about the z axis of `base`.
+//! A machine as URDF, the format of ROS and Pinocchio: a tree of links and joints, with axes parallel to z of `base`.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q_k | absolute angle of drive k | rad |
-//! | θ_k | angle of joint `drive_k`: that of motor k, q_k − q_on, or q_k for a motor on the base | rad |
+//! | θ_k | angle of joint `drive_k`: that of motor k, q_k − q_l on drive l, or q_k on the base | rad |
 //! | N | gear ratio of a rotor: it turns by N θ_k in its stator | |
 //!
 //! The joints `drive_k` are the only independent ones. The frame of a link has its origin at the link's root and x
-//! along e(q_k), so a link that runs against its drive lies along −x. Projected on the drives, mass matrix and gravity
+//! along e(q_k). A link that runs against its drive lies along −x. Projected on the drives, mass matrix and gravity
 //! are those of the machine.
 //!
 //! # What URDF cannot express
@@ -137,7 +137,7 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("</stillbase>"));
     }
 
-    /// Returns the limits of a relative angle as limits of a motor's joint, rad; `None` if it is not a motor's angle.
+    /// Returns the limits of a relative angle as limits of a motor's joint, rad; `None` without limits or such a motor.
     fn limited(&self, angle: &RelativeAngle) -> Option<(usize, [f64; 2])> {
         let motors = self.machine.motors();
         let (least, most) = (angle.limits.start() - angle.offset, angle.limits.end() - angle.offset);
@@ -157,7 +157,7 @@ impl<'a> Model<'a> {
         let (kind, more) = match joint.turns {
             Turns::Not => ("fixed", String::new()),
             Turns::Motor(k) => self.limits(k, 1.0),
-            // Some programs require the same type as that of the joint it follows.
+            // Some programs require that a follower has the same type as the joint that it follows.
             Turns::Follows(k, times) => {
                 let drive = quoted(&self.machine.spec().drives[k].name);
                 let (kind, limits) = self.limits(k, times);
@@ -198,7 +198,7 @@ impl<'a> Model<'a> {
                 let at = [sign * link.com, sign * link.com_normal, link.axial];
                 Body { at, mass: link.mass, inertia: link.inertia }
             }
-            // Its mass belongs to the link that carries it.
+            // The rotor's mass is part of the link that carries it.
             TreePart::Rotor(k) => {
                 let inertia = machine.spec().drives[k].rotor.map_or(self.least, |rotor| rotor.inertia);
                 Body { inertia, ..self.auxiliary() }
@@ -221,7 +221,7 @@ impl<'a> Model<'a> {
 
     fn inertial(&mut self, body: &Body) {
         let Body { at: [x, y, z], mass, inertia } = body;
-        // As for a thin bar; a plane motion depends only on the inertia about z.
+        // Any values with ixx + iyy ≥ izz will do: a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         self.lines.add(2, format_args!("<inertial>"));
         self.lines.add(3, format_args!("<origin xyz=\"{x} {y} {z}\"/>"));

@@ -47,8 +47,8 @@ pub enum WriteError {
     },
 }
 
-/// Checks that a file may be written: its folder exists, the name is not that of a folder or device, and the file does
-/// not exist unless `force` is set.
+/// Checks that a file may be written: its folder exists, and the name is not that of a folder or device. The file must
+/// not exist, unless `force` is set.
 ///
 /// # Errors
 /// If one of these does not hold.
@@ -67,7 +67,7 @@ pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
     }
 }
 
-/// A new file while it is written, buffered. [`finish`](Self::finish) gives it its final name; if it is dropped before,
+/// A buffered file being written. [`finish`](Self::finish) gives it its final name; if it is dropped before,
 /// nothing remains.
 #[derive(Debug)]
 pub struct NewFile {
@@ -96,7 +96,7 @@ impl Before {
         Some(Self { metadata, has_other_names })
     }
 
-    /// Copies its owner, as far as the system allows, and its permissions to a file, so that only those who could read
+    /// Copies the old owner, as far as the system allows, and the permissions to a file. Only those who could read
     /// the old content can read the new one.
     fn lend_access(&self, file: &File) -> io::Result<()> {
         #[cfg(unix)]
@@ -133,7 +133,7 @@ impl NewFile {
         &self.requested
     }
 
-    /// Returns the offset of the last bytes written so far, and the bytes, at most `most`.
+    /// Returns the last bytes written so far, at most `most`, with their offset in the file.
     ///
     /// # Errors
     /// If they cannot be read.
@@ -209,7 +209,7 @@ fn link(part: &Path, file: &Path) -> io::Result<()> {
     match fs::hard_link(part, file) {
         Ok(()) => {
             if super::fault::fail_if_due(WriteStep::Tidy).is_ok() {
-                // Otherwise it is removed with the draft.
+                // If this fails, the temporary file is removed when the draft is dropped.
                 let _ = fs::remove_file(part);
             }
             Ok(())
@@ -232,8 +232,8 @@ fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
     to.sync_all()
 }
 
-/// Keeps the content of a file that is about to be replaced under a temporary name, if the file system allows it: as a
-/// copy if the file will be overwritten, or else as a hard link. A sweep removes it later.
+/// Keeps the content of a file that is about to be replaced under a temporary name, if the file system allows it. This
+/// is a copy if the file will be overwritten, or else a hard link. If the program is killed, a later write removes it.
 fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     let aside =
         part.with_file_name(format!("{}0{PART_ENDING}", part.file_name()?.to_str()?.strip_suffix(PART_ENDING)?));
@@ -268,8 +268,8 @@ impl Taken {
     }
 }
 
-/// Gives files that belong together their final names: all, or none. They take the names in order, so if the last one
-/// exists, all exist.
+/// Gives files that belong together their final names: all, or none. Names are taken in order, so when the last new
+/// file is in place, all are.
 ///
 /// # Errors
 /// If not everything could be written, or another file has taken a name meanwhile.
@@ -278,7 +278,7 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
         file.sync_content()?;
     }
     let mut taken = Vec::with_capacity(N);
-    // While the lock is held, no other draft takes a name, and a signal handler cannot end the program.
+    // While this lock is held, no other temporary file takes its final name, and no signal handler ends the program.
     let parts = making();
     for file in &files {
         match file.take_name(N > 1) {
@@ -332,7 +332,7 @@ pub fn write_new(file: &Path, bytes: &[u8], force: bool) -> Result<(), WriteErro
     made(file, bytes, force)?.finish()
 }
 
-/// Writes a whole file that has yet to take its final name.
+/// Writes the whole content of a file under a temporary name; [`NewFile::finish`] gives it its final name.
 ///
 /// # Errors
 /// As [`write_new`].

@@ -26,7 +26,7 @@ pub struct Chart {
     pub unit: &'static str,
     /// Paths of signals, or of groups of signals.
     pub signals: &'static [&'static str],
-    /// Smallest half range if the range is centred on zero, otherwise smallest range; in the unit of the window.
+    /// Smallest range; half of it if the range is centred on zero. In the unit of the values given to [`Chart::range`].
     pub least: f64,
     /// Whether the range is symmetric about zero.
     pub centred: bool,
@@ -107,7 +107,7 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
 }
 
 impl Chart {
-    /// Whether the window shows the chart; `pins`: pin forces are switched on.
+    /// Whether the window shows the chart; `pins` says whether pin forces are switched on.
     pub fn in_window(&self, pins: bool) -> bool {
         match self.place {
             ChartPlace::Beside => true,
@@ -149,8 +149,8 @@ impl Chart {
     }
 }
 
-/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS_SHARE`] times
-/// its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
+/// Returns the colour of a signal in every chart. Reactions are red if their peak exceeds [`REACTIONLESS_SHARE`] times
+/// a reference value, Σ|τ| for moments and Σ m|a| for forces, and otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };

@@ -29,7 +29,7 @@ use stillbase_picture::charts::{Chart, ChartPlace};
 use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
 
-/// Writes the layout and makes the viewer open with it; `pictured`: there are offscreen pictures.
+/// Writes the layout and makes the viewer open with it. `pictured` says whether there are offscreen pictures.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -100,7 +100,7 @@ struct Layout<'a> {
     pictured: bool,
 }
 
-/// Version and variant bits of a custom identifier (UUID version 8).
+/// Version and variant of a custom identifier (UUID version 8), and the mask of their bits.
 const VERSION: u128 = 0x0000_0000_0000_8000_8000_0000_0000_0000;
 const VERSION_BITS: u128 = 0x0000_0000_0000_f000_c000_0000_0000_0000;
 
@@ -111,7 +111,7 @@ const MAX_TITLE_CONDITIONS: usize = 6;
 const MAX_LEGEND_CASES: usize = 5;
 
 impl Layout<'_> {
-    /// Returns the identifier of a view or container, which depends only on its class, tab and contents. A viewer
+    /// Returns the identifier of a view or container, a hash of its class, its tab and `words`. A viewer
     /// stores the state of a view by its identifier, even across recordings, and shows nothing if the stored class
     /// differs.
     fn id(&self, class: &str, words: &[&str]) -> Uuid {
@@ -416,8 +416,8 @@ fn name_of(chart: &Chart) -> String {
     [chart.title, &chart.si_unit()].join("  ").trim_end().to_owned()
 }
 
-/// Returns the title of a plot, with the symbols and colours of its series if these are a few drives. A legend would
-/// cover the curves of so low a plot. With many series, the viewer names the series under the pointer.
+/// Returns the title of a plot, with symbol and colour of each series if there is one per drive, at most four. A legend
+/// would cover the curves of so low a plot. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();
@@ -438,7 +438,7 @@ fn with_legend_space([low, high]: [f64; 2], lines: usize) -> [f64; 2] {
     [low - share / (1.0 - share) * (high - low), high]
 }
 
-/// Returns the colour of a case: green if it is reactionless, otherwise distinguishable reds.
+/// Returns the colour of a case: green if it is reactionless, otherwise one of three shades between red and amber.
 fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
     match quiet {
         true => palette.zero,

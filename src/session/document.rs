@@ -67,7 +67,7 @@ impl Document {
         Self { scenario: Arc::new(scenario), script, end, bookmarks: Arc::default(), branches: Arc::default() }
     }
 
-    /// Takes the bookmarks or the branches of another document over.
+    /// Copies the bookmarks or the branches of another document.
     pub fn keep_as(&mut self, other: &Self, kept: AnnotationKind) {
         match kept {
             AnnotationKind::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
@@ -75,8 +75,8 @@ impl Document {
         }
     }
 
-    /// Runs the document from its first to its last step, with the queries of a `known` run, if there is one. If
-    /// `patient`, a task that does not fit its machine waits at the first step instead of failing.
+    /// Runs the document from its first to its last step, reusing the query cache of a `known` run, if there is one. If
+    /// `patient` and the task does not fit its machine, the run waits at its first step instead of failing.
     pub fn perform(
         &self,
         known: Option<&Run>,
@@ -94,8 +94,8 @@ impl Document {
         Ok(DocumentRun { run, frames, machines })
     }
 
-    /// Compares scenario and script with those of another document. If they differ at most in settings on which no
-    /// frame depends, returns the scenario of the run with these settings as in `self`; otherwise `None`.
+    /// Compares scenario and script with those of another document. Returns `None` if more differs than settings on
+    /// which no frame depends. Otherwise returns the scenario of the run with these settings as in `self`.
     pub fn aside_of(&self, other: &Self) -> Option<Scenario> {
         fn moving(document: &Document) -> impl Iterator<Item = &TimedEdit> {
             document.script.in_order().into_iter().filter(|timed| !timed.edit.is_aside())
@@ -112,8 +112,8 @@ impl Document {
         let mut document = self.clone();
         let mut timed = timed.clone();
         if let Some(change) = timed.edit.take("duration") {
-            // A saved session stores its length as `duration`, so this setting changes the scenario and no edit holds
-            // it.
+            // A saved session stores its length as `duration`, so this setting changes the scenario and is not part of
+            // the script.
             if let Ok(scenario) = document.scenario.with(&change) {
                 document.scenario = Arc::new(scenario);
             }
@@ -124,7 +124,7 @@ impl Document {
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if timed.edit.sets_path() && document.script.is_led() {
-            // A new plan puts a dragged machine back on its path: the edits that dragged it are dropped, settings stay.
+            // A new plan puts a dragged machine back on its path: edits that drag it are dropped, others go to step 0.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.leads()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
@@ -136,7 +136,7 @@ impl Document {
             script = kept;
             document.end = 0;
         }
-        // It goes before the first drag, so that a drag at step 0 starts from the pose that this edit gives.
+        // The edit goes before the first drag, so that a drag at step 0 starts from the pose that this edit gives.
         let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
         let sets_no_key = timed.edit.part("task").is_some_and(toml::Table::is_empty);
         if !sets_no_key {

@@ -1,4 +1,4 @@
-//! [`Key`]: one setting of a scenario and its description. Each is stated once, in the table of its part. Files,
+//! [`Key`]: one setting of a scenario and its description. Each key is defined once, in the table of its part. Files,
 //! `--set`, edits, the window's rows with their ranges and tips, and the reference of all keys read it there.
 
 use std::fmt;
@@ -15,14 +15,14 @@ pub struct Key {
     pub path: &'static str,
     /// Type and range of the value.
     pub holds: KeyType,
-    /// Default if a file omits the key, as it would be typed. [`NONE`](Self::NONE) if there is no value then,
+    /// Default if a file omits the key, written as in a file. [`NONE`](Self::NONE) if a missing key has no value,
     /// [`REQUIRED`](Self::REQUIRED) if the key must be given.
     pub default: &'static str,
     /// Meaning, in one sentence.
     pub words: &'static str,
     /// Condition under which the key has an effect; empty for always.
     pub when: &'static str,
-    /// If the default is no value: what applies instead.
+    /// What applies if the key has no value.
     pub instead: &'static str,
     /// What a change of the key affects.
     pub effect: Effect,
@@ -31,9 +31,9 @@ pub struct Key {
 /// What a change of a key affects, from the least to the most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
-    /// No frame of the run, but what is studied, designed or recorded. Such a key holds for the run as a whole.
+    /// No frame of the run, but only studies, designs or recordings. Such a key applies to the whole run.
     Aside,
-    /// No frame of the run, but the display from the present step on.
+    /// No frame of the run, but only the display from the present step on.
     Picture,
     /// Frames from the present step on.
     Motion,
@@ -58,7 +58,7 @@ pub enum KeyType {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// How a number may vary while others follow: the word `fixed` or `free`, or its lower and upper bound.
+    /// How an optimisation may vary a number: the word `fixed` or `free`, or its lower and upper bound.
     Bounds(Range),
     /// Distribution of a value: `normal:` or `uniform:` and an amount, in its unit or in percent.
     Spread(&'static str),
@@ -94,7 +94,7 @@ impl Key {
         Self { instead, ..self }
     }
 
-    /// Returns the key with what its change affects, if that is not the motion.
+    /// Returns the key with another effect than [`Effect::Motion`].
     #[must_use]
     pub const fn reaching(self, effect: Effect) -> Self {
         Self { effect, ..self }
@@ -252,7 +252,7 @@ fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<RangeCheck>) 
 
 /// Returns keys in words, grouped by the table they belong to: `link.NAME.(com|mass)`, `gravity`.
 pub fn in_words(paths: impl IntoIterator<Item = &'static str>) -> Vec<String> {
-    // The path before the last part, and all last parts behind it.
+    // Each path without its last part, with all last parts that follow it.
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for path in paths {
         let named = path.rsplit_once('.').filter(|(_, field)| *field != "*");

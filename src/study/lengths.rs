@@ -1,8 +1,8 @@
 //! [`search`]: optimises the lengths of the links together with the counterweights.
 //!
 //! For given lengths the counterweights solve a cone program, with a certified minimum. The problem is not convex in
-//! the lengths. So the search runs Nelder–Mead from several starting points drawn from a seed, and reports how many of
-//! them ended at the same value. The result is the best machine evaluated, without a proof that it is optimal.
+//! the lengths. So the search runs Nelder–Mead from the present lengths and from random ones, and reports how many of
+//! these starts ended at the best value. The result is the best machine evaluated, without a proof that it is optimal.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -33,13 +33,13 @@ pub struct LengthSearch {
     pub lengths: Vec<FreeLength>,
     /// Sites of the counterweights, and the objective.
     pub weighing: CounterweightSpec,
-    /// Whether sites at the ends of links, or as far behind the roots, move with the lengths.
+    /// Whether bounds of sites that are at plus or minus the length of a link change with this length.
     pub anywhere: bool,
     /// Lower bound on the sum of the arms' lengths, Σ |L_k|, m.
     pub least_reach: Option<f64>,
     /// Lower bound on the area of the reactionless workspace, m².
     pub least_workspace: Option<f64>,
-    /// Number of starting points; the first is the present lengths.
+    /// Number of starting points; the first is the present lengths, moved into their intervals if outside.
     pub starts: usize,
     /// Seed of the other starting points.
     pub seed: u64,
@@ -101,7 +101,7 @@ pub enum NoLengths {
     None {
         /// Number of machines evaluated.
         machines: usize,
-        /// Why the machine with the present lengths is infeasible.
+        /// Why there is none with the first start's lengths, or how far the nearest machine violates the bounds.
         why: String,
     },
     /// The counterweights have no solution.
@@ -113,7 +113,7 @@ pub enum NoLengths {
 /// constraint violation.
 const INFEASIBLE: f64 = 1e30;
 
-/// [`search`] as a query, in one portion; its progress is the fraction of finished starts.
+/// [`search`] as a query that runs in a single call; its progress is the fraction of finished starts.
 pub struct LengthsQuery {
     machine: Shared<Machine>,
     asked: LengthSearch,
@@ -251,8 +251,8 @@ impl LengthSearch {
         }
     }
 
-    /// Returns the lengths, m, and the machine with these lengths. They are given as fractions of their intervals;
-    /// links keep their mass per metre.
+    /// Returns the lengths, m, and the machine with these lengths; `shares` gives each as a fraction of its interval.
+    /// Links keep their mass per metre.
     fn changed(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Machine), String> {
         let mut spec = machine.spec().clone();
         let mut lengths = Vec::with_capacity(shares.len());
@@ -303,7 +303,7 @@ fn short([reach, area]: [f64; 2]) -> String {
     format!("the nearest is {} short", missing.collect::<Vec<_>>().join(" and "))
 }
 
-/// Moves the bounds of sites that lie at the ends of their links, or as far behind the roots, with the lengths.
+/// Changes bounds of sites that are at plus or minus the length of their link to plus or minus the new length.
 fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites> {
     let stretch = |site: &Sites| {
         let [was, is] = [machine, changed].map(|machine| machine.resolved_links()[site.link].length);

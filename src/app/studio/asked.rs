@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     rotors(ui, p, &spec.drives, brief, commands);
 }
 
-/// Draws the intervals for rotor ratios: rotors that turn the other way can compensate the momentum of the drives.
+/// Draws the intervals for gear ratios of rotors: a rotor that turns in reverse can compensate a drive's momentum.
 fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &DesignBrief, commands: &mut Vec<Command>) {
     let geared = drives.iter().filter_map(|drive| Some((drive, drive.rotor.filter(|rotor| rotor.inertia > 0.0)?)));
     let mut any = false;
@@ -137,7 +137,7 @@ fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, held: f64, command
 fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced: bool, commands: &mut Vec<Command>) {
     let (what, tone) = match (keeps, is_balanced) {
         (false, _) => ("off", p.dim),
-        // For example after an undo.
+        // The machine is out of balance, for example after an undo.
         (true, false) => ("from the next change on", p.reaction),
         (true, true) if has_weights => ("the counterweights follow", p.zero),
         (true, true) => ("the centres of mass follow", p.zero),
@@ -177,7 +177,7 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
     });
 }
 
-/// Draws an optional bound; `scale` is the unit shown, in units of the setting.
+/// Draws an optional bound; `scale` is the factor from the value shown to the value of the setting.
 pub(super) fn bounded(
     ui: &mut Ui,
     p: &Palette,

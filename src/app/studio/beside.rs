@@ -1,4 +1,4 @@
-//! Pareto fronts of other machines beside that of the machine on display: kept ones, and those of built-in machines.
+//! Pareto fronts of other machines, drawn beside that on display: kept fronts and those of built-in machines.
 
 use egui::{Align, Button, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
@@ -34,7 +34,7 @@ pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &DesignFacts, p: &Palette) {
     }
 }
 
-/// Draws the list of these fronts, and the buttons that add one.
+/// Draws the list of these fronts, and the controls that add one.
 pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {

@@ -171,7 +171,7 @@ impl Piece {
         self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
     }
 
-    /// Draws the distances between neighbouring holes, and to the tip.
+    /// Draws the dimension line with the distances between neighbouring holes, and to the tip.
     fn stations(&mut self, holes: &[f64], tip: f64, height: f64) {
         let mut stations = holes.to_vec();
         if stations.iter().all(|at| (at - tip).abs() > SAME_PIN_DISTANCE) {

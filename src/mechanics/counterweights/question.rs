@@ -27,7 +27,7 @@ impl CounterweightTask<'_> {
         }
     }
 
-    /// Returns whether there are such counterweights.
+    /// Returns whether counterweights exist that meet the request; an error counts as no.
     pub fn is_possible(&self) -> bool {
         matches!(self.on(&SearchNode::free(self.asked, self.balance())), Ok(Ok(_)))
     }
@@ -37,7 +37,7 @@ impl CounterweightTask<'_> {
         self.on(&SearchNode::free(self.asked, balance))
     }
 
-    /// Finds the optimum of one subproblem.
+    /// Finds the optimum of the subproblem at a node of the search.
     pub fn on(&self, way: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
         let is_convex = self.asked.clearance.is_none() && self.asked.objective.momentum == 0.0;
         match is_convex {

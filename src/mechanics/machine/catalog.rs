@@ -35,7 +35,7 @@ pub fn builtin(name: &str) -> Option<&'static Machine> {
     builtins().iter().find(|m| m.name() == name)
 }
 
-/// Returns a built-in machine by name; looks for no file.
+/// Returns a copy of a built-in machine by name; files are not searched.
 ///
 /// # Errors
 /// If there is no machine of that name; the error lists the names.

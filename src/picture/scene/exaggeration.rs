@@ -61,7 +61,7 @@ impl Exaggeration {
     }
 }
 
-/// An instant with exaggeration: drawn positions, and the frame with the true values. Texts use only the frame, never
+/// A frame with exaggerated motion: drawn positions, and the true values. Texts use only the true values, never
 /// the drawn positions.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnFrame<'a> {

@@ -4,7 +4,7 @@
 //! construction. It consists of strips and flat caps. Normals are constant across a strip and smooth along the outline.
 //! Lengths are metres, z runs from 0 to the height. Computed in `f64`, stored in `f32`.
 //!
-//! Invalid sizes are corrected: negative and non-finite ones are treated as zero, and a bevel is at most half of the
+//! Invalid sizes are corrected. Negative and non-finite ones are treated as zero, and a bevel is at most half of the
 //! radius and a third of the height. A mesh without volume has no triangles.
 
 use std::f64::consts::{PI, TAU};
@@ -15,7 +15,7 @@ use super::Mesh;
 pub const SEGMENTS: usize = 64;
 
 /// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,
-/// from z = 0 to `height`; its top and bottom edges are bevelled by `bevel`, so that shading shows them.
+/// from z = 0 to `height`. Its top and bottom edges are bevelled by `bevel`, so that shading shows them.
 pub fn bar(length_from: f64, length_to: f64, radius: f64, height: f64, bevel: f64) -> Mesh {
     let [from, to] = [length_from, length_to].map(|x| if x.is_finite() { x } else { 0.0 });
     prism(&stadium(from.min(to), from.max(to)), radius, height, bevel)
@@ -51,12 +51,12 @@ struct Spoke {
     out: [f64; 2],
 }
 
-/// Returns the outline of a stadium with centres at x = `from` and x = `to`, counter-clockwise from (0, -1); a circle
-/// if they are equal.
+/// Returns the outline of a stadium with centres at x = `from` and x = `to`, counter-clockwise from (0, -1). This is
+/// a circle if they are equal.
 fn stadium(from: f64, to: f64) -> Vec<Spoke> {
     let half = SEGMENTS / 2;
     let spoke = |centre, k: usize| {
-        // Exact at the quarter turns, so that sides are straight and ends meet them.
+        // Exact at the quarter turns, so that straight sides are parallel to x and join the round ends exactly.
         let out = match 4 * k {
             0 => [0.0, -1.0],
             x if x == SEGMENTS => [1.0, 0.0],

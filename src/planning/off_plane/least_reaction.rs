@@ -1,7 +1,7 @@
 //! Leaving the plane with the least base moment: the redundant mode.
 //!
 //! The end effector's motion p(u), u = t/T, is given. On one sheet q = q(x, y, b), so that only b(u) within its
-//! [`Corridor`] is free, and n_B = −D_1 b̈. The least ∫ n_B² dt is a quadratic program, the least peak of |n_B| a
+//! [`Corridor`] is free, and n_B = −D_1 b̈. Minimising ∫ n_B² dt is a quadratic program, minimising the peak of |n_B| a
 //! linear one. If a constant b is feasible, it is the solution, and the base moment is zero.
 //!
 //! # Symbols
@@ -11,7 +11,7 @@
 //! | b, b′, b″ | pose constant and derivatives by u | rad |
 //! | n_B | −D_1 b″/T² | N m |
 //!
-//! b′ = 0 at both ends; n_B is continuous in between, linear between even nodes.
+//! b′ = 0 at both ends. In between, n_B is continuous, and linear between equally spaced nodes.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use thiserror::Error;
@@ -43,15 +43,15 @@ const MAX_NODES_PER_STATION: usize = 16;
 /// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
 const MAX_DEVIATION: f64 = 1e-6;
 
-/// Maximum number of courses for one margin, with a corridor station added after each; then the margin grows.
+/// Maximum number of solutions b(u) with one margin; after each, the corridor gets a station. Then the margin grows.
 const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReactionNorm {
-    /// ∫ n_B² dt.
+    /// Minimises ∫ n_B² dt.
     Rms,
-    /// The peak of |n_B|; among all motions with that peak, ∫ n_B² dt.
+    /// Minimises the peak of |n_B| and, among all motions with that peak, ∫ n_B² dt.
     Peak,
 }
 
@@ -104,7 +104,7 @@ pub enum LeastReactionError {
 }
 
 impl LeastReaction {
-    /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends; `end`
+    /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends. `end`
     /// is b at the end, rad, if it is not free.
     ///
     /// # Errors
@@ -156,7 +156,7 @@ impl LeastReaction {
             }
         }
         let mut refused = None;
-        // If the drives cannot follow close to a fold, increase the margin at a higher cost.
+        // If the drives cannot follow close to a fold, increase the margin, which costs reaction.
         for ease in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, f64::INFINITY] {
             for _ in 0..MAX_CORRIDOR_REFINEMENTS {
                 let course = least_course(&corridor, end, goal == ReactionNorm::Peak, spaces, ease)
@@ -165,7 +165,7 @@ impl LeastReaction {
                     Ok(path) => return Ok(Self { corridor, course, path, inertia }),
                     Err(why) => why,
                 };
-                // Does b leave the corridor between stations there, such as where a fold begins between two?
+                // If b leaves the corridor between two stations, as where a fold begins, add a station there.
                 let place = match &why {
                     LeastReactionError::NotFollowed { u } => corridor.at(&curve, *u),
                     _ => None,
@@ -247,7 +247,7 @@ pub struct Verdicts {
     pub least: BaseReaction,
 }
 
-/// The base moment of each way, and the t/T from which constant b is infeasible.
+/// Serialised as the base moment of each way, and the t/T from which constant b is infeasible.
 impl Serialize for Verdicts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -293,9 +293,9 @@ pub struct MinimumNorm {
     pub keeps_limits: bool,
 }
 
-/// Returns the path of the drives along a course of b, with as few nodes as keep the end effector on its curve at every
-/// station, because rounding errors of q″ between nodes grow with their number. Near a fold it takes all stations and
-/// more nodes between them.
+/// Returns the path of the drives along a course of b. It has few nodes if these keep the end effector on its curve at
+/// all stations, as rounding errors of q″ grow with their number. Near a fold it has nodes at all stations and
+/// more between them.
 fn followed(
     corridor: &Corridor,
     curve: impl Fn(f64) -> CurvePoint,

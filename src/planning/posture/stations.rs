@@ -6,9 +6,9 @@ use stillbase_mechanics::planar::Vector;
 
 /// Minimum number of intervals of a curve, as a fraction of the number for the whole path.
 const MIN_CURVE_SHARE: f64 = 1.0 / 3.0;
-/// Minimum number of intervals between two joints of a curve, as a fraction of the number for the whole path.
+/// Minimum number of intervals of each piece of a curve, as a fraction of the number for the whole path.
 const MIN_PIECE_SHARE: f64 = 1.0 / 16.0;
-/// A curve with more joints than this needs only one interval between two joints.
+/// A curve with more ends of pieces than this needs only one interval per piece.
 const MANY_JOINTS: usize = 100;
 /// Points and weights of Gaussian quadrature on an interval of length 1.
 pub(super) const GAUSS_NODES: [[f64; 2]; 3] =
@@ -19,9 +19,9 @@ pub(super) const GAUSS_NODES: [[f64; 2]; 3] =
 pub(super) struct PathLeg {
     /// Index of its first station among all; its last one is the first of the next leg.
     pub first: usize,
-    /// s of each station on this curve alone, 0 to 1.
+    /// s of each station, from 0 at the start of this curve to 1 at its end.
     pub s: Vec<f64>,
-    /// Points and derivatives of the curve there, by this s.
+    /// Point of the curve at each station, with its derivatives by this s.
     pub points: Vec<CurvePoint>,
     /// Midpoints between the stations, where the path is checked as well: s and the point of the curve, m.
     pub between: Vec<(f64, Vector)>,
@@ -62,8 +62,8 @@ pub(super) struct Stations {
 }
 
 impl Stations {
-    /// Places stations on curves with about `spaces` intervals in total. Each curve is passed from rest to rest by the
-    /// law, or at constant speed if there is none.
+    /// Puts stations on curves with about `spaces` intervals in total. Each curve is passed from rest to rest by `law`,
+    /// or at constant rate ṡ if there is none.
     pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
         let shares = shares(curves);
         let grid = |(curve, share): (&Curve, &f64)| {
@@ -82,8 +82,8 @@ impl Stations {
         Self::at(curves, law, curves.iter().zip(&shares).map(grid).collect())
     }
 
-    /// Returns stations with the marked intervals divided in four and their neighbours in two. Marks are by leg and
-    /// interval.
+    /// Returns stations with marked intervals divided in four and their neighbours in two. `marked` has one per leg
+    /// and interval.
     pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
         let grid = |(leg, marked): (&PathLeg, &Vec<bool>)| {
             let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);
@@ -137,8 +137,8 @@ fn shares(curves: &[Curve]) -> Vec<f64> {
     curves.iter().map(share).collect()
 }
 
-/// Returns finite-difference weights: from values at up to five places to the value and three derivatives at another
-/// one (Fornberg 1988).
+/// Returns finite-difference weights of the values at up to five places, for the value and the first three derivatives
+/// at `at` (Fornberg 1988).
 pub(super) fn weights(places: &[f64], at: f64) -> [[f64; 5]; 4] {
     let mut w = [[0.0; 5]; 4];
     let mut c1 = 1.0;

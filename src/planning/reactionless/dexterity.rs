@@ -34,7 +34,7 @@ impl PlaneMap {
 
     fn dexterity_of(&self, arms: [Vector; 3]) -> Dexterity {
         let [first, second] = self.columns(&arms);
-        // Arms instead of j_k: a common quarter turn does not change these.
+        // Computed with arms, not j_k: a common quarter turn changes none of these measures.
         let pair = |k: usize, l: usize| cross(arms[k], arms[l]).powi(2);
         let squares: Vector = arms.iter().map(|j| j * j).sum();
         let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();

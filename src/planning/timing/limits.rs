@@ -126,12 +126,12 @@ impl ConstraintRow {
 }
 
 impl ConstraintRow {
-    /// Returns the factor on time with which the limit is just kept: all terms but g fall with its square. The factor
-    /// is infinite if no duration is sufficient.
+    /// Returns the factor on the duration with which the limit is just met: a u + c x falls with its square. The factor
+    /// is infinite if g alone reaches the limit on the side of a u + c x, and 0 if a u + c x = 0.
     #[inline]
     pub(super) fn stretch(&self, u: f64, x: f64) -> f64 {
         let moving = self.a * u + self.c * x;
-        // Distance of g to the limit in the direction of the motion's term.
+        // Distance of g from the limit on the side of the sign of a u + c x.
         let margin = 1.0 - if moving < 0.0 { -self.g } else { self.g };
         match (moving == 0.0, margin > 0.0) {
             (true, _) => 0.0,
@@ -144,10 +144,10 @@ impl ConstraintRow {
 /// Maximum number of rows: torque and acceleration of every drive.
 pub const MAX_ROWS: usize = 2 * MAX_DRIVES;
 
-/// A factor on time for each row and each speed; 0 for unused entries.
+/// A factor on the duration for each row and each limit on speed; 0 for unused entries.
 pub(super) type Stretches = [f64; MAX_ROWS + MAX_DRIVES];
 
-/// Returns the factors on time with which a point that is passed with given progress just keeps its rows and speeds.
+/// Returns the factors on the duration with which each row and speed limit at a point is just met; `at` is its timing.
 #[inline]
 pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &PathProgress) -> Stretches {
     let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
@@ -164,7 +164,7 @@ pub struct Constraints<'a> {
     model: &'a Inertia,
     around: Surroundings,
     limits: &'a DriveLimits,
-    /// If torque is D_k q̈_k in every pose: 1/limit of q̈_k from the limits of torque and acceleration.
+    /// 1/limit of each q̈_k, from the limits on torque and acceleration; only if torque is D_k q̈_k in every pose.
     constant: Option<PerDrive>,
     rows: Vec<DriveLimit>,
     /// Drives with a limit on speed.
@@ -220,8 +220,8 @@ impl<'a> Constraints<'a> {
         self.constant.is_some()
     }
 
-    /// Writes the rows at a point of a path, as many as [`rows`](Self::rows), and the speeds of drives at ṡ = 1 divided
-    /// by their limits, as many as [`speeds`](Self::speeds). Returns the maximum x that speeds allow, 1/s².
+    /// Writes the [`rows`](Self::rows) at a point of a path, and to `speeds` each limited speed at ṡ = 1, divided by
+    /// its limit. Returns the maximum x that limits on speed allow, 1/s².
     #[inline]
     pub(super) fn at(&self, point: &PathPoint, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64 {
         let PathPoint { q, first, second } = point;
@@ -259,8 +259,8 @@ impl<'a> Constraints<'a> {
         1.0 / (largest * largest)
     }
 
-    /// Returns the factors on time with which a point of a path, passed with given progress, just keeps each limit
-    /// except those on jerk.
+    /// Returns the factors on the duration with which each limit except jerk is just met at a point of a path.
+    /// `at` is the timing there.
     pub(super) fn stretches(&self, path: &Path, at: &PathProgress) -> Stretches {
         let (mut rows, mut speeds) = ([ConstraintRow::default(); MAX_ROWS], [0.0; MAX_DRIVES]);
         let (rows, speeds) = (&mut rows[..self.rows.len()], &mut speeds[..self.speed_limited.len()]);

@@ -1,5 +1,5 @@
 //! The design of a machine: its masses, the residuals of (7) and (8), and the cost of balance. Each state of the
-//! machine in a session is a row on the time line `edit`. On the other time lines it holds from the instant of its
+//! machine in a session is a row on the time line `edit`. On the other time lines it is valid from the instant of its
 //! edit.
 
 mod bars;

@@ -1,4 +1,4 @@
-//! Paths of four drives and more with b held; the posture of the task resolves the remaining freedoms.
+//! Paths of machines with four or more drives at constant b; the task's posture resolves the remaining redundancy.
 
 use super::plan::PlanningEffort;
 use super::poses::{hand_of, posed, poses_facing};
@@ -14,7 +14,7 @@ use stillbase_planning::posture::{Posture, PostureRequest};
 use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::number::nine_digits;
 
-/// Number of intervals of each curve. A proposed b has to reach the ends of all of them.
+/// Number of intervals of each curve. At a proposed b, the end effector has to reach the ends of all intervals.
 const INTERVALS_PER_CURVE: usize = 16;
 /// An angle may exceed its limit by this much, rad, because of rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
@@ -24,7 +24,7 @@ const WIDENINGS_RAD: [f64; 3] = [0.1, 0.4, 1.0];
 /// Returns a path along each curve; `law` as [`PostureRequest::law`].
 ///
 /// # Errors
-/// How far the path can be followed, and with [`Effort::Whole`] a proposal.
+/// If there is no whole path: how far it can be followed, and with [`PlanningEffort::Whole`] a proposal.
 pub(super) fn tables(
     scenario: &Scenario,
     space: &PoseSpace,
@@ -40,7 +40,7 @@ pub(super) fn tables(
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
     let asked = PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
-    // Least rates from the pose nearest to the middle mostly keep the limits; the search is needed if they do not.
+    // Minimum-norm rates from the pose nearest to the middle mostly keep the limits. If not, the search is needed.
     let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));
     let is_local = task.posture == Posture::LeastRates && !task.closed;
     if let Some(tables) = is_local.then(local).flatten() {
@@ -62,7 +62,7 @@ pub(super) fn tables(
     Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
 
-/// Follows each curve with least rates, from the pose nearest to the middle of all ranges.
+/// Follows each curve with minimum-norm rates, from the pose nearest to the middle of all ranges.
 fn locally(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<Vec<PathTable>, Refusal> {
     let mut q = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
     let mut tables = Vec::with_capacity(curves.len());
@@ -113,7 +113,7 @@ fn proposal(asked: &PostureRequest<'_>, task: &Task) -> Option<String> {
     another.map(|b| format!("b = {b} rad")).or_else(|| wider(asked, task.posture))
 }
 
-/// Finds the least widening of the limits of one angle with which the path is feasible at the same b.
+/// Finds the first of the trial widenings of the limits of one angle with which the path is feasible at the same b.
 fn wider(asked: &PostureRequest<'_>, posture: Posture) -> Option<String> {
     WIDENINGS_RAD.into_iter().find_map(|by| {
         asked.machine.angles().iter().enumerate().find_map(|(i, angle)| {

@@ -11,7 +11,7 @@ use stillbase_query::{ProgressCallback, part};
 use stillbase_session::scenario::{Task, TaskKind};
 use stillbase_settings::number::counted;
 
-/// Fraction of the work for assessing the given motion; the rest is the search.
+/// Fraction of the progress that the assessment of the given motion counts for; the rest is the search.
 const ACCOUNT_SHARE: f64 = 0.3;
 
 /// Returns the motion given by drive angles, and candidates for a proposal, the best first.

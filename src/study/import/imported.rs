@@ -34,7 +34,7 @@ pub struct ImportedMotion {
     /// effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_samples: Option<[f64; 2]>,
-    /// Assessment of the given motion, for the end effector with minimum-norm rates; `None` if these cannot follow it.
+    /// Assessment of the given motion; for the end effector, it is that of minimum-norm rates. `None` if these fail.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub given: Option<MotionEffects>,
     /// Whether there is a proposal.
@@ -56,7 +56,7 @@ pub struct ImportedMotion {
     pub as_given: Option<Scenario>,
 }
 
-/// Uncertainty of a second derivative, as a fraction of its peak, above which it is noted.
+/// A second derivative with more uncertainty than this fraction of its peak is remarked on.
 const MAX_UNCERTAINTY: f64 = 0.05;
 /// Peaks of a second derivative below this, rad/s² or m/s², count as rest.
 const MIN_PEAK: f64 = 1e-9;
@@ -94,7 +94,7 @@ impl ImportedMotion {
     }
 
     fn notes_of(&self, motion: &GivenMotion) -> Vec<Advice> {
-        // Without second derivatives there is no spline, and so no motion to remark on.
+        // Without a spline there are no second derivatives, and no motion to remark on.
         let Some(peaks) = motion.second_derivatives() else { return Vec::new() };
         let is_of_drives = motion.coordinates == Coordinates::Drives;
         let unit = if is_of_drives { "rad/s²" } else { "m/s²" };

@@ -19,13 +19,13 @@ pub enum PreservedPath {
 /// A given motion, and requirements on the proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Machine, base and control; the task and the edits are ignored. Scenarios of proposals take its name, and its
+    /// Machine, base and control; the task and the edits are ignored. Scenarios of proposals have its name, and its
     /// title followed by what they keep.
     pub scenario: Shared<Scenario>,
     /// The given motion.
     pub motion: Shared<GivenMotion>,
     /// Pose constant of the proposal, rad. By default the one that moves the drives least, or the middle of those that
-    /// serve the end effector's path.
+    /// reach all points of the end effector's path.
     pub b: Option<f64>,
     /// What the proposal keeps of given drive angles. By default the end effector's motion, if some plane reaches all
     /// of it.

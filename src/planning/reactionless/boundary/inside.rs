@@ -8,7 +8,7 @@ use stillbase_mechanics::planar::{Vector, unit};
 
 impl Boundary {
     /// Returns the number of poses within the limits that put the end effector on p, m, on the plane b, rad. It is the
-    /// winding number of all limits and folds about p; no pose is solved for.
+    /// winding number of all limits and folds about p; poses are only computed for a region without area.
     ///
     /// On a fold or a limit, within 1e-12 m, it is the number on one of its sides. Elsewhere it equals the number of
     /// poses from [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses).
@@ -40,7 +40,7 @@ impl Boundary {
     }
 
     /// Returns the folds: the complete images of det ∂(x, y)/∂(a_1, a_2) = 0 within the limits, on the boundary or
-    /// inside. Two poses merge on them; they turn back at [`cusps`](Self::cusps).
+    /// inside. Two poses merge on a fold, and folds turn back at [`cusps`](Self::cusps).
     pub fn fold_curves(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
         let mut chains: Vec<Vec<SpanPart>> = Vec::new();

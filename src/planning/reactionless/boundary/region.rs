@@ -1,4 +1,4 @@
-//! A convex region of (a_1, a_2): the limits, or the part of them on one side of change points.
+//! A convex region of (a_1, a_2): the rectangle of the limits, or the part of it on one side of lines of change points.
 
 use super::determinant::FOLD_INSET;
 use super::fold::{self, FoldCurves};
@@ -15,7 +15,7 @@ const ON_LINE_RAD: f64 = 1e-9;
 pub(super) struct HalfPlane {
     pub n: [f64; 2],
     pub level: f64,
-    /// The curve that its boundary line is.
+    /// The boundary curve to which points of its line belong.
     pub curve: BoundaryCurve,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct HalfPlane {
 struct Edge {
     curve: BoundaryCurve,
     ends: [[f64; 2]; 2],
-    /// The half-plane whose line the edge lies on; `None` on a limit, which finds zeros of det by itself.
+    /// The half-plane on whose line the edge lies; `None` on a limit, along which zeros of det are found differently.
     half_plane: Option<HalfPlane>,
 }
 
@@ -45,7 +45,7 @@ impl HalfPlane {
         [self.n.map(|n| n * self.level / norm), [-self.n[1], self.n[0]]]
     }
 
-    /// Moves the line slightly inwards if det is 0 all along it, so that a sheet lies beside it.
+    /// Moves the line slightly inwards if det is 0 all along it, so that det has a sign there.
     fn off_folds(mut self, on: &Surface) -> Self {
         let [from, way] = self.line();
         if on.det.vanishes(from, way) {
@@ -134,7 +134,7 @@ impl Region {
         self.edges.iter().map(|e| depth(e.ends[0])).fold(0.0, f64::max)
     }
 
-    /// Returns the edges as spans, each with the side of more poses on its left.
+    /// Returns the edges as spans, oriented with the side of more poses on the left.
     pub fn edge_spans(&self, on: &Surface) -> Vec<BoundarySpan> {
         let mut spans = Vec::new();
         for edge in &self.edges {
@@ -142,7 +142,7 @@ impl Region {
             stops.extend(edge.zeros(on));
             stops.push(edge.ends[1]);
             for w in stops.windows(2) {
-                // Counter-clockwise if det > 0 (orientation is kept), else clockwise.
+                // Counter-clockwise if det > 0, where the map keeps orientation; else clockwise.
                 let sheet = sheet(on, [w[0], w[1]], self.width(edge));
                 let ends = if sheet > 0.0 { [w[0], w[1]] } else { [w[1], w[0]] };
                 spans.extend(along(on, edge.curve, ends));
@@ -182,7 +182,7 @@ impl Region {
         FoldCurves { spans, cusps: folds.cusps.into_iter().filter(|&a| inside(a)).collect() }
     }
 
-    /// Returns the outline as spans without orientation by poses, for a region without area.
+    /// Returns the outline as spans for a region without area, where no side has more poses.
     pub fn outline(&self, on: &Surface) -> Vec<BoundarySpan> {
         let mut spans: Vec<BoundarySpan> = self.edges.iter().flat_map(|e| along(on, e.curve, e.ends)).collect();
         if let (true, Some(edge)) = (spans.is_empty(), self.edges.first()) {

@@ -7,8 +7,8 @@ use crate::curves::path::Path;
 use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
-/// Points in every interval at which limits are imposed, as fractions of it, each with half of its weight: two-point
-/// Gaussian quadrature.
+/// Positions in every interval at which limits are imposed, as fractions of it. Each has half the quadrature weight:
+/// two-point Gaussian quadrature.
 const GAUSS_PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Points and weights in intervals near both ends, where quantities change fast; the additional points have zero
 /// weight.
@@ -17,13 +17,13 @@ const END_PLACES: [(f64, f64); 5] =
 /// Number of intervals at each end that count as near it.
 const END_INTERVALS: usize = 4;
 
-/// A two-sided limit at a point: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk, where c are three
-/// coefficients from the point's first.
+/// A two-sided limit at a point: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk. Here y is θ̇³ and
+/// c are three coefficients of y, from [`LimitPoint::first`] on.
 #[derive(Clone, Copy, Default)]
 pub(super) struct TwoSidedLimit {
     /// v.
     pub v: [f64; 3],
-    /// g or k.
+    /// g of torque and acceleration, k of speed and jerk.
     pub g: f64,
     /// Slacks of the upper and the lower limit.
     pub slack: [f64; 2],
@@ -47,7 +47,7 @@ impl TwoSidedLimit {
 /// A point in an interval at which limits are imposed.
 #[derive(Clone, Copy)]
 pub(super) struct LimitPoint {
-    /// θ.
+    /// θ of the point.
     pub theta: f64,
     /// Index of the first of its three coefficients.
     pub first: usize,
@@ -59,14 +59,14 @@ pub(super) struct LimitPoint {
     pub weight: f64,
 }
 
-/// The program on given nodes.
+/// The nonlinear program of a path on given nodes θ_i, with the state of its solution.
 pub struct JerkProgram {
     pub(super) nodes: Vec<f64>,
     pub(super) places: Vec<LimitPoint>,
     pub(super) sides: Vec<TwoSidedLimit>,
-    /// Number of sides of a point.
+    /// Number of two-sided limits at each point.
     pub(super) each: usize,
-    /// Number of these for torque and acceleration; one for speed and those for jerk follow.
+    /// Number of those on torque and acceleration, which come first; then come one on speed and those on jerk.
     pub(super) linear: usize,
     /// Multipliers of the constraints c_i ≥ 0, whose slacks are the coefficients.
     pub(super) multiplier: Vec<f64>,
@@ -128,8 +128,8 @@ fn by_theta(path: &Path, theta: f64) -> (PathPoint, PerDrive) {
     (PathPoint { q, first: first.scaled(a), second: second.scaled(a * a).plus(b, &first) }, third)
 }
 
-/// Converts weights of the values at both ends of an interval and of the coefficient between to weights of
-/// coefficients.
+/// Converts weights of an interval's three Bézier coefficients, of which the outer two are its end values, to weights
+/// of three spline coefficients.
 fn spread(w: [f64; 3], [from, to]: [f64; 2]) -> [f64; 3] {
     [w[0] * (1.0 - from), w[0] * from + w[1] + w[2] * (1.0 - to), w[2] * to]
 }

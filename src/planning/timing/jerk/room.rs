@@ -10,8 +10,8 @@ impl JerkProgram {
         own + self.sides.iter().map(|s| s.multiplier[0] * s.slack[0] + s.multiplier[1] * s.slack[1]).sum::<f64>()
     }
 
-    /// Computes the slacks of all sides from coefficients. Returns whether each keeps more than a share of its former
-    /// value.
+    /// Computes the trial slacks of all limits. Returns whether each exceeds `share` times the present one. If `share`
+    /// is 0, they become the present ones.
     pub(super) fn compute_slacks(&mut self, c: &[f64], share: f64) -> bool {
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact_mut(self.each)) {
             let c = &c[place.first..];
@@ -65,7 +65,7 @@ impl JerkProgram {
                     let g = side.g;
                     let up = [0, 1, 2].map(|k| v[k] - g * r * (2.0 * place.slope[k] - r * place.y[k]));
                     side.slope = [up.map(|x| -x), up];
-                    // One of the two sides is convex.
+                    // Of the two limits, only the convex one adds curvature; that of the other is omitted.
                     curl += 2.0 / y * if g > 0.0 { g * side.multiplier[1] } else { -g * side.multiplier[0] };
                 }
                 add(&mut sum, side.multiplier[0] / side.slack[0], &side.slope[0]);
@@ -77,7 +77,7 @@ impl JerkProgram {
         }
     }
 
-    /// Computes the right side of a step for the barrier parameter `centre`.
+    /// Computes the right-hand side of a step for the barrier parameter `centre`.
     pub(super) fn right_side(&self, c: &[f64], centre: f64, out: &mut [f64]) {
         for (out, (correction, c)) in out.iter_mut().zip(self.correction.iter().zip(c)) {
             *out = (centre - correction) / c;
@@ -96,7 +96,7 @@ impl JerkProgram {
         }
     }
 
-    /// Calls `call` for every limit with slack, its change, multiplier and its change.
+    /// Calls a function for every limit with its slack, the slack's change, its multiplier and the multiplier's change.
     #[inline]
     fn each(&self, c: &[f64], step: &[f64], centre: f64, mut call: impl FnMut([f64; 4])) {
         for ((slack, change), (multiplier, correction)) in
@@ -120,8 +120,8 @@ impl JerkProgram {
         }
     }
 
-    /// Returns the step lengths of coefficients and multipliers, at most 1 and at most `short` times those to the
-    /// nearest bound.
+    /// Returns the step lengths of coefficients and of multipliers: at most 1, and at most `short` times the length to
+    /// the nearest bound.
     pub(super) fn step_lengths(&self, c: &[f64], step: &[f64], centre: f64, short: f64) -> (f64, f64) {
         let (mut primal, mut dual) = (1.0_f64 / short, 1.0_f64 / short);
         self.each(c, step, centre, |[slack, change, multiplier, other]| {
@@ -155,7 +155,7 @@ impl JerkProgram {
         }
     }
 
-    /// Moves the multipliers by a share of their step.
+    /// Moves the multipliers by `dual` times their step.
     pub(super) fn update_multipliers(&mut self, c: &[f64], step: &[f64], centre: f64, dual: f64) {
         let mut multipliers = Vec::with_capacity(2 * self.sides.len() + c.len());
         self.each(c, step, centre, |[_, _, multiplier, change]| multipliers.push(multiplier + dual * change));

@@ -1,9 +1,9 @@
-//! Initial timing of the method: a slow timing within all limits.
+//! Initial timing of the interior-point method: a slow timing within all limits.
 
 use super::program::{JerkProgram, dot};
 
 impl JerkProgram {
-    /// Returns an initial timing: below the maximum that each point permits by itself, with at most `share` of the
+    /// Returns an initial timing y(θ): below the maximum that each point by itself permits, with at most `share` of the
     /// curvature that jerk allows. Returns `None` if there is none.
     pub(super) fn start(&self, bound: &impl Fn(f64) -> f64, share: f64) -> Option<Vec<f64>> {
         let mut bend = f64::INFINITY;
@@ -17,7 +17,7 @@ impl JerkProgram {
                     least = least.min(((1.0 - side.g.abs()) / v).powf(1.5));
                 } else {
                     least = least.min(1.0 / v);
-                    // θ⃛ of y = m + bend θ² is at most 2/3 of the bend.
+                    // For y = m + bend θ², θ⃛ = y″/3 − y′²/(9 y) is at most 2/3 bend.
                     bend = bend.min(if side.g == 0.0 { f64::INFINITY } else { 1.0 / (6.0 * side.g.abs()) });
                 }
             }
@@ -26,7 +26,7 @@ impl JerkProgram {
         if bend.is_nan() || bend <= 0.0 {
             return None;
         }
-        // Lower envelope of upward parabolas, then upper envelope of downward ones: the result has at most their
+        // Lower envelope of upward parabolas, then upper envelope of downward ones: the result has at most the latter's
         // curvature (Lasry–Lions regularisation).
         let bend = share * bend;
         let low = |theta: f64| {
@@ -42,7 +42,7 @@ impl JerkProgram {
         c.iter().all(|c| *c > 0.0 && c.is_finite()).then_some(c)
     }
 
-    /// Scales a timing so that it is well within all limits; `None` if no factor does.
+    /// Scales a timing so that it is well within all limits; `None` if there is no such factor.
     pub(super) fn within(&self, mut c: Vec<f64>) -> Option<Vec<f64>> {
         let mut factor: f64 = f64::INFINITY;
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
@@ -61,7 +61,7 @@ impl JerkProgram {
         (factor > 0.0 && factor.is_finite()).then_some(c)
     }
 
-    /// Returns T of a timing, s.
+    /// Returns the duration T of a timing, s.
     pub(super) fn time(&self, c: &[f64]) -> f64 {
         self.places.iter().map(|p| p.weight / dot(&p.y, &c[p.first..]).cbrt()).sum()
     }

@@ -1,31 +1,31 @@
 //! [`doubt`]: tests a measurement for wrong signs, exchanged columns and wrong units.
 //!
-//! Least squares accept every column as given: a moment of the wrong sign gives momenta of the wrong sign, and
-//! exchanged columns give a different machine. Each plausible [`Fault`] is therefore a hypothesis. The corrected
+//! Least squares accepts every column as given. A moment of the wrong sign gives momenta of the wrong sign, and
+//! exchanged columns give a different machine. Each plausible `Fault` is therefore a hypothesis. The corrected
 //! measurement is fitted too, and the likelihood ratio decides.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
+//! |---|---|---|
 //! | σ | root mean square residual of force and of moment, as a fraction of the measured value | |
-//! | N | effective number of rows: the smaller of both fits, less the rows that the parameters use up | |
-//! | d_D², d² | squared distance of the momenta, and of all unknowns, from the file, in standard deviations of [`Tolerances`] | |
-//! | c² | the larger squared distance of first moments and couplings in both fits, plus the number p | |
-//! | c² | that of first moments and couplings, the larger of both fits, and one for each of the p numbers | |
+//! | N | half the degrees of freedom: effective rows, fewer of both fits, less those that the parameters use up | |
+//! | d_D², d² | squared distance from the file, of the momenta and of all unknowns, in units of `Tolerances` | |
+//! | c² | the larger squared distance of first moments and couplings in both fits, plus the number p of unknowns | |
 //! | Λ | likelihood ratio of a hypothesis to the measurement as given | |
+//!
 //! ln Λ = Σ N ln(σ₀/σ) + p/2 ln((d_D0² + c²)/(d_D² + c²)) ± ln 10⁶ if one hypothesis keeps the joint limits and the
 //! other violates them. The first term is the F-test of the residuals. The second compares the momenta with the file,
-//! on the scale of the file's other errors, which is unknown: a machine that deviates in everything is no evidence of a
-//! fault. Signs of first moments are not used, because a balanced machine can deviate in either direction. A machine
-//! that is not balanced cannot. For it, d² covers the momenta and the first moments and couplings that are not zero in
-//! its file. Then the second term is p/2 ln(d₀²/(`MIN_IMPROVEMENT` d²)) if that is larger.
-//! The measurement as given is rejected if Λ exceeds 10⁴, or if no machine can have the values found ([`impossible`]).
-//! ([`impossible_numbers`]).
-//! Some faults give the same residuals: a balanced machine does not show whether fx or fy is reversed. Then faults are
-//! ordered with d² of all unknowns, and the message names each that is not clearly less likely than the first.
-//! faults are ordered by all of d², and the message names each that is not clearly less likely than the first.
+//! relative to its other errors c². A machine that deviates in everything is no evidence of a fault. Signs of first
+//! moments are no evidence if the file's machine is balanced. Otherwise d² is also taken over the momenta and the first
+//! moments and couplings that are not zero in the file. Then the second term is p/2 ln(d₀²/(`MIN_IMPROVEMENT` d²)) if
+//! that is larger.
+//! The measurement as given is rejected if Λ exceeds 10⁴, or if no machine can have the values found.
 //!
+//! Some faults give the same residuals: a balanced machine does not show whether fx or fy is reversed. Then faults are
+//! ordered by d² of all unknowns, and the message names each that is not clearly less likely than the first.
+//!
+//! # Source
 //! Wilks (1938) for likelihood ratios; Kass and Raftery (1995) for their interpretation.
-//! Wilks (1938) for ratios; Kass and Raftery (1995) for what they mean.
 
 mod doubting;
 mod fault;

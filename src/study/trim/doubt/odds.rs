@@ -6,9 +6,9 @@ use crate::trim::fit::{Fit, estimate};
 use crate::trim::rows::Regressor;
 use stillbase_mechanics::machine::Machine;
 
-/// ln Λ for keeping joint limits instead of violating them: odds of 10⁶.
+/// Contribution to ln Λ if only one of both fits keeps the joint limits: ln 10⁶.
 const LIMITS_LOG_ODDS: f64 = 13.8;
-/// Factor by which d² to the file must decrease before that is evidence of a fault: errors beyond the tolerances
+/// Factor by which d² must decrease to be evidence of a fault. Errors beyond the tolerances
 /// decrease it by less.
 const MIN_IMPROVEMENT: f64 = 30.0;
 /// Joint limits count as violated beyond this, rad.
@@ -17,12 +17,12 @@ pub(super) const LIMIT_LEFT_BEYOND: f64 = 0.1;
 pub(super) const LIMIT_KEPT_WITHIN: f64 = 0.02;
 /// Fraction of the effective rows that is counted, because the correlation of few rows is uncertain.
 const COUNTED_FRACTION: f64 = 0.5;
-/// Residuals below this fraction of the largest possible reaction are rounding, also of written digits.
+/// Residuals below this fraction of the largest possible reaction are rounding errors, or those of printed digits.
 const ROUNDING_LEVEL: f64 = 1e-10;
 /// Lower bound on relative residuals: below it, they are errors of the finite differences and no evidence.
 const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 
-/// A fit, and the violation of the joint limits, rad.
+/// A fit, its degrees of freedom as a fraction of the effective rows, and its violation of the joint limits, rad.
 pub(super) struct FitTrial {
     pub fit: Fit,
     share: f64,
@@ -61,7 +61,7 @@ pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other:
     };
     let common = residuals(0) + residuals(1) + limits;
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
-    // A distance below the tolerances is no further improvement.
+    // A distance below its expected value p counts as p.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();
     let far = before.known.zip(after.known).map_or(f64::NEG_INFINITY, |([was, p], [now, more])| {
         let p = p.max(more);
