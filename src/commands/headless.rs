@@ -168,9 +168,9 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
     });
     bar.finish_and_clear();
     let recordings = recordings?;
-    let mut notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
-    notes.dedup();
-    notes.into_iter().for_each(say);
+    let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
+    let is_first = |i: &usize| !notes[..*i].contains(&notes[*i]);
+    (0..notes.len()).filter(is_first).for_each(|i| say(notes[i]));
     Ok(recordings)
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 use stillbase_exchange::import::{BaseBody, ImportedMachine, import};
-use stillbase_files::write_new;
+use stillbase_files::{is_same_place, write_new};
 use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::Scenario;
@@ -88,7 +88,7 @@ impl ImportModelArguments {
         for file in [&self.output, &self.scenario].into_iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
-        if self.output.is_some() && self.output == self.scenario {
+        if self.output.as_deref().zip(self.scenario.as_deref()).is_some_and(|(a, b)| is_same_place(a, b)) {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();

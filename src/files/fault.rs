@@ -1,5 +1,5 @@
-//! Fault injection for tests of file writing: the n-th step fails, or the program ends at once there. Only in debug
-//! builds.
+//! Fault injection for tests of file writing: the n-th step fails, or that and all later ones, or the program ends at
+//! once there. Only in debug builds.
 
 use std::io;
 #[cfg(debug_assertions)]
@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 pub(super) enum WriteStep {
     /// Creating, writing, syncing or renaming: each can fail.
     Fallible,
-    /// Cleaning up, where a failure does no harm: an injected fault can only end the program there.
+    /// Cleaning up, where a single failure does no harm: an injected fault can only end the program there, or go on from
+    /// an earlier step.
     Tidy,
 }
 
@@ -21,11 +22,16 @@ static STEPS_TO_FAULT: AtomicI64 = AtomicI64::new(0);
 #[cfg(debug_assertions)]
 static ENDS_PROGRAM: AtomicBool = AtomicBool::new(false);
 
-/// Sets the fault: `fail:3` fails at the third step, `end:3` ends the program there.
+/// Whether all later steps fail, too, also those that clean up.
+#[cfg(debug_assertions)]
+static GOES_ON: AtomicBool = AtomicBool::new(false);
+
+/// Sets the fault: `fail:3` fails at the third step, `from:3` at that and all later ones, `end:3` ends the program there.
 #[cfg(debug_assertions)]
 pub fn arm_fault(wanted: &str) {
     if let Some((how, n)) = wanted.split_once(':') {
         ENDS_PROGRAM.store(how == "end", Relaxed);
+        GOES_ON.store(how == "from", Relaxed);
         STEPS_TO_FAULT.store(n.parse().unwrap_or(0), Relaxed);
     }
 }
@@ -33,7 +39,12 @@ pub fn arm_fault(wanted: &str) {
 /// Counts a step and returns whether the fault is due at it; if so, the caller calls [`strike`].
 #[cfg(debug_assertions)]
 pub(super) fn is_due(step: WriteStep) -> bool {
-    (step == WriteStep::Fallible || ENDS_PROGRAM.load(Relaxed)) && STEPS_TO_FAULT.fetch_sub(1, Relaxed) == 1
+    let (ends, goes_on) = (ENDS_PROGRAM.load(Relaxed), GOES_ON.load(Relaxed));
+    if step != WriteStep::Fallible && !ends && !goes_on {
+        return false;
+    }
+    let left = STEPS_TO_FAULT.fetch_sub(1, Relaxed);
+    left == 1 || (goes_on && left < 1)
 }
 
 /// Executes the fault.

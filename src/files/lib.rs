@@ -18,7 +18,7 @@ pub mod text;
 
 pub use draft::{WriteBlock, abandon};
 pub use find::{FoundScenario, machine, scenario};
-pub use new_file::{NewFile, WriteError, check_new, finish_all, free_name, made, write_new};
+pub use new_file::{NewFile, WriteError, check_new, finish_all, free_name, is_same_place, made, write_new};
 
 /// Returns the absolute path of an existing file.
 pub fn absolute_path(file: &std::path::Path) -> Option<std::path::PathBuf> {

@@ -37,6 +37,16 @@ pub enum WriteError {
         /// Reason given by the operating system.
         source: io::Error,
     },
+    /// Overwriting the file failed, and so did restoring it.
+    #[error("{} is not whole ({source}): what it held before is in {}", file.display(), before.display())]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// The file with its previous content.
+        before: PathBuf,
+        /// Reason given by the operating system.
+        source: io::Error,
+    },
     /// The file is complete, but its folder could not be synced to the disk.
     #[error("{} is written whole, but its folder was not synced ({source}): a power cut may undo it", file.display())]
     Unsynced {
@@ -185,15 +195,22 @@ impl NewFile {
         check_new(&self.requested, self.force)?;
         let in_place = self.has_other_names;
         let before = if self.force && (keep || in_place) { aside(part, file, in_place) } else { None };
+        let mut restored = true;
         let named = |()| match (self.force, in_place, &before) {
             (false, ..) => link(part, file),
             (true, false, _) => fs::rename(part, file),
-            (true, true, Some(before)) => copy_into(part, file).inspect_err(|_| _ = copy_into(before, file)),
+            (true, true, Some(before)) => {
+                copy_into(part, file).inspect_err(|_| restored = copy_into(before, file).is_ok())
+            }
             (true, true, None) => Err(io::Error::other("no room for a copy of what it replaces")),
         };
         match super::fault::fail_if_due(WriteStep::Fallible).and_then(named) {
             Ok(()) => Ok(Taken { file: file.clone(), before, in_place }),
             Err(error) => {
+                if let (false, Some(before)) = (restored, &before) {
+                    let before = named_before(before, file);
+                    return Err(WriteError::Damaged { file: self.requested.clone(), before, source: error });
+                }
                 before.map(fs::remove_file);
                 Err(match error.kind() {
                     ErrorKind::AlreadyExists => WriteError::Exists(self.requested.clone()),
@@ -245,6 +262,16 @@ fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     })
     .ok()
     .map(|()| aside)
+}
+
+/// Gives the previous content of a file a lasting name, `FILE.before`, `FILE.before-1` and so on: the next file that is
+/// written would remove its temporary one.
+fn named_before(temporary: &Path, file: &Path) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push(".before");
+    let numbered = (1..1000).map(|i| PathBuf::from(format!("{}-{i}", Path::new(&name).display())));
+    let free = std::iter::once(PathBuf::from(&name)).chain(numbered).find(|file| file.symlink_metadata().is_err());
+    free.filter(|free| fs::rename(temporary, free).is_ok()).unwrap_or_else(|| temporary.into())
 }
 
 /// A final name that a file has taken.
@@ -340,6 +367,16 @@ pub fn made(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteErro
     let mut out = NewFile::create(file, force)?;
     out.write_all(bytes).map_err(|source| WriteError::Failed { file: file.into(), source })?;
     Ok(out)
+}
+
+/// Returns whether two paths name the same file, which need not exist, in folders that do.
+pub fn is_same_place(a: &Path, b: &Path) -> bool {
+    let place = |file: &Path| {
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let whole = fs::canonicalize(file).ok();
+        whole.or_else(|| Some(fs::canonicalize(folder).ok()?.join(file.file_name()?)))
+    };
+    a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }
 
 /// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder.

@@ -78,7 +78,9 @@ fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
         }
     }
     for (chart, range) in &mut all {
-        let [low, high] = chart.range(range[0], range[1]);
+        // Recordings hold SI values, also where the window shows thousandths.
+        let si = Chart { least: chart.least / chart.times, ..*chart };
+        let [low, high] = si.range(range[0], range[1]);
         let margin = 0.06 * (high - low);
         *range = [low - margin, high + margin];
     }

@@ -176,3 +176,42 @@ fn shown_b_reach_their_point() {
         }
     }
 }
+
+/// The widening of a limit names the angle as the machine does, whatever its angles are called.
+#[test]
+fn a_widened_limit_has_the_name_of_its_angle() {
+    let mut noise = Noise::of(83);
+    let plain = Scenario::builtin("two-drive").expect("built in");
+    let widened = (0..200).find_map(|_| {
+        let (machine, space) = a_space(&mut noise, 4);
+        let base = Scenario { machine, compare_b: None, ..plain.clone() };
+        let base = with(&base, "kind = 'reactionless'\nvia = []");
+        let mut end = || {
+            let a = a_pose(&mut noise, &space);
+            let p = space.place(&space.lift(&a, noise.between(0.0, space.period())));
+            [p.re, p.im].map(|x| (1e3 * x).round() / 1e3)
+        };
+        let ends = format!("from = {:?}\nto = {:?}", end(), end());
+        let b = (100.0 * noise.between(-3.0, 9.0)).round() / 100.0;
+        let task = with(&base, &format!("{ends}\nb = {b}\nshape = 'line'"));
+        let words = Run::new(&task).err()?.to_string();
+        words.contains("want limits.").then_some((task, words))
+    });
+    let (task, words) = widened.expect("a task that a wider limit makes feasible");
+    // The same machine with the names of its angles exchanged.
+    let mut spec = task.machine.spec().clone();
+    let names: Vec<String> = spec.angles.iter().rev().map(|angle| angle.name.clone()).collect();
+    spec.angles.iter_mut().zip(&names).for_each(|(angle, name)| angle.name.clone_from(name));
+    let machine = stillbase::mechanics::machine::Machine::new(spec).expect("names may be any");
+    let exchanged = Scenario { machine, ..task.clone() };
+    let again = Run::new(&exchanged).err().expect("refused as well").to_string();
+    let name = |words: &str| {
+        words.split_once("want limits.").and_then(|(_, rest)| rest.split_once(" = ")).map(|(name, _)| name.to_owned())
+    };
+    let (old, new) = (name(&words).expect("a name"), name(&again).expect("a name"));
+    let place = task.machine.spec().angles.iter().position(|angle| angle.name == old).expect("known");
+    assert_eq!(new, names[place], "{words}\n{again}");
+    let (_, tries) = proposals(&exchanged, &again, false);
+    assert!(tries.iter().all(|proposed| Run::new(proposed).is_ok()), "{again}");
+    assert!(!tries.is_empty());
+}

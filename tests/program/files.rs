@@ -364,6 +364,39 @@ fn faults_in_recordings() {
     faults(12..13);
 }
 
+/// A file with two names is overwritten in place. When the disk fails for good midway, its content is still somewhere,
+/// and the message says where; the next file that is written leaves it there.
+#[cfg(all(debug_assertions, unix))]
+#[test]
+fn what_cannot_be_restored_is_kept_beside() {
+    let folder = Folder::new("damaged");
+    let (file, twin, before) = (folder.path("x.toml"), folder.path("y.toml"), folder.path("x.toml.before"));
+    let mut damaged = 0;
+    for n in 1..40 {
+        for old in [&file, &twin, &before] {
+            let _ = fs::remove_file(old);
+        }
+        fs::write(&file, "old").expect("written");
+        fs::hard_link(&file, &twin).expect("two names");
+        let args = ["design", "nine-link", "-o", "x.toml", "--force"];
+        let out = folder.command(&args).env("STILLBASE_FAULT", format!("from:{n}")).output().expect("starts");
+        let said = String::from_utf8(out.stderr).expect("UTF-8");
+        if out.status.code() == Some(0) {
+            assert!(damaged > 0, "the fault never struck while the file was overwritten");
+            return;
+        }
+        let kept = [&file, &before].into_iter().filter(|file| file.exists()).any(|file| bytes(file) == b"old");
+        assert!(kept || said.contains("is written whole"), "from {n}: the content is lost: {said}");
+        if before.exists() {
+            damaged += 1;
+            assert!(said.contains("x.toml.before"), "from {n}: {said}");
+            folder.said(&["design", "nine-link", "-o", "next.toml", "--force"], 0);
+            assert_eq!(bytes(&before), b"old");
+        }
+    }
+    panic!("it is never written");
+}
+
 /// The checksum of a file's bytes, zeros in place of its seal, put there.
 fn sealed(mut file: Vec<u8>, tail: bool) -> Vec<u8> {
     let mark = b" check ";

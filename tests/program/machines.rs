@@ -512,6 +512,8 @@ fn a_machine_comes_from_elsewhere() {
     assert!(table.contains("3 drives · 3 links") && table.contains("force balanced: no"), "{table}");
     fails(&["import-model", &file("arm.xml"), "-o", &file("arm.toml")], 2, &["arm.toml", "--force"]);
     fails(&["import-model", &file("arm.xml"), "-o", &file("b.txt")], 2, &[".toml"]);
+    let (one, same) = (file("both.toml"), file("./both.toml"));
+    fails(&["import-model", &file("arm.xml"), "-o", &one, "--scenario", &same], 2, &["name one file"]);
     fails(&["import-model", &file("nowhere.urdf")], 2, &["nowhere.urdf", "can be read"]);
     let broken = fs::read_to_string(file("arm.urdf")).expect("a file").replacen("continuous", "prismatic", 1);
     fs::write(file("broken.urdf"), broken).expect("written");

@@ -116,8 +116,8 @@ fn proposal(asked: &PostureRequest<'_>, task: &Task) -> Option<String> {
 /// Finds the first of the trial widenings of the limits of one angle with which the path is feasible at the same b.
 fn wider(asked: &PostureRequest<'_>, posture: Posture) -> Option<String> {
     WIDENINGS_RAD.into_iter().find_map(|by| {
-        asked.machine.angles().iter().enumerate().find_map(|(i, angle)| {
-            let key = format!("limits.a{}", i + 1);
+        asked.machine.angles().iter().find_map(|angle| {
+            let key = format!("limits.{}", angle.name);
             let value = format!("{:.2},{:.2}", angle.limits.start() - by, angle.limits.end() + by);
             let machine = asked.machine.set(&key, &value).ok()?;
             let space = PoseSpace::of(&machine).ok()?;
