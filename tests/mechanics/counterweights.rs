@@ -503,6 +503,24 @@ fn a_range_of_payloads_leaves_the_least_worst_residual() {
     assert!((last - 0.15 * longest).abs() < 1e-6, "{last}");
 }
 
+/// What is left over payloads does not depend on what is minimised after it, |D_k| neither.
+#[test]
+fn a_range_of_payloads_leaves_the_same_with_every_objective() {
+    let bare = family_machine("nine-link-bare");
+    let range = [0.0, 0.3];
+    let worst = |objective: Objective| {
+        let asked = CounterweightSpec { payload: Some(range), ..weighing(&bare, objective) };
+        let found = place_weights(&bare, &asked).expect("it can be balanced");
+        let curve = over_payloads(&found.machine, range, 2).expect("it holds them");
+        curve.iter().map(|at| at.force.max(at.coupling / bare.reach())).fold(0.0, f64::max)
+    };
+    let least = worst(Objective::mass());
+    for objective in [Objective::inertia(), Objective { momentum: 1.0, mass: 0.5, ..Objective::mass() }] {
+        let other = worst(objective);
+        assert!((other - least).abs() < 1e-6, "{other}, want {least}");
+    }
+}
+
 /// A rotor that turns the other way takes what its drive gives to the base; a bound on it leaves the rest.
 #[test]
 fn rotors_that_turn_the_other_way_take_momentum_away() {
