@@ -186,7 +186,7 @@ fn wrong(asked: &CounterweightSpec, ours: &Result<Placed, CounterweightError>, t
 /// and SLSQP nothing below it less its gap. What is refused SciPy does not find either.
 fn scipy_finds_no_better_counterweights() {
     let mut noise = Noise::of(count("SEED", 71));
-    let questions: Vec<_> = (0..count("WEIGHTS", 40)).map(|_| a_question(&mut noise)).collect();
+    let questions: Vec<_> = (0..count("WEIGHTS", 16)).map(|_| a_question(&mut noise)).collect();
     let ours: Vec<_> = questions.iter().map(|(machine, asked)| place_weights(machine, asked)).collect();
     let lines = questions.iter().zip(&ours).enumerate();
     let lines: Vec<String> =
