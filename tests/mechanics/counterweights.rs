@@ -694,6 +694,24 @@ fn momenta_below_zero_are_the_least_there_are() {
     }
 }
 
+/// Where more inertia brings a negative D_k back, discs grow, and still keep clear of pins.
+#[test]
+fn discs_that_bring_momenta_back_keep_clear_of_pins() {
+    for ratio in ["-60", "-150", "-400"] {
+        let with = [("drive.1.rotor.inertia", "0.002"), ("drive.1.rotor.ratio", ratio)];
+        let geared = family_machine("two-drive").set_all(with).expect("in range");
+        let objective = Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
+        let free = place_weights(&geared, &weighing(&geared, objective.clone())).expect("it can be balanced");
+        for clearance in [0.0, 0.01, 0.03] {
+            let asked = CounterweightSpec { clearance: Some(clearance), ..weighing(&geared, objective.clone()) };
+            let found = place_weights(&geared, &asked).expect("it can be balanced");
+            let gap = clear_of_pins(&found.machine);
+            assert!(gap > clearance - 1e-6, "{ratio}, {clearance} m: {gap} m");
+            assert!(found.value > free.value - free.gap - 1e-6, "{} below {}", found.value, free.value);
+        }
+    }
+}
+
 /// To first order what is left at worst is what the worst of all corners leaves.
 #[test]
 fn counterweights_that_are_off_leave_at_worst_what_the_worst_corner_leaves() {

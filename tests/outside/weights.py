@@ -44,7 +44,7 @@ class Asked:
         self.h, self.d = machine.diagonal(fixed), machine.momenta() - machine.diagonal()
         self.d = self.d + self.h
         self.h = self.h + sum((i * r * r for i, r in machine.rotors()), np.zeros(self.n))
-        self.is_range = ends is not None and ends[0] < ends[1]
+        self.is_range = ends is not None
         o = self.objective
         self.turns = o["inertia"] + o["momentum"] + o["torque"] > 0 or self.most_inertia is not None
 
@@ -339,6 +339,9 @@ for line in sys.stdin:
     if asked.is_range:
         worst, rooms = linear.least_of_all()
         answer["worst"] = None if rooms is None else worst
+        # One payload alone can be balanced exactly.
+        asked.is_range = asked.payload[0] < asked.payload[1] or worst > 1e-9
+        worst = worst if asked.is_range else None
     if worst is None or rooms is not None:
         low, rooms = linear.least_of_all(worst)
         answer["low"] = low if rooms is not None else None

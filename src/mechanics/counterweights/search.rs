@@ -78,7 +78,9 @@ pub(super) fn search(
                 if found.value <= least.value + VALUE_TOLERANCE {
                     return Ok(Ok(least));
                 }
-                for found in search.descend(&found, &way, cells == 1) {
+                // A disc whose room is not chosen may cover a pin in what the descent finds.
+                let descended = search.descend(&found, &way, cells == 1).into_iter();
+                for found in descended.filter(|found| search.worst_site(found, &rooms, &way).is_none()) {
                     if best.as_ref().is_none_or(|best| found.value < best.value) {
                         best = Some(found);
                     }
