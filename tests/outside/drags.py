@@ -28,15 +28,17 @@ def nearest(arm, random, p, starts):
 def uphill(arm, p, a):
     """How much of the way to the middle is left at a pose that neither the point nor limits hold, as a fraction."""
     free = np.isinf(arm.low)
-    half = np.where(free, np.inf, np.maximum(0.5 * (arm.high - arm.low), 5e-7))
-    about = np.where(free, 0.0, 0.5 * (arm.low + arm.high))
-    slope = (about - a) / half**2
+    low, high = np.where(free, -1.0, arm.low), np.where(free, 1.0, arm.high)
+    # An angle that hardly turns is at its middle, and stays there.
+    narrow = high - low < 1e-3
+    off = 0.5 * (low + high) - a
+    slope = np.where(free | narrow, 0.0, off / (0.5 * (high - low)) ** 2)
     d = arm.dp(a) / arm.reach
     held = [d.real, -d.real, d.imag, -d.imag]
     for i in range(len(a)):
         side = np.eye(len(a))[i]
-        held += [side] if arm.high[i] - a[i] < 1e-9 else []
-        held += [-side] if a[i] - arm.low[i] < 1e-9 else []
+        held += [side] if narrow[i] or arm.high[i] - a[i] < 1e-9 else []
+        held += [-side] if narrow[i] or a[i] - arm.low[i] < 1e-9 else []
     return nnls(np.array(held).T, slope)[1] / max(1.0, np.linalg.norm(slope))
 
 
