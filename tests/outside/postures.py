@@ -126,6 +126,10 @@ for line in sys.stdin:
         answer["b"] = max(answer["b"], abs(q @ arm.rates - asked["b"]).max())
         if kind in task.costs:
             answer["own"][kind] = task.cost(kind, a)[0]
+    if asked["timed"] is not None:
+        q = np.array(asked["timed"])
+        torque = np.diff(q, 2, axis=0) @ arm.machine.torques().T * (len(q) - 1) ** 2
+        answer["own"]["torque"] = float((torque**2).sum() / (len(q) - 1))
     routes = task.routes(random, asked["poses"])
     starts = [arm.a(q) for q in paths.values()] + list(routes.values())
     for kind in task.costs:

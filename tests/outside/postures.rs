@@ -18,6 +18,8 @@ pub const TESTS: &[Test] = tests![scipy_finds_no_path_of_less_cost];
 const SCRIPT: &str = concat!(include_str!("machine.py"), include_str!("postures.py"));
 /// Intervals between the stations of a path.
 const INTERVALS: usize = 16;
+/// Even times at which the path of least torque is sampled.
+const TIMES: usize = 1000;
 const KINDS: [(&str, Posture); 4] = [
     ("rates", Posture::LeastRates),
     ("torque", Posture::LeastTorque),
@@ -65,10 +67,26 @@ impl Case {
         let points = (0..=INTERVALS).map(|i| self.ends[0] + at(i) * (self.ends[1] - self.ends[0]));
         let points: Vec<[f64; 2]> = points.map(|p| [p.re, p.im]).collect();
         let poses = |path: &Path| (0..=INTERVALS).map(|i| path.at(at(i)).q.0.to_vec()).collect::<Vec<_>>();
-        let paths =
-            KINDS.iter().filter_map(|(kind, posture)| Some(((*kind).to_owned(), json!(poses(&self.path(*posture)?)))));
-        let paths: serde_json::Map<String, Value> = paths.collect();
-        json!({ "machine": to_toml(&self.machine), "b": self.b, "points": points, "paths": paths, "seed": seed, "poses": 120 })
+        let found = KINDS.iter().filter_map(|(kind, posture)| Some(((*kind).to_owned(), self.path(*posture)?)));
+        let found: Vec<(String, Path)> = found.collect();
+        // Torques are large where the path is passed slowly: they are measured at even times.
+        let timed = |path: &Path| {
+            let s = |t: f64| t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
+            let pose = |i: usize| path.at(s(i as f64 / TIMES as f64)).q.0.to_vec();
+            (0..=TIMES).map(pose).collect::<Vec<_>>()
+        };
+        let timed = found.iter().find(|(kind, _)| kind == "torque").map(|(_, path)| timed(path));
+        let paths: serde_json::Map<String, Value> =
+            found.iter().map(|(kind, path)| (kind.clone(), json!(poses(path)))).collect();
+        json!({
+            "machine": to_toml(&self.machine),
+            "b": self.b,
+            "points": points,
+            "paths": paths,
+            "timed": timed,
+            "seed": seed,
+            "poses": 120,
+        })
     }
 }
 
