@@ -147,6 +147,11 @@
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //! * **What a command prints** is kept in `../tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `../.ci/run` is what
 //!   has to pass.
+//! * **A long test** takes more than three seconds: it is `#[ignore]`d, with the reason, and a short one beside it runs
+//!   always. `../.ci/run` names those that end within seconds; `STILLBASE_LONG=1 ../.ci/run` runs all of them, and
+//!   `cargo test --test suite -- --ignored NAME` one.
+//! * **A reference from outside**: a script of `../tests/outside/` and what asks it, a row of `../tests/outside.rs`.
+//!   `STILLBASE_OUTSIDE_SEED`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` ask for other cases, and more of them.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
 //!

@@ -18,6 +18,8 @@ macro_rules! tests {
 
 #[path = "exchange/arms.rs"]
 mod arms;
+#[path = "outside/drags.rs"]
+mod drags;
 #[path = "outside/ezdxf.rs"]
 mod ezdxf;
 #[path = "outside/mujoco.rs"]
@@ -28,6 +30,8 @@ mod noise;
 mod pinocchio;
 #[path = "outside/planar.rs"]
 mod planar;
+#[path = "outside/postures.rs"]
+mod postures;
 #[path = "outside/python.rs"]
 mod python;
 #[allow(dead_code, reason = "the tests use a few of them")]
@@ -36,16 +40,27 @@ mod random;
 
 #[path = "outside/trim.rs"]
 mod trim;
+#[path = "outside/weights.rs"]
+mod weights;
 
 use noise::Noise;
 
+/// How many there are to be, or which seed: `STILLBASE_OUTSIDE_` and a word ask for another number.
+fn count(word: &str, usual: u64) -> u64 {
+    let asked = std::env::var(format!("STILLBASE_OUTSIDE_{word}")).ok();
+    asked.map_or(usual, |number| number.parse().expect("a whole number"))
+}
+
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 5] = [
+    let packages: [(&str, &[Test]); 8] = [
         ("ezdxf", ezdxf::TESTS),
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),
+        ("scipy", drags::TESTS),
+        ("scipy", postures::TESTS),
         ("scipy", trim::TESTS),
+        ("scipy", weights::TESTS),
     ];
     let trials = packages.into_iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);

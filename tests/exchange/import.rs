@@ -158,7 +158,6 @@ fn limits_come_back() {
 }
 
 #[test]
-#[ignore = "a thousand machines there and back take a minute"]
 fn a_thousand_machines_go_out_and_come_back() {
     let mut noise = Noise::of(16);
     for i in 0..1000 {

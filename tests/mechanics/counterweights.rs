@@ -503,6 +503,24 @@ fn a_range_of_payloads_leaves_the_least_worst_residual() {
     assert!((last - 0.15 * longest).abs() < 1e-6, "{last}");
 }
 
+/// What is left over payloads does not depend on what is minimised after it, |D_k| neither.
+#[test]
+fn a_range_of_payloads_leaves_the_same_with_every_objective() {
+    let bare = family_machine("nine-link-bare");
+    let range = [0.0, 0.3];
+    let worst = |objective: Objective| {
+        let asked = CounterweightSpec { payload: Some(range), ..weighing(&bare, objective) };
+        let found = place_weights(&bare, &asked).expect("it can be balanced");
+        let curve = over_payloads(&found.machine, range, 2).expect("it holds them");
+        curve.iter().map(|at| at.force.max(at.coupling / bare.reach())).fold(0.0, f64::max)
+    };
+    let least = worst(Objective::mass());
+    for objective in [Objective::inertia(), Objective { momentum: 1.0, mass: 0.5, ..Objective::mass() }] {
+        let other = worst(objective);
+        assert!((other - least).abs() < 1e-6, "{other}, want {least}");
+    }
+}
+
 /// A rotor that turns the other way takes what its drive gives to the base; a bound on it leaves the rest.
 #[test]
 fn rotors_that_turn_the_other_way_take_momentum_away() {
@@ -673,6 +691,24 @@ fn momenta_below_zero_are_the_least_there_are() {
             assert!(worth(&other.machine, other.added_mass) > found.value - 1e-6, "{ratio}");
         }
         assert!(tried > 3, "{tried}");
+    }
+}
+
+/// Where more inertia brings a negative D_k back, discs grow, and still keep clear of pins.
+#[test]
+fn discs_that_bring_momenta_back_keep_clear_of_pins() {
+    for ratio in ["-60", "-150", "-400"] {
+        let with = [("drive.1.rotor.inertia", "0.002"), ("drive.1.rotor.ratio", ratio)];
+        let geared = family_machine("two-drive").set_all(with).expect("in range");
+        let objective = Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
+        let free = place_weights(&geared, &weighing(&geared, objective.clone())).expect("it can be balanced");
+        for clearance in [0.0, 0.01, 0.03] {
+            let asked = CounterweightSpec { clearance: Some(clearance), ..weighing(&geared, objective.clone()) };
+            let found = place_weights(&geared, &asked).expect("it can be balanced");
+            let gap = clear_of_pins(&found.machine);
+            assert!(gap > clearance - 1e-6, "{ratio}, {clearance} m: {gap} m");
+            assert!(found.value > free.value - free.gap - 1e-6, "{} below {}", found.value, free.value);
+        }
     }
 }
 

@@ -435,6 +435,41 @@ fn the_curve_of_two_drives_is_as_long_as_its_chords() {
     }
 }
 
+/// Beside an angle that hardly turns the others still come to the middle of their limits, as near as they can.
+#[test]
+fn an_angle_that_hardly_turns_leaves_the_others_to_be_centred() {
+    let mut noise = Noise::of(79);
+    for n in [5, 6, 7] {
+        for _ in 0..4 {
+            let (machine, _) = any_space(&mut noise, n);
+            let mut spec = machine.spec().clone();
+            spec.angles[1].max = spec.angles[1].min.map(|min| min + 1e-5);
+            let space = PoseSpace::general(&Machine::new(spec).expect("in range")).expect("it has a b");
+            let b = noise.between(-3.0, 3.0);
+            let from = space.clamped(&any_pose(&mut noise, &space));
+            let p = space.place(&space.lift(&from, b));
+            let nearest = space.centred(p, b, &from);
+            let far = |a: &PerDrive| {
+                let share = |i: usize| {
+                    let [low, high] = space.joints()[i].limits();
+                    if high - low > 1e-3 { (a[i] - 0.5 * (low + high)) / (0.5 * (high - low)) } else { 0.0 }
+                };
+                (0..n - 1).map(|i| share(i).powi(2)).sum::<f64>()
+            };
+            assert!((space.place(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
+            for _ in 0..20 {
+                let size = 10.0_f64.powf(noise.between(-3.0, -1.0));
+                let beside = PerDrive::from_fn(n - 1, |i| nearest[i] + size * noise.between(-1.0, 1.0));
+                let (back, missed) = space.toward(p, b, &space.clamped(&beside));
+                if missed < 1e-10 * space.farthest() {
+                    let (own, other) = (far(&nearest), far(&back));
+                    assert!(other > own - 1e-4, "{n} drives: {other} below {own}, step {size}");
+                }
+            }
+        }
+    }
+}
+
 /// The nearest of all poses at a point and b: no pose beside it that keeps both is nearer to the middle of the limits.
 #[test]
 fn nothing_beside_the_nearest_pose_is_nearer() {

@@ -125,7 +125,6 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    #[ignore = "long: a thousand sessions, two minutes in a debug build"]
     fn limits_always_apply_often(
         one in limits(),
         other in limits(),

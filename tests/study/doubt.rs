@@ -177,7 +177,6 @@ fn every_fault_is_refused_by_its_name() {
 
 /// Of a long recording a part is enough, and it is one in which everything moves.
 #[test]
-#[ignore = "long: eighteen thousand rows are fitted under every hypothesis, seconds optimised"]
 fn a_fault_in_a_long_recording_is_found() {
     let machine = builtin("nine-link").expect("built in");
     let mut noise = Noise::of(36);

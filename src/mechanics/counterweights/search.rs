@@ -9,7 +9,7 @@ use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::room::FreeSpan;
 use super::solution::MIN_MASS_KG;
-use super::way::SearchNode;
+use super::way::{BalanceGoal, SearchNode};
 use crate::machine::Machine;
 use stillbase_convex::{NoOptimum, Optimum};
 
@@ -69,13 +69,18 @@ pub(super) fn search(
                 };
                 rooms[j].iter().map(enter).collect()
             }
-            None if asked.objective.momentum == 0.0 || way.least.is_some() => return Ok(Ok(least)),
+            // Only the objective depends on the exact inertias: a residual or a bound that is minimised does not.
+            None if asked.objective.momentum == 0.0 || way.least.is_some() || way.balance == BalanceGoal::Nearest => {
+                return Ok(Ok(least));
+            }
             None => {
                 let found = search.with_exact_inertia(&least);
                 if found.value <= least.value + VALUE_TOLERANCE {
                     return Ok(Ok(least));
                 }
-                for found in search.descend(&found, &way, cells == 1) {
+                // A disc whose room is not chosen may cover a pin in what the descent finds.
+                let descended = search.descend(&found, &way, cells == 1).into_iter();
+                for found in descended.filter(|found| search.worst_site(found, &rooms, &way).is_none()) {
                     if best.as_ref().is_none_or(|best| found.value < best.value) {
                         best = Some(found);
                     }

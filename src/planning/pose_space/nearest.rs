@@ -23,6 +23,8 @@ const STEP_TOLERANCE_RAD: f64 = 1e-11;
 const MAX_HALVINGS: usize = 12;
 /// Added to each weight in steps without second derivatives, so that angles of weight 0 stay bounded.
 const WEIGHT_OFFSET: f64 = 1e-3;
+/// Half ranges below this are treated as a single angle when a pose is centred, rad.
+const NARROW_HALF_RANGE_RAD: f64 = 1e-3;
 /// Tolerance of active limits, rad.
 const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
 
@@ -45,9 +47,22 @@ impl PoseSpace {
             true => f64::INFINITY,
             false => 0.5 * (self.joints[i].limits[1] - self.joints[i].limits[0]).max(1e-6),
         };
-        let weight = PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2));
-        let bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
-        self.drawn((p, b), from, &PreferredAngles { angles: self.middle(), weight }, &bounds)
+        let middle = self.middle();
+        // Beside an angle that hardly turns, the others would hardly count: it is held at its middle, where it costs
+        // them next to nothing.
+        let is_narrow = |i: usize| half(i) < NARROW_HALF_RANGE_RAD;
+        let (mut weight, mut start) = (PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2)), *from);
+        let mut bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
+        if (0..self.joints.len()).any(is_narrow) {
+            let mut held = bounds;
+            (0..self.joints.len()).filter(|i| is_narrow(*i)).for_each(|i| held[i] = [middle[i]; 2]);
+            let clamped = PerDrive::from_fn(self.joints.len(), |i| from[i].clamp(held[i][0], held[i][1]));
+            if let Some(solved) = self.solved(p, b, &clamped, &held) {
+                (0..self.joints.len()).filter(|i| is_narrow(*i)).for_each(|i| weight[i] = 0.0);
+                (start, bounds) = (solved, held);
+            }
+        }
+        self.drawn((p, b), &start, &PreferredAngles { angles: middle, weight }, &bounds)
     }
 
     /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another

@@ -1,0 +1,380 @@
+
+
+"""Bounds of what counterweights come to: from below by HiGHS over tangents of all that is convex, from above by SLSQP.
+
+With clearance, every choice between pins is a program of its own.
+"""
+
+import itertools
+
+from scipy.optimize import linprog, minimize
+
+
+class Asked:
+    def __init__(self, asked):
+        self.__dict__.update(asked)
+        self.machine = machine = Machine(asked["machine"])
+        self.n, self.count = machine.n, len(self.sites)
+        spec = machine.spec
+        fixed = [weight for weight in machine.weights() if weight.get("fixed")]
+        spec["counterweight"] = fixed
+        self.free = {rotor["drive"]: spec["drive"][rotor["drive"]].pop("rotor", {"inertia": 0.0, "ratio": 1.0})
+                     for rotor in self.rotors}
+        ends = self.payload
+        if ends is not None:
+            spec.setdefault("payload", {})["mass"] = 0.5 * (ends[0] + ends[1])
+        self.own = 0.5 * self.spread**2
+        self.part = [machine.of[site[0]] for site in self.sites]
+        self.root = [machine.roots[site[0]] for site in self.sites]
+        self.sign = [machine.sign[site[0]] for site in self.sites]
+        self.most = [np.inf if site[3] is None else site[3] for site in self.sites]
+        # Conditions are linear in mass and first moment of a disc.
+        flat = lambda both: np.concatenate(both).real
+        self.left = flat(machine.conditions(weights=fixed))
+        self.across = max(abs(np.concatenate(machine.conditions(weights=fixed)).imag))
+        self.changes = np.zeros((len(self.left), 2 * self.count))
+        for j, (link, *_) in enumerate(self.sites):
+            with_disc = lambda at: flat(machine.conditions(
+                weights=fixed + [{"link": machine.names[link], "mass": 1.0, "at": at}])) - self.left
+            self.changes[:, 2 * j] = with_disc(0.0)
+            self.changes[:, 2 * j + 1] = with_disc(1.0) - with_disc(0.0)
+        self.ends = [self.left] if ends is None else [flat(machine.conditions(end, fixed)) for end in ends]
+        reach = abs(machine.tip).sum()
+        self.per = np.array([1.0] * self.n + [reach] * (len(self.left) - self.n))
+        self.h, self.d = machine.diagonal(fixed), machine.momenta() - machine.diagonal()
+        self.d = self.d + self.h
+        self.h = self.h + sum((i * r * r for i, r in machine.rotors()), np.zeros(self.n))
+        self.is_range = ends is not None
+        o = self.objective
+        self.turns = o["inertia"] + o["momentum"] + o["torque"] > 0 or self.most_inertia is not None
+
+    def turned(self, drive, ratio):
+        return self.machine.turned(drive, ratio)
+
+    def measures(self, w, x, rotors):
+        """Added mass, H_kk and D_k."""
+        turned = np.zeros(self.n)
+        for j in range(self.count):
+            part = w[j] * self.root[j] ** 2
+            k = self.part[j]
+            part[k] = w[j] * (self.root[j][k] + self.sign[j] * x[j]) ** 2 + self.own * w[j] ** 2
+            turned = turned + part
+        h, d = self.h + turned, self.d + turned
+        for rotor, value in zip(self.rotors, rotors):
+            present = self.free[rotor["drive"]]
+            inertia, ratio = (value, present["ratio"]) if rotor["free"] == "inertia" else (present["inertia"], value)
+            rates = self.turned(rotor["drive"], ratio)
+            h, d = h + inertia * rates**2, d + inertia * rates
+        return w.sum(), h, d
+
+    def value(self, w, x, rotors):
+        mass, h, d = self.measures(w, x, rotors)
+        o = self.objective
+        torque = max(a * own for a, own in zip(o["accelerations"], h)) if o["torque"] > 0 else 0.0
+        return o["mass"] * mass + o["inertia"] * h.sum() + o["momentum"] * abs(d).sum() + o["torque"] * torque
+
+    def rooms(self):
+        """For each site the pins between which its disc may be."""
+        if self.clearance is None:
+            return [[(-np.inf, np.inf)]] * self.count
+        pins = [[-np.inf, *self.machine.pins(site[0]), np.inf] for site in self.sites]
+        return [list(zip(own, own[1:])) for own in pins]
+
+    def residual(self, w, x):
+        """The largest residual of (7) and (8), kg m."""
+        both = np.stack([w, w * x], 1).ravel()
+        return max(float((abs(end + self.changes @ both) / self.per).max()) for end in self.ends)
+
+
+class Linear:
+    """Tangents of what is convex, shared by all choices between pins."""
+
+    def __init__(self, asked):
+        self.asked, c, n = asked, asked.count, asked.n
+        sizes = {"w": c, "s": c, "u": c, "v": c, "z": c, "x": len(asked.rotors), "t": len(asked.rotors),
+                 "d": n, "torque": 1, "worst": 1}
+        starts = np.cumsum([0, *sizes.values()])
+        self.at = {name: start for name, start in zip(sizes, starts)}
+        self.size = starts[-1]
+        self.cuts, self.right = [], []
+        for j, (_, low, high, _) in enumerate(asked.sites):
+            most = min(asked.most[j], 40.0)
+            for x in np.linspace(low, high, 9):
+                self.place(j, x)
+            for w in np.linspace(0.0, most, 9):
+                self.mass(j, w)
+        for i, rotor in enumerate(asked.rotors):
+            for value in np.linspace(*rotor["ends"], 9):
+                self.ratio(i, value)
+
+    def row(self, terms):
+        row = np.zeros(self.size)
+        for name, i, by in terms:
+            row[self.at[name] + i] += by
+        return row
+
+    def cut(self, terms, right):
+        self.cuts.append(self.row(terms))
+        self.right.append(right)
+
+    def place(self, j, x):
+        # u >= s^2 / w
+        self.cut([("s", j, 2 * x), ("w", j, -x * x), ("u", j, -1)], 0.0)
+
+    def mass(self, j, w):
+        own, root = self.asked.own, max(w, 0.0) ** 0.5
+        # v >= own w^2 and z >= w^1.5
+        self.cut([("w", j, 2 * own * w), ("v", j, -1)], own * w * w)
+        self.cut([("w", j, 1.5 * root), ("z", j, -1)], 0.5 * root * w)
+
+    def ratio(self, i, value):
+        rotor = self.asked.rotors[i]
+        inertia = self.asked.free[rotor["drive"]]["inertia"] if rotor["free"] == "ratio" else 0.0
+        self.cut([("x", i, 2 * inertia * value), ("t", i, -1)], inertia * value * value)
+
+    def turned(self, k):
+        """H_kk and D_k, linear but for their constants."""
+        asked, h = self.asked, []
+        for j in range(asked.count):
+            root = asked.root[j][k]
+            h.append(("w", j, root * root))
+            if asked.part[j] == k:
+                h += [("s", j, 2 * asked.sign[j] * root), ("u", j, 1.0), ("v", j, 1.0)]
+        d, ends = list(h), [asked.h[k], asked.d[k]]
+        for i, rotor in enumerate(asked.rotors):
+            present = asked.free[rotor["drive"]]
+            if rotor["free"] == "inertia":
+                rate = asked.turned(rotor["drive"], present["ratio"])[k]
+                h.append(("x", i, rate * rate))
+                d.append(("x", i, rate))
+            else:
+                plain = asked.turned(rotor["drive"], 0.0)[k]
+                slope = asked.turned(rotor["drive"], 1.0)[k] - plain
+                inertia = present["inertia"]
+                h += [("x", i, 2 * plain * slope * inertia), ("t", i, slope * slope)]
+                d.append(("x", i, slope * inertia))
+                ends = [ends[0] + inertia * plain * plain, ends[1] + inertia * plain]
+        return self.row(h), self.row(d), ends
+
+    def program(self, rooms, worst):
+        asked, o = self.asked, self.asked.objective
+        cost, above, right = np.zeros(self.size), [], []
+        most = lambda row, limit: (above.append(row), right.append(limit))
+        if worst is None and asked.is_range:
+            cost[self.at["worst"]] = 1.0
+        else:
+            cost += self.row([("w", j, o["mass"]) for j in range(asked.count)])
+        total, fixed = np.zeros(self.size), 0.0
+        for k in range(asked.n):
+            h, d, [of_h, of_d] = self.turned(k)
+            total, fixed = total + d, fixed + of_d
+            most(d - self.row([("d", k, 1)]), -of_d)
+            most(-d - self.row([("d", k, 1)]), of_d)
+            if o["torque"] > 0:
+                most(o["accelerations"][k] * h - self.row([("torque", 0, 1)]), -o["accelerations"][k] * of_h)
+            if worst is not None or not asked.is_range:
+                cost += o["inertia"] * h + self.row([("d", k, o["momentum"])])
+        if worst is not None or not asked.is_range:
+            cost += self.row([("torque", 0, o["torque"])])
+        if asked.most_inertia is not None:
+            most(total, asked.most_inertia - fixed)
+        if asked.most_mass is not None:
+            most(self.row([("w", j, 1) for j in range(asked.count)]), asked.most_mass)
+        for j, (_, low, high, _) in enumerate(asked.sites):
+            most(self.row([("w", j, low), ("s", j, -1)]), 0.0)
+            most(self.row([("s", j, 1), ("w", j, -high)]), 0.0)
+            low, high = rooms[j]
+            gap = asked.clearance or 0.0
+            if np.isfinite(low):
+                most(self.row([("w", j, low + gap), ("z", j, asked.spread), ("s", j, -1)]), 0.0)
+            if np.isfinite(high):
+                most(self.row([("s", j, 1), ("z", j, asked.spread), ("w", j, gap - high)]), 0.0)
+        sums = np.zeros((len(asked.left), self.size))
+        for j in range(asked.count):
+            sums[:, self.at["w"] + j], sums[:, self.at["s"] + j] = asked.changes[:, 2 * j], asked.changes[:, 2 * j + 1]
+        equal, side = sums, -asked.left
+        if asked.is_range:
+            equal, side = None, None
+            for end, i, sign in itertools.product(asked.ends, range(len(asked.left)), [1, -1]):
+                most(sign * sums[i] - self.row([("worst", 0, asked.per[i])]), -sign * end[i])
+            if worst is not None:
+                most(self.row([("worst", 0, 1)]), worst * (1 + 1e-7) + 1e-10)
+        bounds = [(0, None)] * self.size
+        for j in range(asked.count):
+            bounds[self.at["w"] + j] = (0, min(asked.most[j], 1e4))
+            bounds[self.at["s"] + j] = (None, None)
+        for i, rotor in enumerate(asked.rotors):
+            bounds[self.at["x"] + i] = tuple(rotor["ends"])
+        bounds[self.at["torque"]] = (None, None)
+        return cost, above, right, equal, side, bounds
+
+    def least(self, rooms, worst, below):
+        """The least of one choice between pins, from below; infinite if there is none, and beyond `below` any bound."""
+        cost, above, right, equal, side, bounds = self.program(rooms, worst)
+        base, asked, last = self.constant(worst), self.asked, -np.inf
+        for _ in range(200):
+            found = linprog(cost, np.array(above + self.cuts), np.array(right + self.right), equal, side, bounds,
+                            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10})
+            if found.status == 2:
+                return np.inf, None
+            assert found.status == 0, found.message
+            value = found.fun + base
+            get = lambda name, i: found.x[self.at[name] + i]
+            off = 0.0
+            for j in range(asked.count):
+                w, s = get("w", j), get("s", j)
+                if w > 1e-12:
+                    if asked.turns:
+                        off = max(off, s * s / w - get("u", j), asked.own * w * w - get("v", j))
+                    if asked.clearance is not None:
+                        off = max(off, w**1.5 - get("z", j))
+                    self.place(j, s / w)
+                    self.mass(j, w)
+            for i, rotor in enumerate(asked.rotors):
+                if rotor["free"] == "ratio":
+                    inertia = asked.free[rotor["drive"]]["inertia"]
+                    off = max(off, inertia * get("x", i) ** 2 - get("t", i))
+                    self.ratio(i, get("x", i))
+            if off < 1e-9 or value > below:
+                break
+        return value, found.x
+
+    def constant(self, worst):
+        if worst is None and self.asked.is_range:
+            return 0.0
+        return self.asked.objective["inertia"] * sum(self.turned(k)[2][0] for k in range(self.asked.n))
+
+    def least_of_all(self, worst=None):
+        best, rooms = (np.inf, None), None
+        for choice in itertools.product(*self.asked.rooms()):
+            found = self.least(choice, worst, best[0])
+            if found[0] < best[0]:
+                best, rooms = found, choice
+        return best[0], rooms
+
+
+def tried(asked, random, worst, rooms, starts):
+    """The least value of what SLSQP finds from starts, and random ones."""
+    c, r, n = asked.count, len(asked.rotors), asked.n
+    o = asked.objective
+    sizes = [c, c, r, n, 1]
+    cut = np.cumsum(sizes)[:-1]
+    scale = lambda i: max(abs(asked.rotors[i]["ends"][0]), abs(asked.rotors[i]["ends"][1]), 1e-12)
+    scales = np.array([scale(i) for i in range(r)])
+
+    def parts(y):
+        w, x, rotors, d, torque = np.split(y, cut)
+        return w, x, rotors * scales, d, torque[0]
+
+    def cost(y):
+        w, x, rotors, d, torque = parts(y)
+        _, h, _ = asked.measures(w, x, rotors)
+        return o["mass"] * w.sum() + o["inertia"] * h.sum() + o["momentum"] * d.sum() + o["torque"] * torque
+
+    def above(y):
+        w, x, rotors, d, torque = parts(y)
+        mass, h, own = asked.measures(w, x, rotors)
+        rows = [d - own, d + own]
+        if o["torque"] > 0:
+            rows.append(torque - np.array(o["accelerations"]) * h)
+        if asked.most_mass is not None:
+            rows.append([asked.most_mass - mass])
+        if asked.most_inertia is not None:
+            rows.append([asked.most_inertia - own.sum()])
+        if asked.is_range:
+            both = np.stack([w, w * x], 1).ravel()
+            for end in asked.ends:
+                left = (end + asked.changes @ both) / asked.per
+                rows += [worst * (1 + 1e-7) + 1e-10 - left, worst * (1 + 1e-7) + 1e-10 + left]
+        if asked.clearance is not None:
+            radius = asked.spread * np.sqrt(np.maximum(w, 0) + 1e-14)
+            for j, (low, high) in enumerate(rooms):
+                if np.isfinite(low):
+                    rows.append([w[j] * (x[j] - low - asked.clearance - radius[j])])
+                if np.isfinite(high):
+                    rows.append([w[j] * (high - asked.clearance - radius[j] - x[j])])
+        return np.concatenate(rows)
+
+    def equal(y):
+        w, x, *_ = parts(y)
+        return asked.left + asked.changes @ np.stack([w, w * x], 1).ravel()
+
+    bounds = [(0, min(most, 1e4)) for most in asked.most] + [tuple(site[1:3]) for site in asked.sites]
+    bounds += [(rotor["ends"][0] / s, rotor["ends"][1] / s) for rotor, s in zip(asked.rotors, scales)]
+    bounds += [(0, None)] * n + [(None, None)]
+    limits = [{"type": "ineq", "fun": above}]
+    if not asked.is_range:
+        limits.append({"type": "eq", "fun": equal})
+    best = np.inf
+    for start in starts + [None] * 6:
+        if start is None:
+            w = random.uniform(0, 1, c) * random.choice([0.3, 3.0, 10.0])
+            x = np.array([random.uniform(*site[1:3]) for site in asked.sites])
+            rotors = np.array([random.uniform(*rotor["ends"]) for rotor in asked.rotors])
+        else:
+            w, x, rotors = (np.array(part, float) for part in start)
+        _, h, d = asked.measures(w, x, rotors)
+        torque = max(np.array(o["accelerations"]) * h) if o["torque"] > 0 else 0.0
+        y = np.concatenate([w, x, rotors / scales, abs(d), [torque]])
+        y = np.clip(y, [-np.inf if low is None else low for low, _ in bounds],
+                    [np.inf if high is None else high for _, high in bounds])
+        found = minimize(cost, y, method="SLSQP", bounds=bounds, constraints=limits,
+                         options={"maxiter": 200, "ftol": 1e-12})
+        if not np.isfinite(found.x).all():
+            continue
+        if above(found.x).min() < -1e-9 or (not asked.is_range and abs(equal(found.x)).max() > 1e-9):
+            continue
+        w, x, rotors, *_ = parts(found.x)
+        best = min(best, asked.value(w, x, rotors))
+    return best
+
+
+for line in sys.stdin:
+    line = json.loads(line)
+    asked = Asked(line)
+    random = np.random.default_rng(line["seed"])
+    linear = Linear(asked)
+    answer = {"worst": 0.0, "low": None, "high": None, "found": None}
+    worst = None
+    if asked.is_range:
+        worst, rooms = linear.least_of_all()
+        answer["worst"] = None if rooms is None else worst
+        # One payload alone can be balanced exactly.
+        asked.is_range = asked.payload[0] < asked.payload[1] or worst > 1e-9
+        worst = worst if asked.is_range else None
+    if worst is None or rooms is not None:
+        low, rooms = linear.least_of_all(worst)
+        answer["low"] = low if rooms is not None else None
+    found = line["found"]
+    starts = []
+    if found is not None:
+        machine = Machine(found)
+        own = [weight for weight in machine.weights() if not weight.get("fixed")]
+        w, x, r = np.zeros(asked.count), np.array([0.5 * (site[1] + site[2]) for site in asked.sites]), np.zeros(asked.count)
+        links = [machine.names[site[0]] for site in asked.sites]
+        for weight in own:
+            j = links.index(weight["link"])
+            w[j], x[j], r[j] = weight["mass"], weight["at"], weight.get("radius", 0.0)
+        rotors = []
+        for rotor in asked.rotors:
+            given = machine.spec["drive"][rotor["drive"]].get("rotor", {"inertia": 0.0})
+            rotors.append(given["inertia"] if rotor["free"] == "inertia" else given.get("ratio", 1.0))
+        mass, h, d = asked.measures(w, x, rotors)
+        past = [0.0]
+        for j, (_, low, high, _) in enumerate(asked.sites):
+            if w[j] > 0:
+                past += [low - x[j], x[j] - high, w[j] - asked.most[j], abs(r[j] - asked.spread * w[j] ** 0.5)]
+                if asked.clearance is not None:
+                    past.append(max(asked.clearance + r[j] - abs(pin - x[j]) for pin in machine.pins(asked.sites[j][0])))
+        past += [mass - asked.most_mass] if asked.most_mass is not None else []
+        past += [d.sum() - asked.most_inertia] if asked.most_inertia is not None else []
+        past += [max(rotor["ends"][0] - value, value - rotor["ends"][1]) for rotor, value in zip(asked.rotors, rotors)]
+        answer["found"] = {
+            "value": asked.value(w, x, rotors), "past": max(past), "residual": asked.residual(w, x),
+            "mass": mass, "momenta": (machine.momenta() - d).tolist(), "diagonal": (np.diag(machine.inertia()) - h).tolist(),
+        }
+        starts.append((w, x, rotors))
+    if answer["low"] is not None:
+        high = tried(asked, random, worst, rooms, starts)
+        answer["high"] = high if np.isfinite(high) else None
+    print(json.dumps(answer), flush=True)
