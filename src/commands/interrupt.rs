@@ -31,5 +31,6 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
+/// There are no signals elsewhere: half-written files stay until the next run that writes to their folder.
 #[cfg(not(unix))]
 pub fn watch() {}
