@@ -1,5 +1,7 @@
 //! Motion planning: which poses and paths a machine can reach, and when it passes along them.
 //!
+//! Others reach this crate as `stillbase::planning`; `stillbase` alone follows semantic versioning.
+//!
 //! | what | modules |
 //! |---|---|
 //! | whether a machine has a pose constant b = Σ λ_k q_k, in words | [`pose_constant`] |
@@ -28,6 +30,7 @@ pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;
 pub mod pose_space;
+#[doc(hidden)]
 pub mod posed;
 pub mod posture;
 pub mod reactionless;

@@ -4,7 +4,9 @@
 mod braking;
 mod closest;
 mod deviation;
+#[doc(hidden)]
 pub mod follow;
+#[doc(hidden)]
 pub mod held;
 pub mod nearest;
 mod on_plane;
