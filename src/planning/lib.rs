@@ -30,7 +30,6 @@ pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;
 pub mod pose_space;
-#[doc(hidden)]
 pub mod posed;
 pub mod posture;
 pub mod reactionless;

@@ -5,7 +5,6 @@
 //!
 //! Others reach this crate as `stillbase::study`; `stillbase` alone follows semantic versioning.
 
-#[doc(hidden)]
 pub mod advice;
 pub mod balance_constants;
 pub mod base_spectrum;

@@ -17,7 +17,6 @@ pub mod course;
 pub mod dexterity;
 #[doc(hidden)]
 pub mod draft;
-#[doc(hidden)]
 pub mod exaggeration;
 #[doc(hidden)]
 pub mod fill;
@@ -37,8 +36,8 @@ pub mod palette;
 pub mod pick;
 #[doc(hidden)]
 pub mod pointer;
-#[doc(hidden)]
 pub mod reaction;
+#[doc(hidden)]
 pub mod stage;
 #[doc(hidden)]
 pub mod tower;

@@ -4,7 +4,6 @@
 mod braking;
 mod closest;
 mod deviation;
-#[doc(hidden)]
 pub mod follow;
 #[doc(hidden)]
 pub mod held;

@@ -1,6 +1,5 @@
 //! Off the planes: the price of b, the least reaction, zero momentum with its drift, and machines of two drives.
 
-#[doc(hidden)]
 pub mod b_course;
 #[doc(hidden)]
 pub mod b_integral;
