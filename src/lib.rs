@@ -67,6 +67,133 @@
 //! [`Edit`](session::Edit), so it can be saved, undone and replayed to the very same frames. Bookmarks, and branches that it
 //! left, are kept beside the edits, saved and undone with them.
 //!
+//! # From a program of your own
+//! A machine comes from a TOML file, by [`files::machine`], or from text. An error says which line and which key is
+//! wrong, and what would be right:
+//! ```
+//! use stillbase::mechanics::machine::{Inertia, parse};
+//! let text = r#"
+//! name = "bar"
+//! [[drive]]
+//! name = "1"
+//! [[link]]
+//! name = "bar"
+//! drive = "1"
+//! attach = "base"
+//! length = 0.4     # m
+//! mass = 2.0       # kg
+//! inertia = 0.05   # kg m²
+//! com = 0.2        # m
+//! [end_effector]
+//! link = "bar"
+//! "#;
+//! let inertia = Inertia::of(&parse(text, "bar.toml")?);
+//! assert!((inertia.momenta()[0] - (0.05 + 2.0 * 0.2 * 0.2)).abs() < 1e-15);
+//! let error = parse(&text.replace("2.0", "-2.0"), "bar.toml").expect_err("no mass");
+//! assert_eq!(error.to_string(), "bar.toml:10: link.bar.mass is -2: want 1e-15 to 1000000 kg");
+//! # Ok::<(), stillbase::mechanics::machine::FileError>(())
+//! ```
+//! [`place_weights`](mechanics::counterweights::place_weights) finds counterweights, and proves that they are the best:
+//! the duality gap bounds how far they are from the optimum. Here m l_c = 2 kg · 0.2 m, and a weight 0.4 m behind the
+//! pin balances that with 1 kg:
+//! ```
+//! # use stillbase::mechanics::machine::{Inertia, parse};
+//! use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
+//! # let text = "name = 'bar'\ndrive = [{ name = '1' }]\nend_effector = { link = 'bar' }\n[[link]]\nname = 'bar'\n\
+//! # drive = '1'\nattach = 'base'\nlength = 0.4\nmass = 2.0\ninertia = 0.05\ncom = 0.2";
+//! # let machine = parse(text, "bar.toml")?;
+//! let asked = CounterweightSpec::least(Objective::mass(), Sites::anywhere(&machine), Disc::STEEL);
+//! let placed = place_weights(&machine, &asked)?;
+//! assert!((placed.added_mass - 1.0).abs() < 1e-6 && Inertia::of(&placed.machine).is_force_balanced());
+//! assert!(placed.is_certified() && placed.gap < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//! The [`signals`](simulation::signals::signals) of a run are a table: a column for each, with name and unit, and a row
+//! for each step. Case 1 of the paper moves along a straight line, from rest to rest. A moment reaches the base, and its
+//! impulse is zero in the end:
+//! ```
+//! # use stillbase::session::{replay, scenario::Scenario};
+//! # use stillbase::simulation::signals::signals;
+//! let case_1 = Scenario::builtin("case-1").expect("built in");
+//! let columns = signals(&case_1.machine);
+//! let mut rows: Vec<Vec<f64>> = Vec::new();
+//! replay(&case_1, |_run, frame| rows.push(columns.iter().map(|column| column.value(frame)).collect()))?;
+//! let moment = columns.iter().position(|column| column.path == "moment/total").expect("a row of the table");
+//! assert_eq!((columns[moment].unit, rows.len()), ("N m", 1001));
+//! let impulse: f64 = rows.iter().map(|row| row[moment] * case_1.step).sum();
+//! let peak = rows.iter().map(|row| row[moment].abs()).fold(0.0, f64::max);
+//! assert!((peak - 1.089).abs() < 1e-3 && impulse.abs() < 1e-5);
+//! # Ok::<(), stillbase::session::Refusal>(())
+//! ```
+//! A [`Run`](session::Run) has planned its task, or is refused; the refusal names the way out. Point B is reached on the
+//! planes from b = 2.216 rad to b = 2.661 rad:
+//! ```
+//! # use stillbase::mechanics::machine::Inertia;
+//! # use stillbase::session::{Run, scenario::Scenario};
+//! let mut case_3 = Scenario::builtin("case-3").expect("built in");
+//! let run = Run::new(&case_3)?;
+//! let halfway = run.plan().motion.at(0.5).q;
+//! assert!((Inertia::of(&case_3.machine).lambda().dot(&halfway) - 2.4).abs() < 1e-9);
+//! case_3.task.b = 2.9;
+//! let refusal = Run::new(&case_3).expect_err("no pose of these planes is at B");
+//! assert!(refusal.to_string().ends_with("want b from 2.2158 to 2.6610 rad"), "{refusal}");
+//! case_3.task.b = refusal.mending_b().expect("another b would do");
+//! assert!((case_3.task.b - 2.66107).abs() < 1e-5 && Run::new(&case_3).is_ok());
+//! # Ok::<(), stillbase::session::Refusal>(())
+//! ```
+//!
+//! # What others may build on
+//! Others depend on `stillbase` alone, by path or by git: `stillbase = { git = "…", default-features = false }`. The
+//! crates under it are not published (`publish = false`): they read `assets` and `shaders` of this repository, and may
+//! change in any version.
+//!
+//! What the documentation of `stillbase` shows is its interface, and follows semantic versioning. Until version 1.0 a
+//! minor version, such as 0.2.0, may break it and says so; a patch, such as 0.1.1, does not. What is public but not shown
+//! serves other crates of the workspace, and may change in any version. `app` and the subcommands are not shown at all.
+//! * To compute with: [`mechanics`], [`planning`], [`simulation`] and [`session`]. They change least.
+//! * To read and write: [`settings`], [`files`], [`exchange`], and `recording` with feature `record`.
+//! * To report: [`study`]. Its answers gain fields, so take them as they come and do not build them. Work that takes long
+//!   is a [`query::Query`]; [`query::answer_now`] does it.
+//! * To draw: [`picture`], of which scenes are plain data, and feature `render` makes pictures.
+//!
+//! **Errors** implement [`std::error::Error`], `Send` and `Sync`. The message of one is whole: it holds that of the error
+//! which caused it. `source` gives that error itself, to a program that asks for its type. Enums are not
+//! `#[non_exhaustive]`: the workspace matches them across crates, and the compiler is to name each place that a new
+//! variant concerns. A new variant therefore comes with a minor version.
+//!
+//! **Rust**: 1.95 or newer, the `rust-version` of `Cargo.toml`. It is raised with a minor version only, and the commit
+//! says which feature of the language or which dependency asks for it.
+//!
+//! # Features
+//! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock. The last column counts all
+//! crates that are built then, `stillbase` and its own among them, as `cargo tree -e normal --no-default-features
+//! --features …` lists them on Linux in version 0.1.0.
+//!
+//! | feature | what it adds | crates |
+//! |---|---|---|
+//! | none | machines, plans, simulations, sessions, studies, models for other programs, scenes as data | 78 |
+//! | `tables` | motions from tables of numbers (CSV) | 81 |
+//! | `cli` | the program and its subcommands; parquet files of a study | 122 |
+//! | `render` | pictures of scenes, drawn on the GPU by wgpu | 130 |
+//! | `ui` | panels, plots and figures, without a window | 162 |
+//! | `window` | the window around them | 271 |
+//! | `record` | recordings for the Rerun viewer | 437 |
+//!
+//! `window`, `record` and `cli` are on by default, 583 crates together. `tables`, `render` and `ui` come with what needs
+//! them.
+//!
+//! # How the interface is watched
+//! `cargo semver-checks` (`cargo install cargo-semver-checks --locked`) compares the interface with that of an earlier
+//! commit, and names what broke. It does not look behind a re-export, nor at crates that are not published, unless each
+//! is named:
+//! ```sh
+//! cargo semver-checks --baseline-rev COMMIT -p stillbase-settings -p stillbase-query -p stillbase-mechanics \
+//!     -p stillbase-exchange -p stillbase-planning -p stillbase-simulation -p stillbase-session -p stillbase-study \
+//!     -p stillbase-picture -p stillbase-files -p stillbase-recording
+//! ```
+//! It passes over what is not shown. Where it names a break, the version of `[workspace.package]` becomes the next minor
+//! one.
+//!
 //! # What flows
 //! ```text
 //! assets/*.toml ─→ Machine ─→ Inertia (g, C, J) ─┐
@@ -78,7 +205,8 @@
 //! ```
 //!
 //! # Source map
-//! The folders of `src/` from the bottom up; each uses those before it only.
+//! The folders of `src/` from the bottom up. Each but the guide is a crate, `stillbase-…`, and uses those before it only:
+//! what its `Cargo.toml` does not name it cannot reach, and a test holds the order.
 //!
 //! | folder | what stands there |
 //! |---|---|
@@ -125,7 +253,7 @@
 //!   All else follows; write a line of `guide/planning.md`.
 //! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages name its ending
 //!   then; write a section of `guide/elsewhere.md`.
-//! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
+//! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `commands/lib.rs`. Help and exit status
 //!   follow; write a line of `guide/command_line.md`. Its help has an example, `--set` and `--json`, which a test reads. It
 //!   reads arguments, asks and prints: what is computed is a query or an answer of the library (most in `study/`), which
 //!   the command serialises and the window can show.
@@ -144,7 +272,14 @@
 //! * **A query**: a type that implements [`query::QuickQuery`], or [`query::Query`] if it takes longer than a few milliseconds,
 //!   or [`query::IncrementalQuery`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
 //!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
-//! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
+//! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right. A new type
+//!   is a row in `../tests/layers/errors.rs`; a field that holds another error is marked `#[source]`.
+//! * **A crate**: a folder with a `Cargo.toml` and a `lib.rs`, a row of `members` and one of `[workspace.dependencies]` in
+//!   `../Cargo.toml`, a row of the map above, and a line at the end of `lib.rs` if others may use it.
+//! * **A dependency**: its version and features in `[workspace.dependencies]`, and its name in the `Cargo.toml` of the crate
+//!   that uses it. What the core may be built on is a list in `../tests/layers/mod.rs`.
+//! * **What others may use**: a public item is shown and kept stable. One that serves other crates of the workspace only
+//!   is `#[doc(hidden)]`, or its module is.
 //! * **What a command prints** is kept in `../tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `../.ci/run` is what
 //!   has to pass.
 //! * **A long test** takes more than three seconds: it is `#[ignore]`d, with the reason, and a short one beside it runs
@@ -154,21 +289,31 @@
 //!   `STILLBASE_OUTSIDE_SEED`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` ask for other cases, and more of them.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
-//!
-//! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #[cfg(feature = "ui")]
+#[doc(hidden)]
 pub use stillbase_app as app;
+#[doc(inline)]
 pub use stillbase_exchange as exchange;
+#[doc(inline)]
 pub use stillbase_files as files;
+#[doc(inline)]
 pub use stillbase_mechanics as mechanics;
+#[doc(inline)]
 pub use stillbase_picture as picture;
+#[doc(inline)]
 pub use stillbase_planning as planning;
+#[doc(inline)]
 pub use stillbase_query as query;
 #[cfg(feature = "record")]
+#[doc(inline)]
 pub use stillbase_recording as recording;
+#[doc(inline)]
 pub use stillbase_session as session;
+#[doc(inline)]
 pub use stillbase_settings as settings;
+#[doc(inline)]
 pub use stillbase_simulation as simulation;
+#[doc(inline)]
 pub use stillbase_study as study;
 
 pub mod guide;

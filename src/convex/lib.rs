@@ -1,6 +1,8 @@
 //! Convex programs: minimise ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones of three
 //! rows, by an interior-point method (Clarabel). The same program always has the same answer. The dual solution bounds
 //! how far the answer is from the optimum.
+//!
+//! This crate serves the workspace alone, and may change in any version.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

@@ -1,6 +1,9 @@
 //! Export of machines to other programs and for construction, and import from other programs.
+//!
+//! Others reach this crate as `stillbase::exchange`; `stillbase` alone follows semantic versioning.
 
 pub mod cut;
+#[doc(hidden)]
 pub mod drawing;
 pub mod form;
 pub mod import;

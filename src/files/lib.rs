@@ -1,26 +1,37 @@
 //! Writing of files without loss: a file appears whole or not at all, and replaces another only if forced. Reading of
 //! tables from other programs.
+//!
+//! Others reach this crate as `stillbase::files`; `stillbase` alone follows semantic versioning.
 
 mod draft;
+#[doc(hidden)]
 pub mod fault;
 mod find;
+#[doc(hidden)]
 pub mod heading;
 #[cfg(feature = "window")]
+#[doc(hidden)]
 pub mod journal;
 mod new_file;
 #[cfg(feature = "window")]
+#[doc(hidden)]
 pub mod preferences;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod shards;
 #[cfg(feature = "tables")]
 pub mod table;
 pub mod text;
 
+#[doc(hidden)]
 pub use draft::{WriteBlock, abandon};
 pub use find::{FoundScenario, machine, scenario};
-pub use new_file::{NewFile, WriteError, check_new, finish_all, free_name, is_same_place, made, write_new};
+pub use new_file::{NewFile, WriteError, write_new};
+#[doc(hidden)]
+pub use new_file::{check_new, finish_all, free_name, is_same_place, made};
 
 /// Returns the absolute path of an existing file.
+#[doc(hidden)]
 pub fn absolute_path(file: &std::path::Path) -> Option<std::path::PathBuf> {
     file.canonicalize().ok()
 }

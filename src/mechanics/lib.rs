@@ -1,4 +1,6 @@
 //! Mechanics of a machine: links and drives, kinematics, dynamics, balance, and the forces on its base.
+//!
+//! Others reach this crate as `stillbase::mechanics`; `stillbase` alone follows semantic versioning.
 
 pub mod balance;
 pub mod counterweights;

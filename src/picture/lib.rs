@@ -1,12 +1,19 @@
 //! Scenes and charts as plain data, and the code that draws them.
+//!
+//! Others reach this crate as `stillbase::picture`; `stillbase` alone follows semantic versioning.
 
 #[cfg(feature = "ui")]
+#[doc(hidden)]
 pub mod canvas;
+#[doc(hidden)]
 pub mod charts;
 #[cfg(feature = "ui")]
+#[doc(hidden)]
 pub mod gui;
+#[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "ui")]
+#[doc(hidden)]
 pub mod paint;
 #[cfg(feature = "render")]
 pub mod render;

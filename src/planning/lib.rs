@@ -1,5 +1,7 @@
 //! Motion planning: which poses and paths a machine can reach, and when it passes along them.
 //!
+//! Others reach this crate as `stillbase::planning`; `stillbase` alone follows semantic versioning.
+//!
 //! | what | modules |
 //! |---|---|
 //! | whether a machine has a pose constant b = Σ λ_k q_k, in words | [`pose_constant`] |

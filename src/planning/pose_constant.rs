@@ -1,8 +1,7 @@
 //! Whether a machine has a pose constant b, in words; and queries for its pose space and for the b that reach points.
 
+use std::fmt;
 use std::sync::Arc;
-
-use thiserror::Error;
 
 use crate::common::common_b_set;
 use crate::pose_space::{NoPoseSpace, PoseSpace, is_reactionless};
@@ -48,26 +47,34 @@ impl QuickQuery for CommonB {
 }
 
 /// Whether a machine has a pose constant b = Σ λ_k q_k.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PoseConstant {
     /// Holding b keeps the base free of moments.
-    #[error("b = Σ λ_k q_k")]
     Exact,
     /// λ depends so little on the pose that holding b removes most of the base moment.
-    #[error(
-        "b = Σ λ_k q_k, but only nearly: couplings of up to {residual:.1e} kg m² remain, so holding b is not exactly \
-         reactionless; `stillbase design` removes them"
-    )]
     Nearly {
         /// Largest |C_kl|, kg m².
         residual: f64,
     },
     /// No pose constant exists, and none is needed.
-    #[error("none is needed: every motion is reactionless, as no drive turns the base")]
     Unneeded,
     /// No pose constant exists, for the given reason.
-    #[error("none: {0}")]
     None(NoPoseSpace),
+}
+
+impl fmt::Display for PoseConstant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exact => f.write_str("b = Σ λ_k q_k"),
+            Self::Nearly { residual } => write!(
+                f,
+                "b = Σ λ_k q_k, but only nearly: couplings of up to {residual:.1e} kg m² remain, so holding b is not \
+                 exactly reactionless; `stillbase design` removes them"
+            ),
+            Self::Unneeded => f.write_str("none is needed: every motion is reactionless, as no drive turns the base"),
+            Self::None(why) => write!(f, "none: {why}"),
+        }
+    }
 }
 
 impl PoseConstant {

@@ -17,6 +17,7 @@ pub enum Unreachable {
         /// y of the point, m.
         y: f64,
         /// Why no b reaches it.
+        #[source]
         reason: NoReach,
     },
     /// The point can be reached, but not at this b.

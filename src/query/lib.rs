@@ -1,6 +1,8 @@
 //! A [`Query`] derives an answer from an input. [`Queries`] computes the answer when the input changes, and caches it
 //! until then. This is the only cache of the program.
 //!
+//! Others reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
+//!
 //! | what | how |
 //! |---|---|
 //! | input | a value: all that the answer depends on, and nothing else |
@@ -22,10 +24,19 @@ mod question;
 mod sequence;
 mod slot;
 
+#[doc(hidden)]
 pub use asked::{QueryResult, QueryStatus};
+#[doc(hidden)]
 pub use growing::{IncrementalAnswer, IncrementalQuery, answer_sequence};
 pub use input::{ByIdentity, Shared};
+#[doc(hidden)]
 pub use job::{InlineWorkers, Job, Poll, ShortJobs, Ticket, Work, Workers};
-pub use queries::{Queries, WeakQueries};
-pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now, part};
-pub use sequence::{Revision, RevisionMark, Sequence};
+pub use queries::Queries;
+#[doc(hidden)]
+pub use queries::WeakQueries;
+#[doc(hidden)]
+pub use question::part;
+pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now};
+pub use sequence::Sequence;
+#[doc(hidden)]
+pub use sequence::{Revision, RevisionMark};

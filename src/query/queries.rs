@@ -72,6 +72,14 @@ impl fmt::Debug for Queries {
 }
 
 impl Queries {
+    /// Returns the answer, computed at once if it is not cached.
+    pub fn ask<Q: Query>(&self, input: &Q::Input) -> Arc<Q::Answer> {
+        self.ask_if::<Q>(|known| known == input, || input.clone())
+    }
+}
+
+#[doc(hidden)]
+impl Queries {
     /// Returns a weak reference, for an input that makes requests of its own.
     pub fn asking(&self) -> WeakQueries {
         WeakQueries(Arc::downgrade(&self.0))
@@ -90,11 +98,6 @@ impl Queries {
     /// Sets the callback for the end of background work.
     pub fn wakes(&self, wake: impl Fn() + Send + Sync + 'static) {
         self.execution().wake = Some(Arc::new(wake));
-    }
-
-    /// Returns the answer, computed at once if it is not cached.
-    pub fn ask<Q: Query>(&self, input: &Q::Input) -> Arc<Q::Answer> {
-        self.ask_if::<Q>(|known| known == input, || input.clone())
     }
 
     /// Returns the answer as [`ask`](Self::ask) does, but builds the input only if `is_known` rejects the cached one.

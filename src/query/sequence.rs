@@ -69,6 +69,7 @@ impl<T: Clone> Sequence<T> {
 
 impl<T> Sequence<T> {
     /// Returns the revision.
+    #[doc(hidden)]
     pub fn revision(&self) -> &Revision {
         &self.revision
     }

@@ -1,5 +1,7 @@
 //! Recordings: runs of scenarios without a window, written to a Rerun file with a layout for the viewer.
 //!
+//! Others reach this crate as `stillbase::recording`; `stillbase` alone follows semantic versioning.
+//!
 //! One file holds all cases, each under `/<case>/`, on the common time lines `sim_time` and `step`:
 //!
 //! | entity | contents |
@@ -120,6 +122,7 @@ pub enum RecordError {
         /// Name of the scenario.
         scenario: String,
         /// Reason.
+        #[source]
         refusal: Refusal,
     },
     /// The requested pictures cannot be made.

@@ -1,4 +1,6 @@
 //! Sessions: a scenario, the user's edits and the run that results from them; undo, replay, the verdict on a run.
+//!
+//! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
 mod ahead;
 mod around;
@@ -21,14 +23,17 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+#[doc(hidden)]
 pub use ahead::RunAhead;
 pub use around::gentle_motion;
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
+#[doc(hidden)]
 pub use fork::Fork;
 pub use interactive::Session;
+#[doc(hidden)]
 pub use machines::Machines;
 pub use planner::{Plan, curves};
 pub use refusal::Refusal;

@@ -31,6 +31,7 @@ pub enum Refusal {
         /// `A`, `1`, `2` … `B`.
         point: String,
         /// Reason, and which b would reach the point.
+        #[source]
         unreachable: Unreachable,
     },
     /// No b reaches all points.
@@ -157,6 +158,7 @@ pub enum Refusal {
         /// Description of the edit.
         title: String,
         /// Why it cannot apply.
+        #[source]
         refusal: Box<Refusal>,
     },
 }

@@ -1,11 +1,18 @@
 //! How a value is named, bounded and shown: keys with their fields, words of choices, changes by key, ranges, typed
 //! numbers, and external text.
+//!
+//! Others reach this crate as `stillbase::settings`; `stillbase` alone follows semantic versioning.
 
+#[doc(hidden)]
 pub mod change;
 pub mod key;
+#[doc(hidden)]
 pub mod keyed;
+#[doc(hidden)]
 pub mod number;
+#[doc(hidden)]
 pub mod quantity;
 pub mod range;
+#[doc(hidden)]
 pub mod text;
 pub mod word;

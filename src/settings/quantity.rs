@@ -70,6 +70,8 @@ impl fmt::Display for QuantityError {
     }
 }
 
+impl std::error::Error for QuantityError {}
+
 /// Returns the number that a text states, in a unit; the unit is written as in keys and panels, such as `N m/rad` or
 /// `°`.
 ///

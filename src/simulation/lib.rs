@@ -1,4 +1,6 @@
 //! Simulation of the plant under control, step by step, with all quantities at each instant.
+//!
+//! Others reach this crate as `stillbase::simulation`; `stillbase` alone follows semantic versioning.
 
 pub mod audit;
 pub mod control;

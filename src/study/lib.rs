@@ -2,13 +2,17 @@
 //! loads of one run. Cost of a plan, contents of a workspace, counterweights, and Pareto fronts of several machines.
 //! Imported motions and the nearest ones without reactions; the equations of the paper with present values; and the
 //! trim of a built machine from measured base forces.
+//!
+//! Others reach this crate as `stillbase::study`; `stillbase` alone follows semantic versioning.
 
 pub mod advice;
 pub mod balance_constants;
 pub mod base_spectrum;
 pub mod centres;
+#[doc(hidden)]
 pub mod comparison;
 pub mod counterweights;
+#[doc(hidden)]
 pub mod equations;
 pub mod front_point;
 pub mod fronts;
@@ -18,7 +22,9 @@ pub mod lengths;
 pub mod measures;
 pub mod plan_summary;
 pub mod pose_measures;
+#[doc(hidden)]
 pub mod samples;
+#[doc(hidden)]
 pub mod series;
 pub mod spectrum;
 pub mod tolerance;

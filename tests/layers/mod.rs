@@ -1,6 +1,7 @@
 //! What cargo does not hold: the crates stand in order, the core stays free of windows, clocks, files and chance, and
-//! what is derived is kept by queries alone.
+//! what is derived is kept by queries alone. Errors are what the ecosystem takes for one.
 
+mod errors;
 mod source;
 
 use std::collections::BTreeSet;
@@ -120,6 +121,40 @@ fn every_crate_is_on_the_map() {
         map.split('`').filter(|word| word.contains('/') && *word != "src/" && !word.contains([' ', '*', '=', '{']))
     {
         assert!(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src")).join(word).exists(), "no {word}");
+    }
+}
+
+#[test]
+fn every_feature_is_in_the_table() {
+    let front = include_str!("../../src/lib.rs");
+    let (_, table) = front.split_once("//! # Features\n").expect("a heading");
+    let rows =
+        table.lines().take_while(|line| !line.starts_with("//! # ")).filter_map(|line| line.strip_prefix("//! | `"));
+    let listed: BTreeSet<&str> = rows.filter_map(|row| row.split('`').next()).collect();
+    let manifest = manifest(".");
+    let features = manifest["features"].as_table().expect("a table");
+    assert_eq!(listed, features.keys().map(String::as_str).filter(|name| *name != "default").collect());
+}
+
+/// A crate that others reach says how; none is published, for each reads files outside of its folder or builds on one
+/// that does.
+#[test]
+fn every_crate_says_whom_it_serves() {
+    let facade = include_str!("../../src/lib.rs");
+    for name in crates() {
+        let root = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/{name}/lib.rs")));
+        let root = root.expect("readable");
+        let shown = facade.contains(&format!("#[doc(inline)]\npub use stillbase_{name} as {name};"));
+        let says = match shown {
+            true => format!(
+                "Others reach this crate as `stillbase::{name}`; `stillbase` alone follows semantic versioning."
+            ),
+            false => "This crate serves the workspace alone, and may change in any version.".to_owned(),
+        };
+        assert!(root.contains(&says), "{name}: {says}");
+        let manifest = manifest(&format!("src/{name}"));
+        assert_eq!(manifest["lib"].get("doc").and_then(toml::Value::as_bool), (!shown).then_some(false), "{name}");
+        assert_eq!(manifest["package"]["publish"].as_bool(), Some(false), "{name}");
     }
 }
 

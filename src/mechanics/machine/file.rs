@@ -28,6 +28,7 @@ pub enum FileError {
         /// Line of the error, counted from 1, if known.
         line: Option<usize>,
         /// The error.
+        #[source]
         error: MachineError,
     },
 }

@@ -6,27 +6,43 @@
 //! statement of which parts [may change](ItemChanges). Most geometry is built once; afterwards only poses change. Colours
 //! are sRGB with straight alpha, as in the palette. Sizes in `px` are logical pixels.
 
+#[doc(hidden)]
 pub mod arrow;
+#[doc(hidden)]
 pub mod axes;
 pub mod camera;
+#[doc(hidden)]
 pub mod course;
+#[doc(hidden)]
 pub mod dexterity;
+#[doc(hidden)]
 pub mod draft;
 pub mod exaggeration;
+#[doc(hidden)]
 pub mod fill;
+#[doc(hidden)]
 pub mod framing;
+#[doc(hidden)]
 pub mod grid;
+#[doc(hidden)]
 pub mod joints;
+#[doc(hidden)]
 pub mod linkage;
+#[doc(hidden)]
 pub mod mesh;
 pub mod options;
 pub mod palette;
+#[doc(hidden)]
 pub mod pick;
+#[doc(hidden)]
 pub mod pointer;
 pub mod reaction;
+#[doc(hidden)]
 pub mod stage;
+#[doc(hidden)]
 pub mod tower;
 pub mod views;
+#[doc(hidden)]
 pub mod wall;
 
 use std::borrow::Cow;

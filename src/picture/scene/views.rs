@@ -132,6 +132,7 @@ impl ViewSubject {
     }
 
     /// Whether the constant parts of another run are equal: machine, plan, and differences of the plant from the model.
+    #[doc(hidden)]
     pub fn is_of(&self, run: &Run) -> bool {
         let (one, other) = (self.run.scenario(), run.scenario());
         one.machine == other.machine
@@ -222,6 +223,7 @@ impl Views {
 
     /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
     /// adds; for a whole run, `over` is the interval of its b, rad.
+    #[doc(hidden)]
     pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
         queries.ask_if::<QuickWork<Self>>(
             |seen| seen.over == over && seen.is_of(run),
@@ -231,6 +233,7 @@ impl Views {
 
     /// Returns the views completed by base, payload and, once it is computed, the outline with its tower. `drives` are
     /// the indices of the drives along the axes of joint space, from 0, if there are more than three drives.
+    #[doc(hidden)]
     pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
         let wanted = made.unoutlined();
         let outline = wanted.and_then(|space| queries.known::<OutlineQuery>(&Shared(space))).map(ByIdentity);
@@ -255,6 +258,7 @@ impl Views {
 
     /// Prepares a whole run whose b lie in an interval, rad; joint space and tower show a constant interval that
     /// contains it.
+    #[doc(hidden)]
     pub fn over(run: &Run, b: [f64; 2], queries: &Queries) -> Self {
         let mut stage = Stage::begun(run);
         stage.finish(queries);
@@ -265,6 +269,7 @@ impl Views {
     }
 
     /// Prepares a run for drawing, without outline and tower if the outline takes longer to compute.
+    #[doc(hidden)]
     pub fn begun(run: &Run) -> Self {
         Self::with(Stage::begun(run), run)
     }
@@ -276,6 +281,7 @@ impl Views {
     }
 
     /// Whether the machine looks like that of other views: equal links, whatever its limits.
+    #[doc(hidden)]
     pub fn looks_like(&self, other: &Self) -> bool {
         let (one, other) = (&self.machine, &other.machine);
         one.links() == other.links() && one.resolved_links() == other.resolved_links()
@@ -297,11 +303,13 @@ impl Views {
     }
 
     /// Returns the pose space whose outline is still to be computed.
+    #[doc(hidden)]
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
         self.stage.unoutlined()
     }
 
     /// Returns the text of the width of the grid under the machine.
+    #[doc(hidden)]
     pub fn grid(&self, kind: ViewKind) -> String {
         match kind {
             ViewKind::Flat | ViewKind::Space | ViewKind::Design => {
@@ -312,11 +320,13 @@ impl Views {
     }
 
     /// The machine's view.
+    #[doc(hidden)]
     pub fn stage(&self) -> &Stage {
         &self.stage
     }
 
     /// Joint space, if the machine has a b and more than one drive.
+    #[doc(hidden)]
     pub fn joints(&self) -> Option<&JointSpace> {
         self.joints.as_ref()
     }
@@ -331,11 +341,13 @@ impl Views {
     }
 
     /// Returns the index of the drive along each axis of joint space, if the order is fixed by the machine.
+    #[doc(hidden)]
     pub fn joint_axes(&self) -> [usize; 3] {
         self.joints.as_ref().map_or([0, 1, 2], JointSpace::axes)
     }
 
     /// The tower, if the machine has a b and its workspace is known.
+    #[doc(hidden)]
     pub fn tower(&self) -> Option<&Tower> {
         self.tower.as_ref()
     }
@@ -352,6 +364,7 @@ impl Views {
     }
 
     /// Returns the points that the camera has to show for a frame and other poses of the machine.
+    #[doc(hidden)]
     pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> ViewContent {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => ViewContent { first: joints.corners(), then: Vec::new() },
@@ -372,12 +385,14 @@ impl Views {
     }
 
     /// Picks the end effector, if it is under the pointer.
+    #[doc(hidden)]
     pub fn pick_tip(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         let at = self.stage.handle(Handle::EndEffector, shown)?;
         (pointer.distance(at)? < 1.5 * PICK_RADIUS).then_some(Pick::of(Handle::EndEffector, at))
     }
 
     /// Picks the target, if the pointer is on a link or within `near` px of the target.
+    #[doc(hidden)]
     pub fn pick_arm(&self, shown: &DrawnFrame<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {
         let at = self.stage.handle(Handle::Target, shown)?;
         let on = pointer.distance(at)? < near || self.link_at(shown, pointer).is_some();
@@ -385,11 +400,13 @@ impl Views {
     }
 
     /// Returns the index of the drawn link under the pointer; the uppermost of several.
+    #[doc(hidden)]
     pub fn link_at(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<usize> {
         self.stage.link_at(shown, pointer)
     }
 
     /// Returns the drawn item under the pointer, whether it can be dragged or not.
+    #[doc(hidden)]
     pub fn under(&self, kind: ViewKind, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Handle> {
         // Items on a link take precedence over the link.
         let pulled = self
@@ -403,6 +420,7 @@ impl Views {
     }
 
     /// Returns the drawn item under the pointer that can be dragged.
+    #[doc(hidden)]
     pub fn pick(&self, kind: ViewKind, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         // Only the machine's own views exaggerate.
         let frame = shown.frame;
@@ -449,6 +467,7 @@ impl Views {
     }
 
     /// Returns the change that dragging an item to the pointer requests; `b` is the commanded pose constant, rad.
+    #[doc(hidden)]
     pub fn aim(
         &self,
         kind: ViewKind,

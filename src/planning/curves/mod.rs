@@ -2,10 +2,13 @@
 
 pub mod curve;
 pub mod given;
+#[doc(hidden)]
 pub mod low_pass;
 pub mod path;
 mod point;
+#[doc(hidden)]
 pub mod spline;
+#[doc(hidden)]
 pub mod table;
 
 pub use curve::{Curve, CurveError, CurvePoint};

@@ -5,6 +5,7 @@ mod braking;
 mod closest;
 mod deviation;
 pub mod follow;
+#[doc(hidden)]
 pub mod held;
 pub mod nearest;
 mod on_plane;

@@ -94,6 +94,7 @@ pub enum CorridorError {
         /// y of the point, m.
         y: f64,
         /// Why no b reaches the point.
+        #[source]
         reason: NoReach,
     },
     /// A point of the motion can be reached on other sheets only.

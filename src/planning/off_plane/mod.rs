@@ -1,12 +1,15 @@
 //! Off the planes: the price of b, the least reaction, zero momentum with its drift, and machines of two drives.
 
 pub mod b_course;
+#[doc(hidden)]
 pub mod b_integral;
 mod b_program;
 pub mod corridor;
 pub mod drift;
+#[doc(hidden)]
 pub mod inverse;
 pub mod least_reaction;
+#[doc(hidden)]
 pub mod null_space;
 pub mod price;
 

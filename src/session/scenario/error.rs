@@ -50,6 +50,7 @@ pub enum ScenarioError {
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
         /// What is wrong.
+        #[source]
         error: MachineError,
     },
     /// An edit is not valid.

@@ -52,5 +52,5 @@ pub enum ToleranceError {
     },
     /// A varied machine is not valid, such as by a length that a closure fixes.
     #[error("a varied machine would not be valid: {0}")]
-    Machine(MachineError),
+    Machine(#[source] MachineError),
 }
