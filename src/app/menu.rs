@@ -52,7 +52,7 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
     {
         entry(ui, &format!("Leave point {} out", task.name_of(i)), once(Edit::of("task", change)));
     }
-    if thing == Some(Handle::Target) && session.is_led() {
+    if thing == Some(Handle::Target) && session.is_dragged() {
         entry(ui, "Back to the path", vec![Command::Session(SessionCommand::BackToPath)]);
     }
     if thing == Some(Handle::Payload) {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
 
 use super::card::Card;
-use super::hand::ScenePointer;
 use super::intro::Intro;
+use super::scene_pointer::ScenePointer;
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
@@ -67,7 +67,7 @@ pub fn show(
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
-            menu::show(&response, session, (view_state.pointed.hot, at), commands);
+            menu::show(&response, session, (view_state.pointed.object, at), commands);
             show_card(&response, session, views, view_state);
             // In the demonstration, a drag beside the machine does not move the view.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
@@ -77,24 +77,24 @@ pub fn show(
         let options = ViewOptions {
             theme: view_state.arrangement.theme,
             dexterity: view_state.dexterity,
-            hot: view_state
+            highlighted: view_state
                 .gesture
                 .grabbed
                 .map(|pick| pick.handle)
-                .or(view_state.pointed.hot)
-                .or(view_state.pointed.lit),
-            held: view_state.gesture.held,
+                .or(view_state.pointed.object)
+                .or(view_state.pointed.panel_object),
+            drag_position: view_state.gesture.position,
             preview_b: view_state.pointed.preview,
             stroke: drawn(&view_state.tool),
             refused: view_state.said.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
             others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
             exaggeration,
-            push: force(session),
+            external_force: force(session),
             pin_forces: view_state.pins,
             limits: true,
             shadows: view_state.view == ViewKind::Space,
-            invites: session.follows_hands(),
+            show_hints: session.can_be_dragged(),
             compares: both.is_none(),
             weights: chosen.to_vec(),
             links: view_state.pointed.lit_links.clone(),
@@ -157,7 +157,7 @@ fn motion(session: &Session) -> Vec<DriveAngles> {
 /// Returns poses at equal time intervals: of the plan, or of the run if the machine was dragged.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {
     let share = |i: usize| i as f64 / (SNAPSHOT_COUNT - 1) as f64;
-    if session.is_led() {
+    if session.is_dragged() {
         let frames = session.frames();
         let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
         return (0..SNAPSHOT_COUNT).map(at).collect();
@@ -192,7 +192,7 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
     }
     let listed = egui::Popup::is_any_open(ctx);
     let quiet = view_state.gesture.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
-    let Some(thing) = view_state.pointed.hot.filter(|_| quiet) else {
+    let Some(thing) = view_state.pointed.object.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
         return;
     };

@@ -9,7 +9,7 @@ pub trait Query: Send + Sized + 'static {
 
     /// Whether work under way runs to its end although another input has been requested meanwhile. Short work does, so
     /// that answers keep coming while the input changes continuously.
-    const ENDS: bool = false;
+    const RUNS_TO_END: bool = false;
 
     /// Returns the work for an input, not yet started.
     fn begin(input: Self::Input) -> Self;
@@ -73,7 +73,7 @@ impl<Q: QuickQuery> Query for QuickWork<Q> {
     type Input = Q::Input;
     type Answer = Q::Answer;
 
-    const ENDS: bool = true;
+    const RUNS_TO_END: bool = true;
 
     fn begin(input: Q::Input) -> Self {
         Self(input)

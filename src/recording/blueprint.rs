@@ -198,7 +198,7 @@ impl Layout<'_> {
                 self.container(ContainerKind::Horizontal, "Pictures", &pictures, &vec![1.0; pictures.len()])?;
             top = self.container(ContainerKind::Tabs, "", &[top, pictures], &[])?;
         }
-        let compared: Vec<_> = self.charts.iter().filter(|(chart, _)| chart.compared).copied().collect();
+        let compared: Vec<_> = self.charts.iter().filter(|(chart, _)| chart.is_overlaid).copied().collect();
         let mut below = Vec::new();
         for (chart, range) in compared {
             below.push(self.compared(cases, &chart, range)?);

@@ -1,7 +1,5 @@
 //! Sessions: a scenario, the user's edits and the run that results from them; undo, replay, the verdict on a run.
 
-mod ahead;
-mod around;
 mod changes;
 pub mod design;
 mod designs;
@@ -10,6 +8,7 @@ mod edit;
 mod edit_check;
 pub mod events;
 mod fork;
+mod gentle_motion;
 mod interactive;
 mod machines;
 mod older;
@@ -17,20 +16,21 @@ mod planner;
 mod refusal;
 mod replay;
 mod run;
+mod run_ahead;
 pub mod scenario;
 mod script;
 pub mod verdict;
 
-pub use ahead::RunAhead;
-pub use around::gentle_motion;
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
 pub use fork::Fork;
+pub use gentle_motion::gentle_motion;
 pub use interactive::Session;
 pub use machines::Machines;
 pub use planner::{Plan, curves};
 pub use refusal::Refusal;
 pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
 pub use run::{Run, WaitReason};
+pub use run_ahead::RunAhead;

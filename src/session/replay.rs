@@ -73,10 +73,10 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
     let mut course: [Vec<f64>; 3] = Default::default();
     let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
-        let now = [force.re, force.im, frame.felt_moment()];
+        let now = [force.re, force.im, frame.net_base_moment()];
         course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
     })?;
-    Ok((course, run.frame().fault()))
+    Ok((course, run.frame().first_violation()))
 }
 
 /// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame,

@@ -32,7 +32,7 @@ pub struct Key {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
     /// No frame of the run, but what is studied, designed or recorded. Such a key holds for the run as a whole.
-    Aside,
+    NoFrame,
     /// No frame of the run, but the display from the present step on.
     Picture,
     /// Frames from the present step on.

@@ -200,9 +200,9 @@ impl Controller {
             self.by_motors::<N>(n, (aim, aim_rate), (q, qd), &mut wanted);
         }
         if self.law == ControlLaw::Pd {
-            return std::array::from_fn(|k| if k < n { model.arm().carried(k) * wanted[k] } else { 0.0 });
+            return std::array::from_fn(|k| if k < n { model.arm().inertia_at_motor(k) * wanted[k] } else { 0.0 });
         }
-        motors.drive(&mut wanted);
+        motors.transform_to_drives(&mut wanted);
         let acceleration = reference.qdd.array::<N>();
         (0..n).for_each(|k| wanted[k] += acceleration[k]);
         let mut torque = if !MOVES {
@@ -216,7 +216,7 @@ impl Controller {
             torque[N - 1] = 0.0;
             torque
         };
-        motors.give(&mut torque);
+        motors.transform_to_motor_torques(&mut torque);
         torque
     }
 
@@ -232,8 +232,8 @@ impl Controller {
         let motors = self.arm().motors();
         let mut error: [f64; N] = std::array::from_fn(|k| aim[k] - q[k]);
         let mut rate: [f64; N] = std::array::from_fn(|k| aim_rate[k] - qd[k]);
-        motors.turn(&mut error);
-        motors.turn(&mut rate);
+        motors.transform_to_motors(&mut error);
+        motors.transform_to_motors(&mut rate);
         let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
         (0..n).for_each(|k| wanted[k] = kd[k] * rate[k] + kp[k] * error[k]);
     }

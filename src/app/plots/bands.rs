@@ -37,7 +37,7 @@ pub fn bars(
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let serving = queries.ask_beside::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
+    let serving = queries.ask_in_background::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
     // While the intervals are being computed, those of other points are not shown.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");
@@ -55,7 +55,7 @@ pub fn bars(
             plot.set_plot_bounds_y(-count..=0.4);
             for (i, ((name, _), set)) in points.iter().zip(sets.into_iter().flatten()).enumerate() {
                 let y = -(i as f64) - 0.5;
-                let near = set.as_ref().map(|set| set.near(b_now).intervals).unwrap_or_default();
+                let near = set.as_ref().map(|set| set.shifted_near(b_now).intervals).unwrap_or_default();
                 for [low, high] in &near {
                     if high - low < MIN_BAR_RAD {
                         let dot = vec![[0.5 * (low + high), y]];

@@ -43,7 +43,7 @@ pub fn show(
 ) {
     let Ok(space) = session.run().pose_space() else { return };
     let (task, at) = (&session.scenario().task, session.frame().target.at);
-    let points: Vec<(String, Vector)> = match session.is_led() {
+    let points: Vec<(String, Vector)> = match session.is_dragged() {
         true => vec![("target".to_owned(), at)],
         false => task.points().into_iter().enumerate().map(|(i, at)| (task.name_of(i), at)).collect(),
     };
@@ -73,7 +73,7 @@ fn lines(
     let serving = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
     which_b_title(ui, p, "q₁ against b, rad; click to choose");
     let map = planes.map();
-    let common = serving.all.as_ref().map(|common| common.near(now.b_reference));
+    let common = serving.all.as_ref().map(|common| common.shifted_near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()

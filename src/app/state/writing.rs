@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::AppState;
-use super::beside::fault;
+use super::background::fault;
 use crate::{Activity, PlotFile, plots};
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::form::Form;
@@ -46,7 +46,7 @@ impl AppState {
                 app_state.saving.saved = changes;
                 app_state.saving.uses(&file);
             }
-            app_state.tell(said.map(Some));
+            app_state.show_outcome(said.map(Some));
         });
         self.collect();
         let failed = matches!(self.view_state.said.message, Some((_, true)));

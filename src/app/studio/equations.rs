@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_stat
     let wanted = ui.scope(|ui| index(ui, p, &lesson.equations)).inner;
     ui.add_space(2.0);
     let machine = &session.scenario().machine;
-    let pen = TermPainter { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
+    let pen = TermPainter { p, machine, highlighted_link: hot_link(view_state, session), gutter: 0.0 };
     ScrollArea::vertical().id_salt("equations").auto_shrink(false).show(ui, |ui| {
         ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
         ui.spacing_mut().item_spacing.y = 2.0;

@@ -31,7 +31,7 @@ pub struct TermPainter<'a> {
     pub p: &'a Palette,
     pub machine: &'a Machine,
     /// Index of the link that is dragged, under the pointer, or mentioned by a panel.
-    pub hot: Option<usize>,
+    pub highlighted_link: Option<usize>,
     /// Width for names of lines, points.
     pub gutter: f32,
 }
@@ -107,7 +107,7 @@ fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, (rect, room): (
     let p = pen.p;
     let (ink, dim) = (colour(p.ink), colour(p.dim));
     let is_under = cell.term.is_some() && ui.rect_contains_pointer(rect);
-    let is_lit = is_under || pen.hot.is_some_and(|hot| contributes(cell.term, hot));
+    let is_lit = is_under || pen.highlighted_link.is_some_and(|hot| contributes(cell.term, hot));
     let back = rect.expand2(vec2(1.0, 1.0)).translate(vec2(-1.0, 0.0));
     if is_lit {
         ui.painter().rect_filled(

@@ -11,8 +11,8 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
+use super::app::App;
 use super::error::{WindowError, what_is_missing};
-use super::guest::App;
 use super::screen::{PaintOutcome, Screen};
 use stillbase_picture::paint::draw_drafts;
 use stillbase_picture::render::offscreen::NoAdapter;

@@ -84,7 +84,7 @@ impl DesignDrawing {
     fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, frame: &Frame, options: &ViewOptions) {
         let palette = palette(options.theme);
         let e = frame.q.units();
-        let hot = options.hot.and_then(|handle| self.link_of(handle));
+        let hot = options.highlighted.and_then(|handle| self.link_of(handle));
         let is_lit = |i: usize| hot == Some(i) || options.links.contains(&i);
         let mut solids = linkage.solids(&e, frame.base, false, &palette);
         for (i, bar) in linkage.bars().iter().enumerate() {
@@ -96,7 +96,13 @@ impl DesignDrawing {
         for handle in self.handles() {
             let Some(at) = self.place(handle, linkage, frame) else { continue };
             let arm = (CROSS_HALF_SIZE * linkage.reach()) as f32;
-            draw_handle(scene, &palette, (handle, self.kilograms(handle)), (at, arm), options.hot == Some(handle));
+            draw_handle(
+                scene,
+                &palette,
+                (handle, self.kilograms(handle)),
+                (at, arm),
+                options.highlighted == Some(handle),
+            );
         }
         self.draw_choice(scene, linkage, &palette, frame, &options.weights);
         if let Some(i) = hot {

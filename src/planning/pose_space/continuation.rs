@@ -80,14 +80,14 @@ impl PoseSpace {
         let mut lambda = *self.lambda.padded();
         let mut place = Vector::default();
         for (k, arm) in arm.iter_mut().enumerate().take(self.drives()) {
-            *arm = self.tip[k] * unit(q[k]);
+            *arm = self.arms[k] * unit(q[k]);
             place += *arm;
         }
         let mut columns = [Vector::default(); MAX_DRIVES];
         // From the outermost joint inwards: a joint turns all drives beyond it, and all together turn back to keep b.
         for (column, joint) in columns.iter_mut().zip(&*self.joints).rev() {
             let [near, far] = joint.ends;
-            *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.sum));
+            *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.lambda_sum));
             arm[near] += arm[far];
             lambda[near] += lambda[far];
         }
@@ -212,8 +212,10 @@ impl PoseSpace {
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: ContinuationLimits) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
         self.climbed_strictly(p, climb, effort).or_else(|| {
-            let there =
-                || (self.place(&self.lift(&from.a, from.b + rise)) - p).norm() <= CRITICAL_RESIDUAL * self.farthest();
+            let there = || {
+                (self.end_effector(&self.lift(&from.a, from.b + rise)) - p).norm()
+                    <= CRITICAL_RESIDUAL * self.farthest()
+            };
             (rise.abs() <= CRITICAL_B_TOLERANCE_RAD && there()).then_some(from.a)
         })
     }
@@ -269,7 +271,7 @@ impl PoseSpace {
         };
         let along = columns[most] / columns[most].norm();
         let mu = Vector::new(-along.im, along.re);
-        let by_b = dot(mu, Vector::new(0.0, 1.0) * place) / self.sum;
+        let by_b = dot(mu, Vector::new(0.0, 1.0) * place) / self.lambda_sum;
         if by_b.abs() <= GAIN_TOLERANCE * self.farthest() || !by_b.is_finite() {
             return none;
         }
@@ -277,7 +279,9 @@ impl PoseSpace {
         let can_gain = |i: usize| {
             let [low, high] = limits(i);
             let gain = gain(i);
-            low < high && gain.abs() > GAIN_TOLERANCE * self.sum && if gain > 0.0 { a[i] <= low } else { a[i] >= high }
+            low < high
+                && gain.abs() > GAIN_TOLERANCE * self.lambda_sum
+                && if gain > 0.0 { a[i] <= low } else { a[i] >= high }
         };
         let gains = (0..n).filter(|i| !is_free(i)).any(can_gain);
         // The second derivative of b along v is Σ (μ·c_k e_k) (∂q_k/∂v)² / (μ·∂p/∂b).
@@ -285,7 +289,7 @@ impl PoseSpace {
             .iter()
             .map(|i| self.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(*i == j))), 0.0))
             .collect();
-        let bends: Vec<f64> = (0..self.drives()).map(|k| sign * dot(mu, self.tip[k] * unit(q[k])) / by_b).collect();
+        let bends: Vec<f64> = (0..self.drives()).map(|k| sign * dot(mu, self.arms[k] * unit(q[k])) / by_b).collect();
         let across: Vec<f64> = free.iter().map(|i| dot(along, columns[*i])).collect();
         let size: f64 = across.iter().map(|x| x * x).sum();
         let f = free.len();

@@ -184,7 +184,7 @@ impl PoseSpace {
                 return None;
             }
         }
-        Some((distance, turn(c.of[0]) * self.sum + self.b(&self.unturned(&a))))
+        Some((distance, turn(c.of[0]) * self.lambda_sum + self.b(&self.unturned(&a))))
     }
 
     /// Two compounds: the point leaves no freedom, and each pose has a single b. Returns false if a pose is in a corner
@@ -244,7 +244,7 @@ impl PoseSpace {
             let mut corner = *a;
             corner[i] = limit;
             let q = self.unturned(&corner);
-            let p: Vector = self.tip.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
+            let p: Vector = self.arms.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
             (p.norm() - r).abs() < CORNER_TOLERANCE * self.farthest()
         })
     }
@@ -322,7 +322,7 @@ impl PoseSpace {
             // drives that it turns.
             let mut gain = PerDrive::from_fn(self.drives(), |k| {
                 let q = turn(c.of[k]) + c.delta[k];
-                self.lambda[k] - self.tip[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
+                self.lambda[k] - self.arms[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
             });
             let scale = self.lambda.max_abs();
             for (joint, at) in self.joints.iter().zip(c.at).rev() {
@@ -345,7 +345,7 @@ impl PoseSpace {
             }
         }
         // The first term is that of drive 1; the windings change b.
-        let first = turn(c.of[0]) * self.sum;
+        let first = turn(c.of[0]) * self.lambda_sum;
         self.each_winding(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
             let mut spot = spot;

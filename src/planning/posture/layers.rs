@@ -85,7 +85,7 @@ impl<'a> Layers<'a> {
             if let Some(to) = ats.get(i + 1)
                 && angles.len() < FEW_POSES
             {
-                let all = space.sheets(stations.places[*to], b);
+                let all = space.representative_poses(stations.places[*to], b);
                 for (a, next) in angles_here.iter().zip(&mut next).filter(|(_, next)| next.is_none()) {
                     *next = nearest(&all, a, 2.0 * detail.apart);
                     angles.extend(*next);

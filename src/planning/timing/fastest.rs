@@ -103,8 +103,8 @@ fn planned(
         None => mended(path, &constraints, grid),
     };
     let bound = timed.map(|Timed { profile, x }| {
-        let limiting = leading(path, &grid, &constraints, &x);
-        FastestMotion { profile, gap: None, limiting }
+        let active_limits = leading(path, &grid, &constraints, &x);
+        FastestMotion { profile, gap: None, active_limits }
     });
     if smooth {
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
@@ -204,7 +204,7 @@ fn dense(path: &Path) -> Vec<f64> {
 
 /// Returns the motion on a path of no length.
 fn nowhere() -> FastestMotion {
-    FastestMotion { profile: Profile::none(), gap: None, limiting: Vec::new() }
+    FastestMotion { profile: Profile::none(), gap: None, active_limits: Vec::new() }
 }
 
 /// Returns the least limit on a derivative of s along a straight line, and the drive limit that sets it.
@@ -238,7 +238,7 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &DriveLimits, smooth: bool
     }
     let time = |spans: [JerkPhase; 7]| spans.iter().map(|s| s.time).sum::<f64>();
     let gap = without.filter(|_| smooth).map(|w| (profile.duration() / time(w) - 1.0).max(0.0));
-    Ok(FastestMotion { profile, gap, limiting: shares.sorted() })
+    Ok(FastestMotion { profile, gap, active_limits: shares.sorted() })
 }
 
 /// A timing on a grid.

@@ -122,8 +122,10 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
     };
     let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
     let common = BSet::overlap(&sets.unwrap_or_default());
-    let candidates =
-        common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
+    let candidates = common
+        .nearest(task.b)
+        .into_iter()
+        .flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.moved_inside(b, to)));
     let feasible =
         candidates.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), PlanningEffort::Trial).is_ok());
     let proposal = match feasible {

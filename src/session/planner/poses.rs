@@ -64,11 +64,11 @@ pub(super) fn poses_facing(
     (near, kept): (&[f64], Option<f64>),
 ) -> Result<DriveAngles, Refusal> {
     let (task, p) = (&scenario.task, points[i]);
-    let Some(angle) = task.orientation.filter(|_| scenario.idle("task.orientation").is_none()) else {
+    let Some(angle) = task.orientation.filter(|_| scenario.condition_for_effect("task.orientation").is_none()) else {
         return posed(task, space, (points, i), near);
     };
     let (drive, turned) = hand_of(scenario);
-    let poses = |angle: f64| space.facing(p, task.b, (drive, angle - turned), near);
+    let poses = |angle: f64| space.poses_with_drive_angle(p, task.b, (drive, angle - turned), near);
     let keeps_angle = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
     if let Some(q) = poses(angle).into_iter().find(keeps_angle) {
         return Ok(q);
@@ -113,5 +113,5 @@ pub(super) fn no_b_refusal(task: &Task, i: usize, p: Vector, reason: NoReach) ->
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
     space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
-    space.near(p, task.b).ok_or_else(none)
+    space.pose_at_nearest_b(p, task.b).ok_or_else(none)
 }

@@ -34,7 +34,7 @@ pub(super) fn tables(
 ) -> Result<Vec<PathTable>, Refusal> {
     let task = &scenario.task;
     let link = hand_of(scenario);
-    let angle = task.orientation.filter(|_| scenario.idle("task.orientation").is_none());
+    let angle = task.orientation.filter(|_| scenario.condition_for_effect("task.orientation").is_none());
     if angle.is_some() {
         poses_facing(scenario, space, (&task.points(), 0), (&space.middle(), None))?;
     }

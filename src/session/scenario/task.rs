@@ -256,7 +256,7 @@ impl Task {
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
-    pub fn with(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
+    pub fn with_change(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
         // There may be many samples, so they are serialised only if the change is of them.
         let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
         let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
@@ -267,8 +267,8 @@ impl Task {
         completed.map_err(|key| format!("missing field `{key}`"))
     }
 
-    /// Returns the present values of these keys, with which [`with`](Self::with) undoes a change.
-    pub fn only(&self, change: &TaskChange) -> TaskChange {
+    /// Returns the present values of these keys, with which [`with_change`](Self::with_change) undoes a change.
+    pub fn present_values(&self, change: &TaskChange) -> TaskChange {
         change::present_values(self, change)
     }
 }

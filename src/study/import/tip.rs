@@ -37,7 +37,7 @@ pub(super) fn of_tip(
         };
         (start, Some(candidates))
     } else {
-        (space.near(samples.point(0), asked.b.unwrap_or(0.0)), None)
+        (space.pose_at_nearest_b(samples.point(0), asked.b.unwrap_or(0.0)), None)
     };
     let usual = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
     let given = usual.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));

@@ -315,7 +315,7 @@ impl Workspace {
                 scene.lines.push(Polyline { dash, ..Polyline::new(name, strips.clone(), width, colour).moving(pose) });
             }
         };
-        let width = if options.hot == Some(Handle::Boundary) { 3.0 } else { 1.8 };
+        let width = if options.highlighted == Some(Handle::Boundary) { 3.0 } else { 1.8 };
         line("workspace/boundary", &self.boundary, width, palette.amber, None);
         let there = |p: Vector| point(base.at + p * turn, z);
         if let Some(sheets) = self.sheets() {
