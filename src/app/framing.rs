@@ -16,7 +16,8 @@ use stillbase_session::Session;
 pub fn keep_framed(
     rect: Rect,
     covered: &[Rect],
-    (session, views): (&Session, &Views),
+    session: &Session,
+    views: &Views,
     poses: impl FnOnce() -> Vec<DriveAngles>,
     view_state: &mut ViewState,
 ) {

@@ -23,9 +23,10 @@ pub struct DragGesture {
     pub pressed: Option<Pick>,
     /// The dragged object.
     pub grabbed: Option<Pick>,
-    /// Last position of the pointer in this drag, and offset of the dragged object behind the pointer since Shift was
-    /// held, points of the screen.
-    pub fine: [egui::Vec2; 2],
+    /// Last position of the pointer in this drag, points of the screen.
+    pub last_pointer: egui::Vec2,
+    /// Offset of the dragged object behind the pointer since Shift was held, points of the screen.
+    pub pointer_offset: egui::Vec2,
     /// Position to which the pointer drags the target or a point, m.
     pub position: Option<[f64; 2]>,
     /// The force at the end effector before the push, N.

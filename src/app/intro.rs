@@ -220,7 +220,8 @@ impl Intro {
     pub fn show_hint(
         &self,
         ctx: &egui::Context,
-        (rect, spoken_of): (egui::Rect, &[egui::Rect]),
+        rect: egui::Rect,
+        spoken_of: &[egui::Rect],
         session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,

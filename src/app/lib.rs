@@ -1,7 +1,7 @@
 //! The user interface: panels, plots and the viewport. It draws the same pixels in a window, in a test and in a figure.
 //!
-//! The panels read a [`Session`](stillbase_session::Session) and return [`Command`]s. The [`AppState`] carries them out at
-//! the end of the pass. Nothing is computed here.
+//! The panels read a [`Session`](stillbase_session::Session) and return [`Command`]s. The [`AppState`] carries them out
+//! at the end of the pass. Nothing is computed here.
 
 pub mod actions;
 mod activity;

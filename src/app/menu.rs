@@ -22,7 +22,8 @@ struct About {
 pub fn show(
     response: &Response,
     session: &Session,
-    (hot, at): (Option<Handle>, Option<[f64; 2]>),
+    hot: Option<Handle>,
+    at: Option<[f64; 2]>,
     commands: &mut Vec<Command>,
 ) {
     let id = Id::unique("menu of the scene");

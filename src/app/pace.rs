@@ -1,5 +1,5 @@
-//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so that
-//! the picture stays smooth.
+//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so
+//! that the picture stays smooth.
 
 /// Measured playback rate and cost of a step.
 #[derive(Clone, Copy, Debug, Default)]

@@ -50,7 +50,7 @@ impl<'a> ScenePointer<'a> {
         Self { ui, response, spot, session, shown, views, view, catches_arm, pushes }
     }
 
-    /// Handles grabbing, dragging, release, handle_clicks, and the key that removes a point.
+    /// Handles grabbing, dragging, release, clicks, and the key that removes a point.
     pub fn points(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         self.update_hot(view_state);
         self.grab(view_state, commands);
@@ -109,7 +109,7 @@ impl<'a> ScenePointer<'a> {
             let origin = origin();
             view_state.gesture = DragGesture {
                 grabbed: view_state.gesture.pressed.or_else(|| origin.and_then(|pos| self.under(pos))),
-                fine: [origin.unwrap_or_default().to_vec2(), Vec2::ZERO],
+                last_pointer: origin.unwrap_or_default().to_vec2(),
                 force: self.session.scenario().plant.force,
                 undo_entries: self.session.undo_count(),
                 ..DragGesture::default()
@@ -141,12 +141,12 @@ impl<'a> ScenePointer<'a> {
         let moved =
             response.drag_delta() != Vec2::ZERO || (view_state.gesture.dragged && response.drag_stopped()) || lasts;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            let [last, behind] = &mut view_state.gesture.fine;
+            let DragGesture { last_pointer, pointer_offset, .. } = &mut view_state.gesture;
             if self.ui.input(|i| i.modifiers.shift) {
-                *behind += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last);
+                *pointer_offset += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last_pointer);
             }
-            *last = pos.to_vec2();
-            let at = pos - *behind;
+            *last_pointer = pos.to_vec2();
+            let at = pos - *pointer_offset;
             commands.extend(self.drag_command(pick, at, view_state));
             if pushes && !self.session.is_playing() {
                 commands.push(SessionCommand::TogglePlay.into());
@@ -175,8 +175,8 @@ impl<'a> ScenePointer<'a> {
         self.ui.ctx().set_cursor_icon(cursor(hot, false));
     }
 
-    /// Handles handle_clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them. A
-    /// double click beside all handles adds a point to the path.
+    /// Handles clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them.
+    /// A double click beside all handles adds a point to the path.
     fn handle_clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let pos = self.response.interact_pointer_pos();

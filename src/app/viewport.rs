@@ -53,7 +53,7 @@ pub fn show(
         let presents = view_state.arrangement.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
-        framing::keep_framed(rect, &covered, (session, views), || motion(session), view_state);
+        framing::keep_framed(rect, &covered, session, views, || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let exaggeration = Exaggeration::Times(exaggeration);
@@ -67,7 +67,7 @@ pub fn show(
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
-            menu::show(&response, session, (view_state.pointed.object, at), commands);
+            menu::show(&response, session, view_state.pointed.object, at, commands);
             show_card(&response, session, views, view_state);
             // In the demonstration, a drag beside the machine does not move the view.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
@@ -107,7 +107,7 @@ pub fn show(
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
         words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
-        coordinates::show(ui, rect, (session, views), view_state, commands);
+        coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
         if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
             corner::recentre_button(ui, rect, view_state, commands);
@@ -123,7 +123,7 @@ pub fn show(
         }
         if let Some(intro) = intro {
             let spoken_of = spoken_of(&spot, views.stage(), &shown);
-            intro.show_hint(ui.ctx(), (rect, &spoken_of), session, view_state, commands);
+            intro.show_hint(ui.ctx(), rect, &spoken_of, session, view_state, commands);
         }
         rect
     });

@@ -151,7 +151,8 @@ impl Chart {
     }
 
     /// Returns bounds of the axis, rounded outwards about the values from `low` to `high`. Rounded bounds seldom change
-    /// as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like a signal.
+    /// as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like a
+    /// signal.
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         if self.centred {
             let most = round_up(low.abs().max(high.abs()).max(self.min_range));
@@ -168,8 +169,8 @@ impl Chart {
     }
 }
 
-/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS_SHARE`] times
-/// its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
+/// Returns the colour of a signal in every chart. A reaction is red if its peak so far exceeds [`REACTIONLESS_SHARE`]
+/// times its reference value (Σ|τ| for moments, Σ m|a| for forces), otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };

@@ -60,14 +60,16 @@ impl Forecast {
 
     /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
     pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, instants: usize) -> Self {
-        Self::at_while(motion, (model, around, limits), instants, &mut |_| true)
+        Self::at_while(motion, model, around, limits, instants, &mut |_| true)
     }
 
     /// Returns the same forecast, with progress reported to `goes_on`. If `goes_on` returns false, the computation
     /// stops and the result is to be discarded.
     pub fn at_while(
         motion: &Motion,
-        (model, around, limits): (&Inertia, &Surroundings, &DriveLimits),
+        model: &Inertia,
+        around: &Surroundings,
+        limits: &DriveLimits,
         instants: usize,
         goes_on: ProgressCallback<'_>,
     ) -> Self {

@@ -1,5 +1,5 @@
-//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead of being
-//! derived again.
+//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead
+//! of being derived again.
 
 use std::any::Any;
 use std::sync::Arc;

@@ -18,7 +18,8 @@ pub trait Query: Send + Sized + 'static {
     /// fraction done, from 0 to 1, and stops if it returns `false`.
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer>;
 
-    /// Drops those parts of a cached input that are not compared: see [`IncrementalAnswer::let_go`](super::IncrementalAnswer::let_go).
+    /// Drops those parts of a cached input that are not compared: see
+    /// [`IncrementalAnswer::let_go`](super::IncrementalAnswer::let_go).
     fn let_go(_: &mut Self::Input) {}
 }
 

@@ -122,7 +122,7 @@ impl Layout<'_> {
 
     /// Adds a container of tabs; `front` is the index of the active tab.
     fn tabs(&mut self, name: &str, parts: &[Part], front: usize) -> Result<Part, StoreError> {
-        self.parted(ContainerKind::Tabs, name, parts, (&[], front))
+        self.parted(ContainerKind::Tabs, name, parts, &[], front)
     }
 
     fn container(
@@ -132,7 +132,7 @@ impl Layout<'_> {
         parts: &[Part],
         shares: &[f32],
     ) -> Result<Part, StoreError> {
-        self.parted(kind, name, parts, (shares, 0))
+        self.parted(kind, name, parts, shares, 0)
     }
 
     /// Adds a container; `shares` are the relative sizes of its parts, `front` is the index of the active tab.
@@ -141,7 +141,8 @@ impl Layout<'_> {
         kind: ContainerKind,
         name: &str,
         parts: &[Part],
-        (shares, front): (&[f32], usize),
+        shares: &[f32],
+        front: usize,
     ) -> Result<Part, StoreError> {
         let parted: Vec<String> = parts.iter().map(|part| part.id.to_string()).collect();
         let words: Vec<&str> = parted.iter().map(String::as_str).collect();

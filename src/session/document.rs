@@ -90,7 +90,7 @@ impl Document {
             !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
-        let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
+        let run = replay::perform(&self.scenario, &self.script.to_vec(), end, patient, known, see)?;
         Ok(DocumentRun { run, frames, machines })
     }
 

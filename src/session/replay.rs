@@ -60,7 +60,7 @@ fn whole(
         let last = run.whole(script)?;
         allow(last).map(|()| last).map_err(ScriptError::from)
     };
-    let done = perform(scenario, &in_order(&scenario.edits), (end, false), None, see);
+    let done = perform(scenario, &in_order(&scenario.edits), end, false, None, see);
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
@@ -85,7 +85,8 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, ScriptError>, bool),
+    end: impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, ScriptError>,
+    patient: bool,
     known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame) -> bool,
 ) -> Result<Run, ScriptError> {

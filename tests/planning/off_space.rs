@@ -106,8 +106,8 @@ fn a_change_of_b_costs_what_it_says() {
     }
 }
 
-/// Limits are a box, so a straight line of joint space joins any two poses: no change between two b that reach their points
-/// is refused, to a b that is given or to the nearest one.
+/// Limits are a box, so a straight line of joint space joins any two poses: no change between two b that reach their
+/// points is refused, to a b that is given or to the nearest one.
 fn changes_of_b(noise: &mut Noise, n: usize) {
     let (machine, space) = a_space(noise, n);
     let b = [noise.between(-5.0, 5.0), noise.between(-5.0, 5.0)];
@@ -425,7 +425,8 @@ fn the_closest_motion_of_a_b_is_found() {
     assert!(moved_some >= 3, "{moved_some}");
 }
 
-/// The last link points where it is told to, all along a curve or a joint line; where it cannot, it is said where it can.
+/// The last link points where it is told to, all along a curve or a joint line; where it cannot, it is said where it
+/// can.
 #[test]
 fn the_last_link_points_where_it_is_told() {
     let four = builtin("four-drive").expect("built in");
@@ -461,12 +462,8 @@ fn the_last_link_points_where_it_is_told() {
     let words: Vec<&str> = why.split("want it from ").nth(1).expect("a range").split(' ').collect();
     let [low, high] = [words[0], words[2]].map(|word| word.parse::<f64>().expect("a number"));
     for angle in [low, 0.5 * (low + high), high] {
-        let poses = space.poses_with_drive_angle(
-            Vector::new(0.6, 0.5),
-            2.9,
-            (3, angle - std::f64::consts::PI),
-            &space.middle(),
-        );
+        let poses =
+            space.poses_with_drive_angle(Vector::new(0.6, 0.5), 2.9, 3, angle - std::f64::consts::PI, &space.middle());
         assert!(!poses.is_empty(), "{angle} of {low} to {high}");
     }
     // Random machines: every pose that is given is one.
@@ -476,13 +473,12 @@ fn the_last_link_points_where_it_is_told() {
         for _ in 0..5 {
             let q = space.lift(&a_pose(&mut noise, &space), noise.between(-3.0, 3.0));
             let (p, b) = (space.end_effector(&q), space.b(&q));
-            let found =
-                space.poses_with_drive_angle(p, b, (n - 1, q[n - 1] + std::f64::consts::TAU), &space.angles(&q));
+            let found = space.poses_with_drive_angle(p, b, n - 1, q[n - 1] + std::f64::consts::TAU, &space.angles(&q));
             assert!(n > 4 || !found.is_empty(), "the pose it was made of");
             // The nearest first, whatever they are to be near to.
             for near in [space.angles(&q), a_pose(&mut noise, &space), a_pose(&mut noise, &space)] {
                 let far = |other: &DriveAngles| space.angles(other).minus(&near).iter().map(|x| x * x).sum::<f64>();
-                let found = space.poses_with_drive_angle(p, b, (n - 1, q[n - 1]), &near);
+                let found = space.poses_with_drive_angle(p, b, n - 1, q[n - 1], &near);
                 assert!(found.windows(2).all(|pair| far(&pair[0]) <= far(&pair[1]) + 1e-9), "{n} drives");
             }
             for other in found {

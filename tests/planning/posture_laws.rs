@@ -120,7 +120,7 @@ impl Case {
             let mut here: Vec<DriveAngles> = Vec::new();
             for k in 0..=grid {
                 let angle = low + k as f64 / grid as f64 * (high - low);
-                for q in self.space.poses_with_drive_angle(p, self.b, (3, angle), &self.space.middle()) {
+                for q in self.space.poses_with_drive_angle(p, self.b, 3, angle, &self.space.middle()) {
                     if (q[3] - angle).abs() < 1e-9 {
                         here.push(q);
                     }

@@ -115,10 +115,10 @@ fn change(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, found: &TrimResult, c
     ui.horizontal_wrapped(|ui| {
         if mended.is_ok() && !changes.is_empty() {
             let tip = "The machine of the session becomes the measured one with this change: one step to undo";
-            take(ui, ("Take the change", tip), shown, TableAction::Change, commands);
+            take(ui, "Take the change", tip, shown, TableAction::Change, commands);
         }
         let tip = "The machine of the session becomes the measured one as it stands: one step to undo";
-        take(ui, ("Take as measured", tip), shown, TableAction::Measured, commands);
+        take(ui, "Take as measured", tip, shown, TableAction::Measured, commands);
     });
     match mended {
         Err(why) => ink(ui, &why.to_string(), p.reaction),

@@ -6,16 +6,15 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use super::which_b::WhichB;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
-use crate::{Command, SessionCommand, ViewState, set_b};
+use crate::{Command, SessionCommand, set_b};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
-use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::pose_constant::CommonB;
 use stillbase_planning::pose_space::PoseSpace;
-use stillbase_query::{ByIdentity, Queries, QuickWork};
-use stillbase_session::Session;
+use stillbase_query::{ByIdentity, QuickWork};
 
 /// Maximum number of points with a bar.
 const MAX_BARS: usize = 8;
@@ -25,13 +24,12 @@ const MIN_BAR_RAD: f64 = 1e-3;
 /// Draws a bar of the feasible b for each point, with b across; a click chooses b.
 pub fn bars(
     ui: &mut Ui,
-    p: &Palette,
-    (session, queries): (&Session, &Queries),
+    chart: WhichB<'_>,
     space: &Arc<PoseSpace>,
     mut points: Vec<(String, Vector)>,
-    (view_state, height): (&ViewState, f32),
     commands: &mut Vec<Command>,
 ) {
+    let WhichB { session, queries, view_state, palette: p, height } = chart;
     let now = session.frame();
     if points.len() > MAX_BARS {
         points.drain(1..points.len() - 1);

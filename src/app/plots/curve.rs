@@ -35,7 +35,8 @@ enum Hold {
 pub fn show(
     ui: &mut Ui,
     shown: &DisplayContext<'_>,
-    (plot, drawn): (&Plot<'_>, &PlotLines),
+    plot: &Plot<'_>,
+    drawn: &PlotLines,
     look: &PlotContext<'_>,
     height: f32,
     commands: &mut Vec<Command>,
@@ -64,7 +65,7 @@ pub fn show(
         }
     }
     // The axis numbers handle the value range; all else handles time.
-    let on_values = held(ui, &response).is_none() && values::hands(ui, (plot, drawn, &axes), &response, commands);
+    let on_values = held(ui, &response).is_none() && values::hands(ui, plot, drawn, &axes, &response, commands);
     if !on_values {
         if plot.against.is_none() {
             drag(ui, shown, &response, &axes, time_at, commands);

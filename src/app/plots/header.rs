@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for (i, curve) in plot.curves.iter().enumerate().rev() {
-                switch(ui, plot, (i, curve), words(plot, curve, drawn, look, fewer), look, commands);
+                switch(ui, plot, i, curve, words(plot, curve, drawn, look, fewer), look, commands);
             }
         });
     });
@@ -75,7 +75,8 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
 fn switch(
     ui: &mut Ui,
     plot: &Plot<'_>,
-    (i, curve): (usize, &PlotCurve<'_>),
+    i: usize,
+    curve: &PlotCurve<'_>,
     text: String,
     look: &PlotContext<'_>,
     commands: &mut Vec<Command>,

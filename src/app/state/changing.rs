@@ -28,7 +28,7 @@ impl AppState {
             Some((next, done)) => {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
-                    self.parts(&change, (old.branch_events().0, old.frame().time, old.is_dragged()));
+                    self.parts(&change, old.branch_events().0, old.frame().time, old.is_dragged());
                     self.background.free(old, &self.session);
                 }
                 self.changed(&change, done);
@@ -40,9 +40,9 @@ impl AppState {
 
     /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
     /// branches left so far, the time on display, s, and whether the machine was dragged.
-    pub(super) fn parts(&mut self, change: &SessionChange, (partings, shown, led): (u64, f64, bool)) {
+    pub(super) fn parts(&mut self, change: &SessionChange, branch_events: u64, shown: f64, led: bool) {
         let (now, gone) = self.session.branch_events();
-        if !matches!(change, SessionChange::Edit(_)) || now == partings {
+        if !matches!(change, SessionChange::Edit(_)) || now == branch_events {
             return;
         }
         let kept = match led && !self.session.is_dragged() {

@@ -54,8 +54,8 @@ impl AppState {
         let presents = self.view_state.arrangement.layout == Layout::Present;
         let facts = ScenarioFacts::of(&queries, &self.session);
         if !presents {
-            let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.lagging_rate()));
-            top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
+            let line = (&marks, self.pace.lagging_rate());
+            top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
             rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
@@ -117,8 +117,8 @@ impl AppState {
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
-        let known = (&facts, &self.saving.recent[..]);
-        finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
+        let recent = &self.saving.recent;
+        finder::show(ui.ctx(), &self.session, &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {

@@ -121,7 +121,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
         let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
-    summary(ui, points, (near, told.as_ref()), view_state, facts, commands);
+    summary(ui, points, near, told.as_ref(), view_state, facts, commands);
     other_fronts::list(ui, facts, p, commands);
 }
 
@@ -209,7 +209,8 @@ fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Comman
 fn summary(
     ui: &mut Ui,
     points: &[FrontMachine],
-    (near, told): (Option<usize>, Option<&ColourScale<'_>>),
+    near: Option<usize>,
+    told: Option<&ColourScale<'_>>,
     view_state: &ViewState,
     facts: &DesignFacts,
     commands: &mut Vec<Command>,

@@ -212,7 +212,7 @@ impl Shell<'_> {
             // Presenting may wait for the screen: the work held back starts before.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
-            if screen.draw(window, (&shapes, pixels_per_point), behind) == PaintOutcome::Again {
+            if screen.draw(window, &shapes, pixels_per_point, behind) == PaintOutcome::Again {
                 window.request_redraw();
             }
         }

@@ -54,8 +54,8 @@ pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Pla
     place_weights_with(machine, asked, &[])
 }
 
-/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
-/// the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
+/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their
+/// order: the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
 ///
 /// # Errors
 /// As [`place_weights`].

@@ -1,4 +1,5 @@
-//! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that counterweights must meet.
+//! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that
+//! counterweights must meet.
 
 use super::refusal::CounterweightError;
 use super::residual::{ConditionResidual, conditions};

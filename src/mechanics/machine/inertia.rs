@@ -270,12 +270,14 @@ impl Inertia {
         self.invariance_residual() / self.diagonals().iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// Returns whether motion exerts no force on the base: every |g_k| is at most [`BALANCE_TOLERANCE`] M √(Σ H_kk / M).
+    /// Returns whether motion exerts no force on the base: every |g_k| is at most [`BALANCE_TOLERANCE`] M √(Σ H_kk /
+    /// M).
     pub fn is_force_balanced(&self) -> bool {
         self.force_residual() <= self.first_moment_tolerance()
     }
 
-    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`] Σ H_kk.
+    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`]
+    /// Σ H_kk.
     pub fn is_invariant(&self) -> bool {
         self.invariance_residual() <= self.coupling_tolerance()
     }

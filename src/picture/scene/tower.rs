@@ -81,8 +81,8 @@ pub struct TowerPost {
 }
 
 impl Tower {
-    /// Prepares a run for drawing, over an interval of b of length [`TOWER_SPAN`]; to be repeated when its machine or plan
-    /// changes.
+    /// Prepares a run for drawing, over an interval of b of length [`TOWER_SPAN`]; to be repeated when its machine or
+    /// plan changes.
     pub fn of(run: &Run, reached: &Workspace) -> Option<Self> {
         Self::rising(run, reached.shape(), TOWER_SPAN, None)
     }

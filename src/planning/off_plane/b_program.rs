@@ -32,8 +32,8 @@ const SMOOTHING_COST: f64 = 1e-7;
 type Walls = Vec<[f64; 2]>;
 
 /// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
-/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease` times
-/// [`MARGIN_COST`]. Fails with the reason in words.
+/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease`
+/// times [`MARGIN_COST`]. Fails with the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,

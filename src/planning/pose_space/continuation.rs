@@ -103,7 +103,7 @@ impl PoseSpace {
         from: &PerDrive,
         windows: &[[f64; 2]; MAX_DRIVES],
     ) -> Option<PerDrive> {
-        self.solved_by(p, b, from, (windows, usize::MAX))
+        self.solved_by(p, b, from, windows, usize::MAX)
     }
 
     /// Does the same with at most `max_rejected` rejected steps.
@@ -112,7 +112,8 @@ impl PoseSpace {
         p: Vector,
         b: f64,
         from: &PerDrive,
-        (windows, max_rejected): (&[[f64; 2]; MAX_DRIVES], usize),
+        windows: &[[f64; 2]; MAX_DRIVES],
+        max_rejected: usize,
     ) -> Option<PerDrive> {
         let (n, reach) = (self.joints.len(), self.farthest());
         let mut rejected = 0;
@@ -152,9 +153,11 @@ impl PoseSpace {
     pub(super) fn continued(
         &self,
         p: Vector,
-        (from, mut b): (&PerDrive, f64),
+        from: &PerDrive,
+        mut b: f64,
         to: f64,
-        (windows, effort): (&[[f64; 2]; MAX_DRIVES], ContinuationLimits),
+        windows: &[[f64; 2]; MAX_DRIVES],
+        effort: ContinuationLimits,
     ) -> Option<PerDrive> {
         let mut a = *from;
         let mut step = to - b;
@@ -162,7 +165,7 @@ impl PoseSpace {
         for _ in 0..effort.max_steps {
             let last = step.abs() >= (to - b).abs();
             let next = if last { to } else { b + step };
-            match self.solved_by(p, next, &a, (windows, effort.max_rejected)) {
+            match self.solved_by(p, next, &a, windows, effort.max_rejected) {
                 Some(there) if last => return Some(there),
                 Some(there) => {
                     (a, b) = (there, next);
@@ -232,7 +235,7 @@ impl PoseSpace {
         let windows = &self.windows();
         let leave = self.leaving(a, b, rise.signum());
         if leave.gains
-            && let Some(there) = self.continued(p, (a, b), to, (windows, effort))
+            && let Some(there) = self.continued(p, a, b, to, windows, effort)
         {
             return Some(there);
         }
@@ -243,8 +246,8 @@ impl PoseSpace {
                 let by = side * (2.0 * rise / bend).sqrt();
                 let beside = PerDrive::from_fn(a.len(), |i| (a[i] + by * way[i]).clamp(windows[i][0], windows[i][1]));
                 let level = b + rise.copysign(to - b);
-                if let Some(there) = self.solved_by(p, level, &beside, (windows, effort.max_rejected)) {
-                    if let Some(there) = self.continued(p, (&there, level), to, (windows, effort)) {
+                if let Some(there) = self.solved_by(p, level, &beside, windows, effort.max_rejected) {
+                    if let Some(there) = self.continued(p, &there, level, to, windows, effort) {
                         return Some(there);
                     }
                     break;

@@ -141,11 +141,11 @@ impl PoseSpace {
             let name = (i as u64) << 44;
             let curve = CriticalCurve::of(i, 0);
             if pattern.count == 2 {
-                regular &= self.triangle(pattern, (name, curve), distance, &mut found);
+                regular &= self.triangle(pattern, name, curve, distance, &mut found);
             } else {
                 for signs in &pattern.signs {
                     let curve = CriticalCurve::of(i, signs.bits);
-                    regular &= self.stationary(pattern, signs, (name, curve), distance, &mut found);
+                    regular &= self.stationary(pattern, signs, name, curve, distance, &mut found);
                 }
             }
         }
@@ -192,7 +192,8 @@ impl PoseSpace {
     fn triangle(
         &self,
         c: &Pattern,
-        (name, curve): (u64, CriticalCurve),
+        name: u64,
+        curve: CriticalCurve,
         r: f64,
         found: &mut impl FnMut(CriticalPose),
     ) -> bool {
@@ -214,7 +215,7 @@ impl PoseSpace {
                 regular &= !self.in_corner(c, &critical.a, r);
                 found(critical);
             };
-            let decided = self.poses_of(c, (name, spot), turn, &mut noted, || {
+            let decided = self.poses_of(c, name, spot, turn, &mut noted, || {
                 // μ such that Λ = Re(μ̄ i L e^{iψ}) for both.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
@@ -255,7 +256,8 @@ impl PoseSpace {
         &self,
         c: &Pattern,
         signs: &Signs,
-        (name, curve): (u64, CriticalCurve),
+        name: u64,
+        curve: CriticalCurve,
         r: f64,
         found: &mut impl FnMut(CriticalPose),
     ) -> bool {
@@ -274,7 +276,7 @@ impl PoseSpace {
                 let turn = |i: usize| side * (alpha[i] - chi) - c.lean[i];
                 let name = name | u64::from(signs.bits) << 36 | (turns as u64) << 29 | u64::from(side < 0.0) << 28;
                 let spot = CriticalPoint { curve: curve.mirrored(side < 0.0), t };
-                regular &= self.poses_of(c, (name, spot), turn, found, || {
+                regular &= self.poses_of(c, name, spot, turn, found, || {
                     let [up, down] = *ways_up.get_or_insert_with(|| ways(n, nu, &cos, &c.lambda));
                     let mu = unit(PI - side * chi) / (side * nu);
                     (Some(mu), if side > 0.0 { [up, down] } else { [down, up] })
@@ -290,7 +292,8 @@ impl PoseSpace {
     fn poses_of(
         &self,
         c: &Pattern,
-        (name, mut spot): (u64, CriticalPoint),
+        name: u64,
+        mut spot: CriticalPoint,
         turn: impl Fn(usize) -> f64,
         found: &mut impl FnMut(CriticalPose),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),

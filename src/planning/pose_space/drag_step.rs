@@ -47,8 +47,8 @@ impl PoseSpace {
         if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }
     }
 
-    /// Does the same for a space [led](Self::led) to [keep](GuidanceMode::Keep) the angle of a drive, or to approach the
-    /// [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
+    /// Does the same for a space [guided](Self::with_guidance) to [keep](GuidanceMode::Keep) the angle of a drive, or
+    /// to approach the [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
     pub fn drag_to_guided(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
             GuidanceMode::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),

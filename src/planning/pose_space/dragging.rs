@@ -101,7 +101,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
         let poses = space.poses(p, b, from);
         match poses.first() {
             Some(q) => (a, off) = (space.angles(q), 0.0),
-            None => (a, off) = nearest_of_all(space, p, b, (a, off)),
+            None => (a, off) = nearest_of_all(space, p, b, a, off),
         }
     }
     if is_at(space, off) {
@@ -118,7 +118,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
 }
 
 /// Returns the pose nearest to p, m, over starts from all ranges; keeps the given one unless another is clearly nearer.
-fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64)) -> (PerDrive, f64) {
+fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -> (PerDrive, f64) {
     let others = (0..MAX_STARTS).map(|i| space.drag_to(p, b, &space.sample(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
     best.filter(|(_, other)| *other < off - MIN_IMPROVEMENT * space.farthest()).unwrap_or((a, off))

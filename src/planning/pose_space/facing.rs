@@ -20,7 +20,8 @@ impl PoseSpace {
         &self,
         p: Vector,
         b: f64,
-        (drive, angle): (usize, f64),
+        drive: usize,
+        angle: f64,
         near: &[f64],
     ) -> Vec<DriveAngles> {
         let Some((rest, joint)) = self.without(drive) else { return Vec::new() };

@@ -14,7 +14,8 @@ use super::space::{BASE_RADIUS, PoseSpace};
 use crate::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of these.
+/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of
+/// these.
 const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];
 /// Number of critical poses on either side of a gap from which climbs are tried: in a quick and in a careful search.
 const NEAREST_CRITICALS: [usize; 2] = [3, 24];
@@ -83,7 +84,7 @@ impl PoseSpace {
     ) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_reached_by_climbs(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
+            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(looks.careful)])
                 || self.is_reached_on_grid(p, &gap.places(), looks)
                 || self.is_sampled(distance, gap, looks)
                 || (looks.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
@@ -96,7 +97,8 @@ impl PoseSpace {
         &self,
         p: Vector,
         gap: &CriticalInterval,
-        (criticals, nearest): (&[CriticalPose], usize),
+        criticals: &[CriticalPose],
+        nearest: usize,
     ) -> bool {
         let (period, n) = (self.period(), criticals.len());
         let into = (GAP_DEPTH * (gap.to - gap.from)).min(MAX_GAP_DEPTH * period);

@@ -47,14 +47,15 @@ impl PoseSpace {
         };
         let weight = PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2));
         let bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
-        self.nearest_to_wish((p, b), from, &PreferredAngles { angles: self.middle(), weight }, &bounds)
+        self.nearest_to_wish(p, b, from, &PreferredAngles { angles: self.middle(), weight }, &bounds)
     }
 
     /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another
     /// pose there.
     pub(super) fn nearest_to_wish(
         &self,
-        (p, b): (Vector, f64),
+        p: Vector,
+        b: f64,
         from: &PerDrive,
         wish: &PreferredAngles,
         windows: &[[f64; 2]; MAX_DRIVES],

@@ -127,7 +127,7 @@ impl PoseSpace {
         let mut starts = self.representative_poses(p, b);
         starts.extend(self.solved(p, b, &own, &windows));
         starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
-        let drawn = starts.iter().take(MAX_DESCENTS).map(|a| self.nearest_to_wish((p, b), a, &wish, &windows));
+        let drawn = starts.iter().take(MAX_DESCENTS).map(|a| self.nearest_to_wish(p, b, a, &wish, &windows));
         drawn.min_by(|x, y| far(x).total_cmp(&far(y)))
     }
 

@@ -494,7 +494,7 @@ impl<'a> Search<'a> {
         let drive = asked.hand.0;
         let starts: Vec<PerDrive> = match angle {
             Some(angle) => {
-                let all = asked.space.poses_with_drive_angle(places[0], asked.b, (drive, angle), &asked.space.middle());
+                let all = asked.space.poses_with_drive_angle(places[0], asked.b, drive, angle, &asked.space.middle());
                 all.into_iter().map(|q| q.0).collect()
             }
             None => {

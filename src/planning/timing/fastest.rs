@@ -22,9 +22,9 @@ use stillbase_mechanics::planar::PerDrive;
 pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
-/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited quantities change
-/// much. Finally the motion is slowed down by as much as limits are exceeded between stations, so that it keeps them
-/// everywhere.
+/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited
+/// quantities change much. Finally the motion is slowed down by as much as limits are exceeded between stations, so
+/// that it keeps them everywhere.
 ///
 /// # Errors
 /// If no limit acts on the motion, or no motion keeps the limits.

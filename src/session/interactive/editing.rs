@@ -70,9 +70,9 @@ impl Session {
         }
         let before = self.document.clone();
         let mut document = before.clone();
-        let (mut remade, mut partings) = (None, self.branch_events.clone());
+        let (mut remade, mut branch_events) = (None, self.branch_events.clone());
         if !self.is_at_end() {
-            (document.branches, partings) = self.with_left();
+            (document.branches, branch_events) = self.with_left();
             document.end = self.cursor as u64;
             document.script.truncate(document.end);
             remade = Some(document.perform(Some(&self.run), false, watch).map_err(ScriptError::refusal)?);
@@ -99,7 +99,7 @@ impl Session {
         if let Some(remade) = remade {
             (self.frames, self.machines) = (remade.frames, remade.machines);
         }
-        (self.document, self.run, self.unedited, self.branch_events) = (document, run, Some(unedited), partings);
+        (self.document, self.run, self.unedited, self.branch_events) = (document, run, Some(unedited), branch_events);
         self.show_present();
         self.cursor = self.frames.len() - 1;
         if timed.edit.is_drag() {
@@ -114,10 +114,10 @@ impl Session {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);
-        let mut partings = self.branch_events.clone();
+        let mut branch_events = self.branch_events.clone();
         // The dragged motion would be lost, so it becomes a branch.
         if self.is_dragged() && !document.script.is_dragged() {
-            (document.branches, partings) = self.with_left();
+            (document.branches, branch_events) = self.with_left();
         }
         match &timed.edit {
             edit if edit.is_aside() => {
@@ -131,7 +131,7 @@ impl Session {
                 self.restore(document, patient, watch)?;
             }
         }
-        self.branch_events = partings;
+        self.branch_events = branch_events;
         self.remember(before, timed, inverse);
         Ok(())
     }

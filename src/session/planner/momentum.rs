@@ -125,7 +125,7 @@ fn deltas_along(
         let deltas =
             poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= CURVE_TOLERANCE * space.farthest());
         let Some(delta) = deltas.min_by(|x, y| (x - now).abs().total_cmp(&(y - now).abs())) else {
-            return Err((i, off_curve(task, space, integral, (b, now), i, *p)));
+            return Err((i, off_curve(task, space, integral, b, now, i, *p)));
         };
         turns.push(delta);
         now = delta;
@@ -134,14 +134,7 @@ fn deltas_along(
 }
 
 /// Refuses a point off the curve, with its distance from the curve and the nearest point of the curve, m.
-fn off_curve(
-    task: &Task,
-    space: &PoseSpace,
-    integral: &BIntegral,
-    (b, now): (f64, f64),
-    i: usize,
-    p: Vector,
-) -> Refusal {
+fn off_curve(task: &Task, space: &PoseSpace, integral: &BIntegral, b: f64, now: f64, i: usize, p: Vector) -> Refusal {
     let joint = space.joints()[0];
     let [low, high] = joint.bounds();
     let place = |delta: f64| space.end_effector(&integral.pose(b, delta));

@@ -1,5 +1,5 @@
-//! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration steps
-//! consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
+//! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration
+//! steps consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
 //! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. Whether
 //! the base moves is a compile-time parameter.
@@ -272,13 +272,13 @@ impl MovingBody {
             base_acceleration = momentum_rate / self.mass + pull;
             // The constants of the arm are zero at the index of the base.
             let (h, v) = assemble(&self.arm, &e, &rate);
-            let mut wrench = self.wrench((&h, &v), &e, &rate, &acceleration);
+            let mut wrench = self.wrench(&h, &v, &e, &rate, &acceleration);
             let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
             wrench.dynamic.force -= self.arm.mass * base_acceleration;
             wrench.dynamic.moment -= cross(lever, base_acceleration);
             wrench
         } else {
-            self.wrench((&h, &v), &e, &rate, &acceleration)
+            self.wrench(&h, &v, &e, &rate, &acceleration)
         };
         let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
             + 0.5 * dot(at.momentum, drift)
@@ -344,7 +344,8 @@ impl MovingBody {
     #[inline(always)]
     fn wrench<const N: usize>(
         &self,
-        (h, v): (&[[f64; N]; N], &[f64; N]),
+        h: &[[f64; N]; N],
+        v: &[f64; N],
         e: &[Vector; N],
         rate: &[f64; N],
         acceleration: &[f64; N],

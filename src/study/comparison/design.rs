@@ -1,4 +1,5 @@
-//! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another run.
+//! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another
+//! run.
 
 use std::sync::Arc;
 

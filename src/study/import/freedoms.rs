@@ -25,7 +25,8 @@ pub(super) fn held_b_motion(
     asked: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
-    (samples, curve): (&Samples, &Curve),
+    samples: &Samples,
+    curve: &Curve,
     goes_on: ProgressCallback<'_>,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let start = |b: f64| space.pose_at_nearest_b(samples.point(0), b);

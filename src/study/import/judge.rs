@@ -153,7 +153,7 @@ impl MotionEvaluator {
     /// Assesses a motion.
     fn account(&self, motion: &Motion, goes_on: ProgressCallback<'_>) -> MotionEffects {
         let limits = DriveLimits::of(&self.machine);
-        let f = Forecast::at_while(motion, (&self.model, &self.around, &limits), self.instants, goes_on);
+        let f = Forecast::at_while(motion, &self.model, &self.around, &limits, self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
         let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
         MotionEffects {

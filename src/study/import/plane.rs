@@ -18,8 +18,10 @@ const PATH_POINTS: usize = 257;
 pub(super) fn held_plane_motion(
     asked: Option<f64>,
     judge: &MotionEvaluator,
-    (space, planes): (&PoseSpace, &Planes),
-    (samples, curve): (&Samples, &Curve),
+    space: &PoseSpace,
+    planes: &Planes,
+    samples: &Samples,
+    curve: &Curve,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let (map, curves) = (planes.map(), std::slice::from_ref(curve));
     let (b, why) = match asked {

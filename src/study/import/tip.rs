@@ -32,8 +32,8 @@ pub(super) fn of_tip(
     let (start, held) = if reaches_area {
         let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
-            Ok(planes) => plane::held_plane_motion(asked.b, judge, (space, planes), (samples, &curve)),
-            Err(_) => freedoms::held_b_motion(asked.b, judge, space, (samples, &curve), &mut searching),
+            Ok(planes) => plane::held_plane_motion(asked.b, judge, space, planes, samples, &curve),
+            Err(_) => freedoms::held_b_motion(asked.b, judge, space, samples, &curve, &mut searching),
         };
         (start, Some(candidates))
     } else {

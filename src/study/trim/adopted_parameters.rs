@@ -1,4 +1,5 @@
-//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's file.
+//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's
+//! file.
 
 use nalgebra::{DMatrix, DVector};
 

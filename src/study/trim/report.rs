@@ -162,8 +162,10 @@ impl TrimReport {
     pub(super) fn of(
         machine: &Machine,
         rows: &Regressor,
-        (fit, taken): (&Fit, &AdoptedParameters),
-        (mended, worth): (Option<&MachineCorrection>, Option<CorrectionBenefit>),
+        fit: &Fit,
+        taken: &AdoptedParameters,
+        mended: Option<&MachineCorrection>,
+        worth: Option<CorrectionBenefit>,
         next: &NextMeasurement,
     ) -> Self {
         let unknowns = &fit.unknowns;

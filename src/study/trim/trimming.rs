@@ -177,7 +177,7 @@ impl TrimResult {
         let helps = worth.is_some_and(|worth| worth.helps());
         // A change whose effect is not significant is not proposed.
         let mended = mended.map(|mended| if helps { mended } else { MachineCorrection::not_at_all(machine, &taken) });
-        let report = TrimReport::of(machine, rows, (fit, &taken), (mended.as_ref().ok(), worth), next);
+        let report = TrimReport::of(machine, rows, fit, &taken, mended.as_ref().ok(), worth, next);
         Self { report, taken, mended }
     }
 }

@@ -50,8 +50,8 @@ pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<Rebalanc
     rebalance_with(machine, asked, &[])
 }
 
-/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
-/// computed and additional residuals are to vanish.
+/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums
+/// of computed and additional residuals are to vanish.
 ///
 /// # Errors
 /// As [`rebalance`].

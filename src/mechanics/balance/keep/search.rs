@@ -131,7 +131,7 @@ impl RebalanceSearch<'_> {
         let (m, c) = plane.reduced_bounds(self.bounds);
         let reduced = plane.null_space.tr_mul(&(&h * &plane.null_space));
         let slope = plane.null_space.tr_mul(&(&h * (&plane.particular - from)));
-        let z = step(&DVector::zeros(plane.null_space.ncols()), &slope, reduced, (&m, &c))?;
+        let z = step(&DVector::zeros(plane.null_space.ncols()), &slope, reduced, &m, &c)?;
         Some(&plane.particular + &plane.null_space * z)
     }
 
@@ -145,7 +145,7 @@ impl RebalanceSearch<'_> {
             let value = self.value(&y);
             let slope = plane.null_space.tr_mul(&self.slope(&y));
             let model = |convex: bool| {
-                step(&z, &slope, plane.null_space.tr_mul(&(self.curvature(&y, convex) * &plane.null_space)), (&m, &c))
+                step(&z, &slope, plane.null_space.tr_mul(&(self.curvature(&y, convex) * &plane.null_space)), &m, &c)
             };
             let Some(to) = model(false).or_else(|| model(true)) else { break };
             let way = &to - &z;
@@ -218,7 +218,8 @@ fn step(
     z: &DVector<f64>,
     slope: &DVector<f64>,
     curvature: DMatrix<f64>,
-    (m, c): (&DMatrix<f64>, &DVector<f64>),
+    m: &DMatrix<f64>,
+    c: &DVector<f64>,
 ) -> Option<DVector<f64>> {
     let model = Cholesky::new(curvature)?;
     let (centre, l) = (z - model.solve(slope), model.l());

@@ -1,6 +1,6 @@
-//! [`JointSection`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a line.
-//! With four or more drives it is a three-dimensional section, at the present angles of the drives without an axis. In
-//! this section constant b is a plane.
+//! [`JointSection`]: joint space of a machine without planes. With two drives it is a plane in which constant b is a
+//! line. With four or more drives it is a three-dimensional section, at the present angles of the drives without an
+//! axis. In this section constant b is a plane.
 //!
 //! The unit of the scene is the radian, the chosen drives are along x, y and z, and the origin moves with b.
 
