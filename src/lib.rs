@@ -234,8 +234,8 @@
 //!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, of a design `session/scenario/design.rs`, of
 //!   a scenario itself `session/scenario/own.rs`. The row is the field, with type, default, range, meaning, when it has an
 //!   effect, and what frames depend on it. Of a machine the field stands in `mechanics/machine/spec.rs`, its row in
-//!   `mechanics/machine/keys.rs`. Where the machine decides whether a key has an effect, `Scenario::idle` says so; a key
-//!   with `*` wants its names in `Scenario::settings`. Files, `--set`, edits, *All settings* in the window and
+//!   `mechanics/machine/keys.rs`. Where the machine decides whether a key has an effect,
+//!   `Scenario::condition_for_effect` says so; a key with `*` wants its names in `Scenario::settings`. Files, `--set`, edits, *All settings* in the window and
 //!   `stillbase keys` follow; `stillbase keys --markdown` writes the page of the guide. A row in a panel of the window
 //!   stands in `app/side/`, of the design view in `app/studio/`.
 //! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the

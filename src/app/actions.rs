@@ -206,7 +206,7 @@ pub const ACTIONS: &[Action] = actions![
     Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
     Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
     Task, "Put the machine back on its planned path" = "reset return stop leading by hand", [on(PLAIN, Key::B)], "left panel", |s, _| {
-        s.is_led().then_some(Command::Session(SessionCommand::BackToPath))
+        s.is_dragged().then_some(Command::Session(SessionCommand::BackToPath))
     };
     Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
         nudge(s, [TARGET_STEP_M, 0.0])

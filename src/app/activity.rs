@@ -16,9 +16,9 @@ pub enum Activity {
     /// Sampling machines for a study of tolerances.
     Study,
     /// Running the task in its different ways.
-    Ways,
+    TaskVariants,
     /// Running one more scenario for the table of runs.
-    Kept,
+    ExtraRun,
     /// Searching for lengths.
     Seeking,
     /// Computing the Pareto fronts of other machines.
@@ -36,10 +36,12 @@ impl Activity {
             Self::Recording => ("recording", Some("cancelled: no file is left")),
             Self::Table => ("finding what the table says", Some("cancelled: another choice asks the table again")),
             Self::Study => ("drawing machines", Some("cancelled: no machines were drawn for the run as it is")),
-            Self::Ways => ("running the ways of the task", Some("cancelled: the ways of the task were not run again")),
+            Self::TaskVariants => {
+                ("running the ways of the task", Some("cancelled: the ways of the task were not run again"))
+            }
             Self::Fronts => ("finding fronts", Some("cancelled: take one away, or add one, to find them again")),
             Self::Seeking => ("seeking lengths", Some("cancelled: no lengths were found")),
-            Self::Kept => ("running one more beside them", Some("cancelled: no run was added")),
+            Self::ExtraRun => ("running one more beside them", Some("cancelled: no run was added")),
         }
     }
 

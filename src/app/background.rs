@@ -109,7 +109,7 @@ pub(super) struct Background<A> {
     /// The change of the session under way, and the number of repaints since its start.
     pub change: Option<(SessionChange, u32)>,
     /// Commands that wait for its end.
-    pub later: VecDeque<SessionCommand>,
+    pub waiting_commands: VecDeque<SessionCommand>,
 }
 
 /// A query that the status line reports: its activity, its progress, and the function that stops it.
@@ -120,7 +120,7 @@ const REPORTED_QUERIES: [ReportedQuery; 5] = [
     (Activity::Study, Queries::progress::<StudyQuery>, Queries::stop::<StudyQuery>),
     (Activity::Seeking, Queries::progress::<LengthsQuery>, Queries::stop::<LengthsQuery>),
     (Activity::Fronts, Queries::progress::<Fronts>, Queries::stop::<Fronts>),
-    (Activity::Ways, Queries::progress::<AlternativeRuns>, Queries::stop::<AlternativeRuns>),
+    (Activity::TaskVariants, Queries::progress::<AlternativeRuns>, Queries::stop::<AlternativeRuns>),
 ];
 
 impl<A> Default for Background<A> {
@@ -132,18 +132,18 @@ impl<A> Default for Background<A> {
             ctx: None,
             running: Vec::new(),
             change: None,
-            later: VecDeque::new(),
+            waiting_commands: VecDeque::new(),
         }
     }
 }
 
 impl<A> Background<A> {
     /// Sets the worker threads.
-    pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
+    pub fn set_workers(&mut self, workers: impl Workers + Send + Sync + 'static) {
         let waiting = Arc::new(DeferredWorkers::new(workers));
         self.workers = waiting.clone();
         self.waiting = Some(waiting);
-        self.queries.hire(self.workers.clone());
+        self.queries.set_workers(self.workers.clone());
     }
 
     /// Returns a guard that holds new work back while the window is drawn.
@@ -152,11 +152,11 @@ impl<A> Background<A> {
     }
 
     /// Sets the context that is repainted when a job has ended.
-    pub fn wakes(&mut self, ctx: &egui::Context) {
+    pub fn set_context(&mut self, ctx: &egui::Context) {
         if self.ctx.is_none() {
             self.ctx = Some(ctx.clone());
             let ctx = ctx.clone();
-            self.queries.wakes(move || ctx.request_repaint());
+            self.queries.on_finished(move || ctx.request_repaint());
         }
     }
 
@@ -224,7 +224,7 @@ impl<A> Background<A> {
         }
         if activity == Activity::Change {
             self.change = None;
-            self.later.clear();
+            self.waiting_commands.clear();
         }
     }
 
@@ -237,7 +237,7 @@ impl<A> Background<A> {
     }
 
     /// Frees a replaced session. A long one that shares no frames with the present one is freed in the background.
-    pub fn let_go(&self, old: Session, now: &Session) {
+    pub fn free(&self, old: Session, now: &Session) {
         let shares = now.frames().revision().kept_of(&old.frames().revision().mark()) > 0;
         if old.frames().len() > MAX_FRAMES_FREED_AT_ONCE && !shares {
             drop(self.start(move |_| drop(old)));
@@ -246,25 +246,25 @@ impl<A> Background<A> {
 
     /// Whether the session is being changed, so that session commands have to wait.
     pub fn is_changing(&self) -> bool {
-        self.change.is_some() || !self.later.is_empty()
+        self.change.is_some() || !self.waiting_commands.is_empty()
     }
 
     /// Appends a session command to those that wait. Of the edits of one drag, and of consecutive seeks, only the
     /// newest is kept.
-    pub fn after(&mut self, command: SessionCommand) {
-        let replaced = match (self.later.back(), &command) {
+    pub fn enqueue(&mut self, command: SessionCommand) {
+        let replaced = match (self.waiting_commands.back(), &command) {
             (Some(SessionCommand::Edit(earlier)), SessionCommand::Edit(later)) => earlier.is_replaced_by(later),
             (Some(SessionCommand::Seek(_)), SessionCommand::Seek(_)) => true,
             _ => false,
         };
         if replaced {
-            self.later.pop_back();
+            self.waiting_commands.pop_back();
         }
-        self.later.push_back(command);
+        self.waiting_commands.push_back(command);
     }
 
     /// Counts one more repaint during the change of the session.
-    pub fn count(&mut self) {
+    pub fn count_repaint(&mut self) {
         if let Some((_, shown)) = &mut self.change {
             *shown += 1;
         }

@@ -79,7 +79,8 @@ impl Card {
                 Self::new(title, rows, "drag: hangs it aside or back\nclick: its rows in the panel")
             }
             Handle::Ring => {
-                let rows = vec![format!("moment on the base while it changes: {} N m", signed(frame.felt_moment(), 3))];
+                let rows =
+                    vec![format!("moment on the base while it changes: {} N m", signed(frame.net_base_moment(), 3))];
                 let title = format!("pose constant, b = {} rad", signed(frame.b_reference, 3));
                 Self::new(title, rows, "drag: turns the reactionless workspace\nclick: its row in the panel")
             }
@@ -97,7 +98,7 @@ impl Card {
             }
             Handle::Moment => {
                 let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
-                let title = format!("moment on the base, n_B = {} N m", signed(frame.felt_moment(), 3));
+                let title = format!("moment on the base, n_B = {} N m", signed(frame.net_base_moment(), 3));
                 Self::new(title, rows, "")
             }
             Handle::Mass(i) => {
@@ -167,7 +168,7 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
     }
-    let map = session.run().pose_space().ok().filter(|_| session.follows_hands());
+    let map = session.run().pose_space().ok().filter(|_| session.can_be_dragged());
     let hint = match map {
         Some(map) if map.planes().is_ok() => {
             format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
@@ -235,6 +236,6 @@ fn base(session: &Session) -> Card {
     if base.moves() {
         moved(&mut rows);
     }
-    rows.push(format!("it feels a moment of {} N m", signed(frame.felt_moment(), 3)));
+    rows.push(format!("it feels a moment of {} N m", signed(frame.net_base_moment(), 3)));
     Card::new(title, rows, "click: its section in the panel")
 }

@@ -25,7 +25,8 @@ fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a JointSpace
 pub fn show(
     ui: &egui::Ui,
     rect: Rect,
-    (session, views): (&Session, &Views),
+    session: &Session,
+    views: &Views,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {

@@ -100,7 +100,7 @@ impl QuickQuery for Settings {
             let normal = || change::same_value(&change::value(key.default), &value);
             Setting {
                 usual: typed.is_empty() || key.default.is_empty() || normal(),
-                wants: scenario.idle(&path),
+                wants: scenario.condition_for_effect(&path),
                 text: format!("{path}\n{}", key.words).to_lowercase(),
                 typed,
                 key,

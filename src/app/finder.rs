@@ -38,7 +38,8 @@ const ROW_HEIGHT_PT: f32 = 27.0;
 /// Returns the commands available now, in the order of the table of actions.
 fn entries<'a>(
     session: &'a Session,
-    (settings, recent): (&'a [Setting], &'a [PathBuf]),
+    settings: &'a [Setting],
+    recent: &'a [PathBuf],
     view_state: &ViewState,
 ) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
@@ -107,14 +108,15 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
-    (facts, recent): (&ScenarioFacts<'_>, &[PathBuf]),
+    facts: &ScenarioFacts<'_>,
+    recent: &[PathBuf],
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
     let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
-    let list = found(entries(session, (&settings, recent), view_state), &finder.sought);
+    let list = found(entries(session, &settings, recent, view_state), &finder.sought);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));

@@ -16,19 +16,20 @@ use stillbase_session::Session;
 pub fn keep_framed(
     rect: Rect,
     covered: &[Rect],
-    (session, views): (&Session, &Views),
+    session: &Session,
+    views: &Views,
     poses: impl FnOnce() -> Vec<DriveAngles>,
     view_state: &mut ViewState,
 ) {
     let view = view_state.view;
     let size = [rect.width(), rect.height()];
     let content = match &view_state.framing[view as usize] {
-        Framing::Free => return,
-        Framing::Held(_, last) if *last == size => return,
-        Framing::Held(content, _) => content.clone(),
+        Framing::Manual => return,
+        Framing::Framed(_, last) if *last == size => return,
+        Framing::Framed(content, _) => content.clone(),
         // During a drag the view stays still; it is framed after the release.
-        Framing::Wanted if view_state.gesture.grabbed.is_some() => return,
-        Framing::Wanted => Arc::new(views.content(view, session.frame(), &poses())),
+        Framing::Pending if view_state.gesture.grabbed.is_some() => return,
+        Framing::Pending => Arc::new(views.content(view, session.frame(), &poses())),
     };
     let part = |part: &Rect| {
         let part = part.intersect(rect).translate(-rect.min.to_vec2());
@@ -36,5 +37,5 @@ pub fn keep_framed(
     };
     let room = PictureArea { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
     view_state.cameras[view as usize] = content.framed(views.camera(view), &room);
-    view_state.framing[view as usize] = Framing::Held(content, size);
+    view_state.framing[view as usize] = Framing::Framed(content, size);
 }

@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Mach
     for row in machines.chunks(columns) {
         ui.horizontal(|ui| {
             for (machine, portrait) in row {
-                cards.push(card(ui, p, (machine, portrait), machine.name() == present.name()));
+                cards.push(card(ui, p, machine, portrait, machine.name() == present.name()));
             }
         });
     }
@@ -77,7 +77,7 @@ fn move_focus(ui: &Ui, cards: &[egui::Response], at: usize, columns: usize) {
     }
 }
 
-fn card(ui: &mut Ui, p: &Palette, (machine, portrait): (&Machine, &Portrait), present: bool) -> egui::Response {
+fn card(ui: &mut Ui, p: &Palette, machine: &Machine, portrait: &Portrait, present: bool) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(CARD, Sense::click());
     let drives = format!("{} {}", machine.drives(), if machine.drives() == 1 { "drive" } else { "drives" });
     let summary = &machine.spec().summary;

@@ -7,9 +7,9 @@ use stillbase_picture::scene::pick::Pick;
 #[derive(Clone, Debug, Default)]
 pub struct HoverTarget {
     /// Object of the scene under the pointer.
-    pub hot: Option<Handle>,
+    pub object: Option<Handle>,
     /// Object whose rows in the panel are under the pointer.
-    pub lit: Option<Handle>,
+    pub panel_object: Option<Handle>,
     /// Links that contribute to the term under the pointer.
     pub lit_links: Vec<usize>,
     /// b under the pointer in the chart *Which b?*, rad.
@@ -23,17 +23,18 @@ pub struct DragGesture {
     pub pressed: Option<Pick>,
     /// The dragged object.
     pub grabbed: Option<Pick>,
-    /// Last position of the pointer in this drag, and offset of the dragged object behind the pointer since Shift was
-    /// held, points of the screen.
-    pub fine: [egui::Vec2; 2],
+    /// Last position of the pointer in this drag, points of the screen.
+    pub last_pointer: egui::Vec2,
+    /// Offset of the dragged object behind the pointer since Shift was held, points of the screen.
+    pub pointer_offset: egui::Vec2,
     /// Position to which the pointer drags the target or a point, m.
-    pub held: Option<[f64; 2]>,
+    pub position: Option<[f64; 2]>,
     /// The force at the end effector before the push, N.
     pub force: [f64; 2],
     /// The drag has changed something.
     pub dragged: bool,
     /// Number of undo entries at its start.
-    pub undone_to: usize,
+    pub undo_entries: usize,
 }
 
 /// Effect of a drag in the scene.

@@ -74,7 +74,7 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                         None => {}
                         Some(Err(why)) => column(ui, "refused", rest, |ui| refused(ui, &p, why)),
                         Some(Ok(TableAssessment::Motion { motion, unwrapped, imported })) => {
-                            motion::show(ui, &p, &shown, (motion, unwrapped, imported), commands);
+                            motion::show(ui, &p, &shown, motion, unwrapped, imported, commands);
                         }
                         Some(Ok(TableAssessment::Measured(trimmed))) => {
                             measured::show(ui, &p, &shown, trimmed, commands)
@@ -101,16 +101,16 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
         (Some(TableContent::Tip), "a motion of the end effector"),
         (Some(TableContent::Measurement), "a measurement of the base"),
     ];
-    choice(ui, ("read", "What the table is taken for"), &choices, options.content, |to| {
+    choice(ui, "read", "What the table is taken for", &choices, options.content, |to| {
         shown.ask(commands, |options| options.content = to);
     });
     if content == Some(TableContent::Measurement) {
         let tip = "Leaves measured rates and accelerations alone, and finds them from the angles";
-        switch(ui, ("from the angles alone", tip), options.angles_only, |on| {
+        switch(ui, "from the angles alone", tip, options.angles_only, |on| {
             shown.ask(commands, |options| options.angles_only = on);
         });
         let tip = "Takes the columns as they are, even where another sign, order or unit explains them far better";
-        switch(ui, ("columns as they are", tip), options.as_given, |on| {
+        switch(ui, "columns as they are", tip, options.as_given, |on| {
             shown.ask(commands, |options| options.as_given = on);
         });
         note(ui, p, "Only what the design view leaves free may change: counterweights that are there, or new ones.");
@@ -122,7 +122,7 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
             (Some(PreservedPath::Tip), "the end effector's motion"),
             (Some(PreservedPath::Joints), "the joint angles"),
         ];
-        choice(ui, ("keep", "What the proposal keeps of the motion"), &keeps, options.keep, |to| {
+        choice(ui, "keep", "What the proposal keeps of the motion", &keeps, options.keep, |to| {
             shown.ask(commands, |options| options.keep = to);
         });
     }
@@ -131,7 +131,7 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
         ..NumberRow::of("on the plane b", "task.b").with(3, 0.002)
     };
     let usual = shown.proposed_b().unwrap_or_default();
-    optional(ui, p, &row, (options.b, usual), |to| shown.ask(commands, |options| options.b = to));
+    optional(ui, p, &row, options.b, usual, |to| shown.ask(commands, |options| options.b = to));
     let tip = "Smooths the samples without delay: half of the amplitude is left at this frequency";
     let row = NumberRow {
         tip,
@@ -140,19 +140,13 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
         slide: 0.01..=1e5,
         ..NumberRow::of("smoothed at", "").with(1, 0.2)
     };
-    optional(ui, p, &row, (options.smoothing, 20.0), |to| shown.ask(commands, |options| options.smoothing = to));
+    optional(ui, p, &row, options.smoothing, 20.0, |to| shown.ask(commands, |options| options.smoothing = to));
     let tip = "Lets the spline through the samples bridge gaps in time";
-    switch(ui, ("bridge gaps", tip), options.gaps, |on| shown.ask(commands, |options| options.gaps = on));
+    switch(ui, "bridge gaps", tip, options.gaps, |on| shown.ask(commands, |options| options.gaps = on));
 }
 
 /// Draws a label and a list to choose from.
-fn choice<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    (label, tip): (&str, &str),
-    choices: &[(T, &str)],
-    now: T,
-    to: impl FnOnce(T),
-) {
+fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, tip: &str, choices: &[(T, &str)], now: T, to: impl FnOnce(T)) {
     let mut taken = None;
     ui.horizontal(|ui| {
         ui.label(label).on_hover_text(tip);
@@ -173,7 +167,7 @@ fn choice<T: Copy + PartialEq>(
     }
 }
 
-fn switch(ui: &mut Ui, (label, tip): (&str, &str), now: bool, to: impl FnOnce(bool)) {
+fn switch(ui: &mut Ui, label: &str, tip: &str, now: bool, to: impl FnOnce(bool)) {
     let mut on = now;
     if ui.checkbox(&mut on, label).on_hover_text(tip).changed() {
         to(on);
@@ -181,13 +175,7 @@ fn switch(ui: &mut Ui, (label, tip): (&str, &str), now: bool, to: impl FnOnce(bo
 }
 
 /// Draws an optional number: the program chooses it unless it is ticked.
-fn optional(
-    ui: &mut Ui,
-    p: &Palette,
-    row: &NumberRow<'_>,
-    (now, usual): (Option<f64>, f64),
-    to: impl FnOnce(Option<f64>),
-) {
+fn optional(ui: &mut Ui, p: &Palette, row: &NumberRow<'_>, now: Option<f64>, usual: f64, to: impl FnOnce(Option<f64>)) {
     let (mut is_set, mut value) = (now.is_some(), now.unwrap_or(usual));
     let mut changed = false;
     ui.horizontal(|ui| {

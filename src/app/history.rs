@@ -18,7 +18,8 @@ const BRANCH_HEIGHT_PT: f32 = 38.0;
 /// Draws its button, and the list while it is open.
 pub fn show(
     ui: &mut Ui,
-    (session, branches): (&Session, &[Fork]),
+    session: &Session,
+    branches: &[Fork],
     view_state: &ViewState,
     size: Vec2,
     commands: &mut Vec<Command>,

@@ -46,7 +46,7 @@ const HINT_COUNT: usize = 3;
 
 /// Returns text and reason of a hint for a machine; `None` if there is nothing to drag or to turn, or no such hint.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
-    let map = session.run().pose_space().ok().filter(|_| session.follows_hands())?;
+    let map = session.run().pose_space().ok().filter(|_| session.can_be_dragged())?;
     // The amber set: two drives reach a curve, more drives an area.
     let (on, off, amber) = if map.reaches_area() { ("inside", "out of", "area") } else { ("on", "off", "curve") };
     let (title, why) = match i {
@@ -151,7 +151,9 @@ impl Intro {
             ) => true,
             Command::View(ViewChange::Layout(layout)) => *layout != Layout::Explore,
             Command::View(ViewChange::Kind(view)) => !view.shows_machine(),
-            Command::Session(SessionCommand::EndGesture) => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
+            Command::Session(SessionCommand::EndGesture) => {
+                session.is_dragged() || (session.b_aim() - self.b).abs() > 1e-9
+            }
             _ => false,
         };
         if touches {
@@ -159,8 +161,11 @@ impl Intro {
         }
         let frame = session.frame();
         let done = match self.hint {
-            0 => matches!(command, Command::Session(SessionCommand::Edit(Edit::DragTarget { .. }))) && session.is_led(),
-            1 => session.is_led() && frame.target.reach != Reach::Inside,
+            0 => {
+                matches!(command, Command::Session(SessionCommand::Edit(Edit::DragTarget { .. })))
+                    && session.is_dragged()
+            }
+            1 => session.is_dragged() && frame.target.reach != Reach::Inside,
             2 => (session.b_aim() - self.b).abs() > 0.05,
             _ => false,
         };
@@ -179,7 +184,7 @@ impl Intro {
         let straight = self.straight.as_ref()?;
         let frame = straight.run.shown().next()?.1.at(now.time)?;
         let exaggeration = Exaggeration::Mount(MOUNT_COMPLIANCE);
-        let options = ViewOptions { theme, invites: false, exaggeration, ..Default::default() };
+        let options = ViewOptions { theme, show_hints: false, exaggeration, ..Default::default() };
         Some((frame, straight.stage.scene(frame, &options)))
     }
 
@@ -215,7 +220,8 @@ impl Intro {
     pub fn show_hint(
         &self,
         ctx: &egui::Context,
-        (rect, spoken_of): (egui::Rect, &[egui::Rect]),
+        rect: egui::Rect,
+        spoken_of: &[egui::Rect],
         session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,

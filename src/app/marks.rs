@@ -82,7 +82,7 @@ impl QuickQuery for MarksByTime {
     type Answer = Vec<TimelineMark>;
 
     fn answer(of: &MarksInput) -> Vec<TimelineMark> {
-        let gestures: Vec<Event> = of.gestures.answer().map_or_else(Vec::new, |all| all.told().collect());
+        let gestures: Vec<Event> = of.gestures.answer().map_or_else(Vec::new, |all| all.events().collect());
         let events = gestures.iter().chain(&*of.events.0).chain(&of.peak).filter(|event| event.step > 0);
         let event = |event: &Event| {
             let tone = if matches!(event.kind, EventKind::Peak | EventKind::Fault) { Tone::Peak } else { Tone::Event };

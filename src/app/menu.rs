@@ -22,7 +22,8 @@ struct About {
 pub fn show(
     response: &Response,
     session: &Session,
-    (hot, at): (Option<Handle>, Option<[f64; 2]>),
+    hot: Option<Handle>,
+    at: Option<[f64; 2]>,
     commands: &mut Vec<Command>,
 ) {
     let id = Id::unique("menu of the scene");
@@ -52,7 +53,7 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
     {
         entry(ui, &format!("Leave point {} out", task.name_of(i)), once(Edit::of("task", change)));
     }
-    if thing == Some(Handle::Target) && session.is_led() {
+    if thing == Some(Handle::Target) && session.is_dragged() {
         entry(ui, "Back to the path", vec![Command::Session(SessionCommand::BackToPath)]);
     }
     if thing == Some(Handle::Payload) {

@@ -1,5 +1,5 @@
-//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so that
-//! the picture stays smooth.
+//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so
+//! that the picture stays smooth.
 
 /// Measured playback rate and cost of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,7 +46,7 @@ impl PlaybackRate {
     /// * `simulated`: simulated time of its steps, s;
     /// * `steps`: number of steps;
     /// * `speed`: requested playback rate, simulated seconds per second.
-    pub fn count(&mut self, wall: f64, simulated: f64, steps: f64, speed: f64) {
+    pub fn record_repaint(&mut self, wall: f64, simulated: f64, steps: f64, speed: f64) {
         self.steps = steps;
         if wall <= 0.0 || wall > MAX_REPAINT_GAP_S {
             return;
@@ -60,7 +60,7 @@ impl PlaybackRate {
     }
 
     /// Records the wall time that the steps of the last repaint took, s.
-    pub fn took(&mut self, seconds: f64) {
+    pub fn record_cost(&mut self, seconds: f64) {
         if self.steps >= 1.0 {
             // A suspension of the program says nothing about its steps.
             let now = seconds.min(MAX_MEASURED_S) / self.steps;
@@ -69,12 +69,12 @@ impl PlaybackRate {
     }
 
     /// Restarts the average, because the run is paused.
-    pub fn rest(&mut self) {
+    pub fn restart(&mut self) {
         *self = Self { step_cost_s: self.step_cost_s, ..Self::default() };
     }
 
     /// Returns the playback rate, simulated seconds per second, if it lags behind the requested one.
-    pub fn behind(&self) -> Option<f64> {
+    pub fn lagging_rate(&self) -> Option<f64> {
         self.rate.filter(|_| self.lags)
     }
 }

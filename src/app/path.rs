@@ -59,7 +59,7 @@ fn choose<T: Choice>(
                 let mut change = TaskChange::from_iter([(key.to_owned(), Value::String(word.into()))]);
                 if word == "arc" && session.scenario().task.via.is_empty() {
                     // The arc passes through the middle of the present path.
-                    let p = session.run().on_path(0.5);
+                    let p = session.run().end_effector_on_path(0.5);
                     change.insert("via".into(), vec![vec![p.re, p.im]].into());
                 }
                 if key == "kind" {
@@ -176,7 +176,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
         // The new point lies on the path if possible, so that the machine can reach it.
-        let at = if all.len() == 2 { session.run().on_path(0.5) } else { middle };
+        let at = if all.len() == 2 { session.run().end_effector_on_path(0.5) } else { middle };
         change(commands, task.adding(at), false);
     }
 }
@@ -225,13 +225,15 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
 fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
-        TaskKind::Reactionless | TaskKind::Given if session.scenario().idle("task.posture").is_none() => {
+        TaskKind::Reactionless | TaskKind::Given
+            if session.scenario().condition_for_effect("task.posture").is_none() =>
+        {
             let width = ui.available_width() - 10.0;
             choose(ui, session, ("Freedoms left", "posture"), Posture::ALL, task.posture, width, commands);
             if let Some(drift) = plan.drift().next() {
                 note(ui, p, &format!("the drives end up to {} rad from where they began", signed(drift, 3)));
             }
-            if session.scenario().idle("task.orientation").is_none() {
+            if session.scenario().condition_for_effect("task.orientation").is_none() {
                 let machine = &session.scenario().machine;
                 let link = &machine.resolved_links()[machine.end_link()];
                 let turned = plan.motion.path.at(0.0).q[link.drive] + if link.sign < 0.0 { PI } else { 0.0 };
@@ -307,7 +309,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
-    if let Some((limit, factor)) = forecast.over {
+    if let Some((limit, factor)) = forecast.exceeded_limit {
         let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
         ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
     }
@@ -315,7 +317,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
     let waits = session.run().waiting().is_some();
-    let of = match (session.is_led(), ideal) {
+    let of = match (session.is_dragged(), ideal) {
         _ if waits => "the run waits, nothing is planned",
         (true, _) => "led by hand; the plan was",
         (false, true) => "planned",

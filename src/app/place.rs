@@ -17,7 +17,7 @@ struct Places {
     /// The object whose rows are marked, and the end of the mark, s; `None` until they are drawn.
     marked: Option<(Handle, Option<f64>)>,
     /// The object whose rows are under the pointer or have the keyboard focus.
-    lit: Option<Handle>,
+    panel_object: Option<Handle>,
 }
 
 fn id() -> Id {
@@ -69,13 +69,13 @@ pub fn open(ctx: &Context, thing: Handle, session: &Session) {
         {
             data.insert_temp(chosen_id(LINK_LIST), link.name.clone());
         }
-        data.insert_temp(id(), Places { marked: Some((thing, None)), lit: None });
+        data.insert_temp(id(), Places { marked: Some((thing, None)), panel_object: None });
     });
 }
 
 /// Takes the object whose rows are under the pointer or have the focus; to be called after all rows have been drawn.
 pub fn lit(ctx: &Context) -> Option<Handle> {
-    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit.take())
+    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).panel_object.take())
 }
 
 /// Key under which egui stores the links to light up, until the end of the pass.
@@ -95,7 +95,7 @@ pub fn lit_links(ctx: &Context) -> Vec<usize> {
 
 /// Lights up an object that a panel mentions.
 pub fn highlight(ctx: &Context, thing: Handle) {
-    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
+    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).panel_object = Some(thing));
 }
 
 /// Draws the rows of an object.
@@ -108,7 +108,7 @@ pub fn place_of_thing<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOn
     let alone = !matches!(thing, Handle::Joint(_));
     let over = ui.rect_contains_pointer(rect) || focused.is_some_and(|r| r.has_focus() && rect.contains_rect(r.rect));
     if alone && over {
-        ui.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
+        ui.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).panel_object = Some(thing));
     }
     let marked = ui.data(|data| data.get_temp::<Places>(id())).and_then(|places| places.marked);
     if let Some((_, until)) = marked.filter(|(of, _)| *of == thing) {

@@ -85,12 +85,11 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                 let size = vec2(BUTTON_SIZE_PT.x, VIEW_BUTTON_HEIGHT_PT);
                 if let Err(why) = Views::has(view, session.run()) {
                     let tip = format!("Not of this machine: {why}");
-                    word_without(ui, &p, (view.name(), &tip), size);
+                    word_without(ui, &p, view.name(), &tip, size);
                     continue;
                 }
                 let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower"));
-                let word = (view.name(), tip.as_str());
-                if word_button(ui, &p, word, view_state.view == view, size).clicked() {
+                if word_button(ui, &p, view.name(), &tip, view_state.view == view, size).clicked() {
                     commands.push(ViewChange::Kind(view).into());
                 }
             }
@@ -107,7 +106,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                 commands.push(ViewChange::Fit.into());
             }
             arrangement::show(ui, view_state, size, commands);
-            history::show(ui, (session, branches), view_state, size, commands);
+            history::show(ui, session, branches, view_state, size, commands);
         });
     });
 }

@@ -112,7 +112,7 @@ fn pose_constant(
     // The knob stops where b stops; it does not jump to the other end.
     let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
         Edit::PoseB { b } if b != turns + asked => {
-            session.serving_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
+            session.nearest_feasible_b_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
         }
         _ => asked,
     };
@@ -121,9 +121,9 @@ fn pose_constant(
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
-    let serving = session.run().bands();
+    let serving = session.run().feasible_b();
     if typed && stops {
-        let band = serving.map_or_else(String::new, |common| common.near(shown).in_words());
+        let band = serving.map_or_else(String::new, |common| common.shifted_near(shown).in_words());
         let who = all_points(session);
         commands.push(
             WindowCommand::Refuse(format!(
@@ -134,7 +134,7 @@ fn pose_constant(
     } else {
         send(commands, &responses, || edit);
     }
-    if session.is_led() {
+    if session.is_dragged() {
         ui.horizontal(|ui| {
             ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -147,19 +147,19 @@ fn pose_constant(
         });
     } else {
         let who = all_points(session);
-        let text = match session.run().bands() {
+        let text = match session.run().feasible_b() {
             // Two drives reach a point at single values of b.
             Some(common) if !map.reaches_area() => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
                 format!("{who}: b {} rad alone", all.join(" or "))
             }
-            Some(common) => format!("{who}: {}", common.near(shown).in_words()),
+            Some(common) => format!("{who}: {}", common.shifted_near(shown).in_words()),
             None => format!("{who} share no b"),
         };
         note(ui, p, &text);
     }
-    if !session.is_led() && map.reaches_area() {
+    if !session.is_dragged() && map.reaches_area() {
         let who = all_points(session);
         let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
@@ -198,7 +198,7 @@ fn pose_constant(
 fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let frame = session.frame();
     // After a drag of the machine, the requested target, so that a coordinate that is not typed keeps its value.
-    let at = if session.is_led() { frame.target.at } else { target_handle(frame) };
+    let at = if session.is_dragged() { frame.target.at } else { target_handle(frame) };
     let mut place = [at.re, at.im];
     ui.horizontal(|ui| {
         let tip = "Where the end effector is sent; typed or dragged, here or in the scene, the machine follows with b as \

@@ -1,6 +1,6 @@
 //! The [`AppState`]: a session, its view state, and the execution of commands. Every window, test and figure has one.
 
-mod beside;
+mod background;
 mod carry_out;
 mod changing;
 mod designing;
@@ -100,7 +100,7 @@ impl AppState {
             has_fonts: false,
             focuses_search: false,
         };
-        app_state.foresee();
+        app_state.run_ahead();
         app_state
     }
 
@@ -123,7 +123,7 @@ impl AppState {
 
     /// Offers to recover a session left by an earlier program run: its file, and when it was written, in words.
     #[must_use]
-    pub fn finding(mut self, left: Option<(PathBuf, String)>) -> Self {
+    pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
         self.saving.found = left;
         self
     }
@@ -131,7 +131,7 @@ impl AppState {
     /// Sets the worker threads for work in the background.
     #[must_use]
     pub fn with_workers(mut self, workers: impl Workers + Send + Sync + 'static) -> Self {
-        self.background.hire(workers);
+        self.background.set_workers(workers);
         self
     }
 
@@ -220,7 +220,8 @@ impl AppState {
     /// Whether a change is being made in the background that the count of changes does not contain yet.
     fn is_making(&self) -> bool {
         let change = self.background.change.as_ref();
-        change.is_some_and(|(change, _)| !matches!(change, SessionChange::Seek(_))) || !self.background.later.is_empty()
+        change.is_some_and(|(change, _)| !matches!(change, SessionChange::Seek(_)))
+            || !self.background.waiting_commands.is_empty()
     }
 
     /// Whether the window is to close.
@@ -244,7 +245,7 @@ impl AppState {
     }
 
     /// Shows the outcome of a command as the message.
-    pub(super) fn tell(&mut self, said: Result<Option<String>, String>) {
+    pub(super) fn show_outcome(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
             Ok(Some(news)) => self.view_state.said.message = Some((news, false)),
@@ -278,7 +279,7 @@ impl AppState {
     pub fn forget(&mut self) {
         self.queries().forget_all();
         self.session.run().queries().forget_all();
-        self.foresee();
+        self.run_ahead();
         self.refresh();
     }
 

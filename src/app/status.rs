@@ -60,7 +60,7 @@ pub fn news(
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
             let remedy = view_state.said.refused.as_ref().and_then(|refused| refused.remedy.clone());
-            let mends = waits.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
+            let mends = waits.and_then(|waiting| waiting.why.feasible_b().zip(waiting.why.displayed_b()));
             let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
@@ -80,7 +80,7 @@ fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
     for figure in frame.audit.figures(&frame.peaks, &frame.totals) {
-        let good = figure.is_good();
+        let good = figure.is_within_tolerance();
         let (dot, response) = ui.allocate_exact_size(vec2(12.0, 18.0), Sense::hover());
         let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });
         ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
@@ -110,7 +110,7 @@ fn power(x: f64) -> String {
 
 /// Returns the warning of a failed audit.
 fn fault(frame: &Frame) -> Option<String> {
-    let figure = frame.fault()?;
+    let figure = frame.first_violation()?;
     let limit = figure.limit.unwrap_or_default();
     Some(format!(
         "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
@@ -238,7 +238,7 @@ pub fn show(
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)
                     }
-                    (None, Reach::Outside { mending_b: Some(b), shown_b: Some(shown), .. }) => {
+                    (None, Reach::Outside { feasible_b: Some(b), displayed_b: Some(shown), .. }) => {
                         let way_out = ui.button(format!("go to b = {shown} rad"));
                         if way_out
                             .on_hover_text(
@@ -264,7 +264,7 @@ pub fn show(
                     (None, _) if session.run().waiting().is_some() => {
                         ("the run waits: change points, limits or b  ·  F1 keys".into(), p.ink)
                     }
-                    (None, _) if session.is_led() => {
+                    (None, _) if session.is_dragged() => {
                         ("led by hand  ·  key B: back to the path  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if view_state.view.shows_machine() && session.run().pose_space().is_ok() => {

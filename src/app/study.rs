@@ -151,7 +151,7 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
                 // The defaults are written out with the first change, so that the others stay.
                 let mut change: TaskChange =
                     spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
-                change.insert(key.clone(), spread.with(amount).to_value());
+                change.insert(key.clone(), spread.with_amount(amount).to_value());
                 Edit::of("tolerance", change)
             });
         }

@@ -25,7 +25,7 @@ pub fn show(
 ) {
     let p = view_state.palette();
     let (mut time, length) = (session.frame().time, session.length().max(1e-3));
-    clock(ui, &p, (time, length), behind);
+    clock(ui, &p, time, length, behind);
     let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
     let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
     if again.show(ui, &p).clicked() {
@@ -60,7 +60,7 @@ pub fn show(
 }
 
 /// Draws the clock, and below it the playback rate if it lags.
-fn clock(ui: &mut Ui, p: &Palette, (time, length): (f64, f64), behind: Option<f64>) {
+fn clock(ui: &mut Ui, p: &Palette, time: f64, length: f64, behind: Option<f64>) {
     // A narrow window keeps the space for the slider.
     let text = match ui.available_width() > 290.0 {
         true => format!("{time:.3} / {length:.3} s"),

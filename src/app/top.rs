@@ -22,7 +22,8 @@ use stillbase_session::scenario::Scenario;
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    (facts, recent): (&ScenarioFacts<'_>, &[PathBuf]),
+    facts: &ScenarioFacts<'_>,
+    recent: &[PathBuf],
     line: (&Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,

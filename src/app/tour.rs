@@ -123,7 +123,7 @@ fn case(name: &str) -> Vec<Command> {
 
 /// Returns the button that opens the paper's machine, if the present one has no plane to drag on.
 fn paper_machine(session: &Session) -> Option<StepButton> {
-    let has_planes = session.run().planes().is_some() && session.follows_hands();
+    let has_planes = session.run().planes().is_some() && session.can_be_dragged();
     (!has_planes).then(|| ("Take the paper's machine", case("case-3")))
 }
 
@@ -135,7 +135,7 @@ const STEPS: [Step; 7] = [
         exercise: "Run the straight line to its end.",
         button: |_| Some(("Show me", case("case-1"))),
         done: |session, seen| {
-            let straight = session.scenario().task.kind == TaskKind::MinimumNorm && !session.is_led();
+            let straight = session.scenario().task.kind == TaskKind::MinimumNorm && !session.is_dragged();
             seen.ran && straight && session.frame().peaks.moment > FELT_ABOVE
         },
     },
@@ -177,7 +177,7 @@ const STEPS: [Step; 7] = [
         button: |_| Some(("Show me", case("case-3"))),
         done: |session, seen| {
             let verdict = Verdict::of(session.scenario(), session.frame());
-            seen.ran && verdict.moved && verdict.arm_moment < ZERO_BELOW_N_M && !session.is_led()
+            seen.ran && verdict.moved && verdict.arm_moment < ZERO_BELOW_N_M && !session.is_dragged()
         },
     },
     Step {

@@ -114,7 +114,7 @@ impl ViewState {
             ViewChange::Theme(theme) => self.arrangement.theme = theme,
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,
-            ViewChange::Fit => self.framing[self.view as usize] = Framing::Wanted,
+            ViewChange::Fit => self.framing[self.view as usize] = Framing::Pending,
             ViewChange::Look(look) => self.look(look),
             ViewChange::Drives(drives) => {
                 self.drives = drives;

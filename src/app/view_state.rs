@@ -6,7 +6,7 @@ use super::CameraMove;
 use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
-use super::said::StatusMessage;
+use super::status_message::StatusMessage;
 use stillbase_picture::charts::choice::PlotChoice;
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::camera::Camera;
@@ -22,20 +22,20 @@ use stillbase_study::front_point::FrontMeasure;
 pub enum Framing {
     /// To be framed in the next pass.
     #[default]
-    Wanted,
+    Pending,
     /// Framed to this content, in a scene of this size. A scene of another size is framed anew; motion of the content
     /// does not change the view.
-    Held(Arc<ViewContent>, [f32; 2]),
+    Framed(Arc<ViewContent>, [f32; 2]),
     /// Moved by the user.
-    Free,
+    Manual,
 }
 
 impl Framing {
     /// Requests a new framing after another session was opened or the machine changed, unless the user has moved the
     /// view.
     pub fn renew(&mut self) {
-        if matches!(self, Self::Held(..)) {
-            *self = Self::Wanted;
+        if matches!(self, Self::Framed(..)) {
+            *self = Self::Pending;
         }
     }
 }
@@ -158,7 +158,7 @@ impl ViewState {
 
     /// Returns the camera for a movement by the user.
     pub(super) fn camera_mut(&mut self) -> &mut Camera {
-        self.framing[self.view as usize] = Framing::Free;
+        self.framing[self.view as usize] = Framing::Manual;
         &mut self.cameras[self.view as usize]
     }
 }
@@ -169,6 +169,6 @@ pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };
     }
-    let stays = |b: f64| session.serving(b).unwrap_or(b);
-    Edit::PoseB { b: if session.is_led() || view_state.turn_task { b } else { stays(b) } }
+    let stays = |b: f64| session.nearest_feasible_b(b).unwrap_or(b);
+    Edit::PoseB { b: if session.is_dragged() || view_state.turn_task { b } else { stays(b) } }
 }

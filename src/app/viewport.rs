@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
 
 use super::card::Card;
-use super::hand::ScenePointer;
 use super::intro::Intro;
+use super::scene_pointer::ScenePointer;
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
@@ -53,7 +53,7 @@ pub fn show(
         let presents = view_state.arrangement.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
-        framing::keep_framed(rect, &covered, (session, views), || motion(session), view_state);
+        framing::keep_framed(rect, &covered, session, views, || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let exaggeration = Exaggeration::Times(exaggeration);
@@ -67,7 +67,7 @@ pub fn show(
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
-            menu::show(&response, session, (view_state.pointed.hot, at), commands);
+            menu::show(&response, session, view_state.pointed.object, at, commands);
             show_card(&response, session, views, view_state);
             // In the demonstration, a drag beside the machine does not move the view.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
@@ -77,24 +77,24 @@ pub fn show(
         let options = ViewOptions {
             theme: view_state.arrangement.theme,
             dexterity: view_state.dexterity,
-            hot: view_state
+            highlighted: view_state
                 .gesture
                 .grabbed
                 .map(|pick| pick.handle)
-                .or(view_state.pointed.hot)
-                .or(view_state.pointed.lit),
-            held: view_state.gesture.held,
+                .or(view_state.pointed.object)
+                .or(view_state.pointed.panel_object),
+            drag_position: view_state.gesture.position,
             preview_b: view_state.pointed.preview,
             stroke: drawn(&view_state.tool),
             refused: view_state.said.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
             others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
             exaggeration,
-            push: force(session),
+            external_force: force(session),
             pin_forces: view_state.pins,
             limits: true,
             shadows: view_state.view == ViewKind::Space,
-            invites: session.follows_hands(),
+            show_hints: session.can_be_dragged(),
             compares: both.is_none(),
             weights: chosen.to_vec(),
             links: view_state.pointed.lit_links.clone(),
@@ -107,7 +107,7 @@ pub fn show(
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
         words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
-        coordinates::show(ui, rect, (session, views), view_state, commands);
+        coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
         if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
             corner::recentre_button(ui, rect, view_state, commands);
@@ -123,7 +123,7 @@ pub fn show(
         }
         if let Some(intro) = intro {
             let spoken_of = spoken_of(&spot, views.stage(), &shown);
-            intro.show_hint(ui.ctx(), (rect, &spoken_of), session, view_state, commands);
+            intro.show_hint(ui.ctx(), rect, &spoken_of, session, view_state, commands);
         }
         rect
     });
@@ -157,7 +157,7 @@ fn motion(session: &Session) -> Vec<DriveAngles> {
 /// Returns poses at equal time intervals: of the plan, or of the run if the machine was dragged.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {
     let share = |i: usize| i as f64 / (SNAPSHOT_COUNT - 1) as f64;
-    if session.is_led() {
+    if session.is_dragged() {
         let frames = session.frames();
         let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
         return (0..SNAPSHOT_COUNT).map(at).collect();
@@ -192,7 +192,7 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
     }
     let listed = egui::Popup::is_any_open(ctx);
     let quiet = view_state.gesture.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
-    let Some(thing) = view_state.pointed.hot.filter(|_| quiet) else {
+    let Some(thing) = view_state.pointed.object.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
         return;
     };

@@ -1,15 +1,15 @@
 //! A desktop window around an [`AppState`].
 
+mod app;
 mod chooser;
 mod error;
-mod guest;
 mod keeper;
 mod screen;
 mod shell;
 mod times;
 
+pub use app::{App, Clock};
 pub use error::WindowError;
-pub use guest::{App, Clock};
 
 use crate::jobs::Threads;
 use crate::{AppState, Preferences, SessionCommand};
@@ -28,7 +28,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
         .with_workers(Threads::Background)
         .with_preferences(&liked)
-        .finding(keeper::found());
+        .offering_recovery(keeper::found());
     if app_state.view_state().said.message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(SessionCommand::TogglePlay);
     }

@@ -163,8 +163,8 @@ impl ExportArguments {
             let t = if i == spaces { whole } else { i as f64 / self.rate };
             let r = motion.at(t);
             let e = r.q.units();
-            let torque = model.motors().torques(&inverse(&model, &e, &r.qd, &r.qdd, &around));
-            let p = run.place(&r.q);
+            let torque = model.motors().motor_torques(&inverse(&model, &e, &r.qd, &r.qdd, &around));
+            let p = run.end_effector_at(&r.q);
             // Zeros without a sign.
             let all = r.q.iter().chain(r.qd.iter()).chain(r.qdd.iter()).chain(torque.iter()).map(|x| x + 0.0);
             std::iter::once(t).chain(all).chain([p.re, p.im, lambda.dot(&r.q)]).collect()
@@ -208,7 +208,7 @@ impl ExportArguments {
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
         let last = run.frame();
-        Ok((rows, last.time, last.fault().map(|lamp| lamp.to_string())))
+        Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string())))
     }
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {

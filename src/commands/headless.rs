@@ -102,7 +102,7 @@ impl From<Recording> for Row {
             peak_base_moment: recording.peak_base_moment,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
-            over: recording.verdict.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            over: recording.verdict.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
             statements: recording.statements,

@@ -183,7 +183,7 @@ pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Fa
 
 /// Prints which keys of a scenario have no effect.
 pub fn report_idle(scenario: &Scenario) {
-    for (path, want) in scenario.idle_keys() {
+    for (path, want) in scenario.ineffective_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }
 }
@@ -203,7 +203,7 @@ pub fn overlay_used(scenario: Scenario, settings: &Settings) -> Result<Scenario,
 /// # Errors
 /// If there is no such setting, or the result is not valid.
 pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = scenario.with(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
+    let scenario = scenario.with_settings(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
     Ok(scenario)
 }
@@ -215,7 +215,7 @@ pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scena
 pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT_WORD, Key::NONE].contains(&word));
-        if let Some(want) = scenario.idle(&path).filter(|_| !freed) {
+        if let Some(want) = scenario.condition_for_effect(&path).filter(|_| !freed) {
             return Err(no_use(&path, want).of("--set"));
         }
     }
@@ -233,7 +233,7 @@ pub fn no_use(what: &str, want: &str) -> Failure {
 /// If there is no such key, or its value is out of range.
 pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), Failure> {
     if !change.is_empty() {
-        let task = scenario.task.with(change, &scenario.machine);
+        let task = scenario.task.with_change(change, &scenario.machine);
         scenario.task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
         scenario.check("task")?;
     }

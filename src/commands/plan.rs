@@ -149,7 +149,7 @@ impl PlanArguments {
             (self.blend.is_some(), "blend"),
             (self.time.is_some(), "time"),
         ] {
-            if let Some(want) = scenario.idle(&format!("task.{key}")).filter(|_| given) {
+            if let Some(want) = scenario.condition_for_effect(&format!("task.{key}")).filter(|_| given) {
                 let option = if key == "from" { "X,Y".into() } else { format!("--{}", key.replace('_', "-")) };
                 return Err(no_use(&option, want));
             }

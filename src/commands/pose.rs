@@ -69,8 +69,8 @@ impl PoseArguments {
             Err(reason) => Unreachable::Anywhere { x, y, reason },
             Ok(set) => {
                 let nearest_b = set.nearest(self.b);
-                let shown_b = nearest_b.and_then(|b| set.decimal(b, 4));
-                Unreachable::OnThisPlane { x, y, b, would_do: set.in_words(), nearest_b, shown_b }
+                let displayed_b = nearest_b.and_then(|b| set.decimal(b, 4));
+                Unreachable::OnThisPlane { x, y, b, would_do: set.in_words(), nearest_b, displayed_b }
             }
         }
     }

@@ -166,7 +166,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, qd: &PerDr
     let (small, v) = assemble::<N>(inertia, leading_entries(e), leading_entries(qd.padded()));
     let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
     h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
-    (MassMatrix { n: N, h, taken_up: inertia.taken_up }, v.into())
+    (MassMatrix { n: N, h, taken_up: inertia.stator_reaction }, v.into())
 }
 
 /// Returns the mass matrix H, kg m², and the velocity terms V, N m, from unit vectors e(q_k) and rates, rad/s.
@@ -178,7 +178,7 @@ pub fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N
         h[k][k] = inertia.c[k][k].re + inertia.spin[k];
         for l in k + 1..N {
             let z = inertia.c[k][l] * (e[k].conj() * e[l]);
-            let coupled = z.re + inertia.gears[k][l];
+            let coupled = z.re + inertia.rotor_coupling[k][l];
             h[k][l] = coupled;
             h[l][k] = coupled;
             v[k] -= z.im * (qd[l] * qd[l]);
@@ -297,7 +297,7 @@ pub fn base_wrench(
 /// Returns the rate of the angular momentum about B, d/dt (D q̇), N m, from H q̈, V and q̈.
 #[inline(always)]
 pub fn angular_rate<const N: usize>(inertia: &Inertia, inertial: &[f64; N], v: &[f64; N], qdd: &[f64; N]) -> f64 {
-    (0..N).map(|k| inertial[k] + v[k] + inertia.taken_up[k] * qdd[k]).sum()
+    (0..N).map(|k| inertial[k] + v[k] + inertia.stator_reaction[k] * qdd[k]).sum()
 }
 
 /// Returns what the base feels, force in N and moment about B in N m, at one state of motion.

@@ -71,7 +71,7 @@ pub fn minimum_norm_held(
     v: Vector,
     vd: Vector,
 ) -> Option<(PerDrive, PerDrive)> {
-    minimum_norm_with(tip, (lambda, 0.0), |_| PerDrive::zeros(lambda.len()), e, v, vd)
+    minimum_norm_with(tip, lambda, 0.0, |_| PerDrive::zeros(lambda.len()), e, v, vd)
 }
 
 /// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, and satisfy `extra` · q̇ =
@@ -79,7 +79,8 @@ pub fn minimum_norm_held(
 /// its time derivative for given rates. `None` where the matrix is rank deficient.
 pub fn minimum_norm_with(
     tip: &Chain,
-    (extra, rate): (&PerDrive, f64),
+    extra: &PerDrive,
+    rate: f64,
     extra_rate: impl Fn(&PerDrive) -> PerDrive,
     e: &UnitVectors,
     v: Vector,

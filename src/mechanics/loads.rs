@@ -33,7 +33,7 @@ impl Loads {
         let n = inertia.drives();
         Self {
             mass_matrix: (0..n).map(|k| (0..n).map(|l| h.get(k, l)).collect()).collect(),
-            torque: inertia.motors().torques(&torque).to_vec(),
+            torque: inertia.motors().motor_torques(&torque).to_vec(),
             base_force: [total.force.re, total.force.im],
             base_moment: total.moment,
             com: [com.re, com.im],

@@ -27,15 +27,15 @@ pub struct Chart {
     /// Paths of signals, or of groups of signals.
     pub signals: &'static [&'static str],
     /// Smallest range; half of it if the range is centred on zero. In the unit of the values given to [`Chart::range`].
-    pub least: f64,
+    pub min_range: f64,
     /// Whether the range is symmetric about zero.
     pub centred: bool,
     /// Factor from SI values to the unit of the window.
-    pub times: f64,
+    pub scale: f64,
     /// Where the chart is shown.
     pub place: ChartPlace,
     /// Whether a recording overlays all its cases in this chart.
-    pub compared: bool,
+    pub is_overlaid: bool,
 }
 
 /// Where a chart is shown.
@@ -54,38 +54,57 @@ pub const EMPTY_CHART: Chart = Chart {
     title: "",
     unit: "",
     signals: &[],
-    least: 0.1,
+    min_range: 0.1,
     centred: true,
-    times: 1.0,
+    scale: 1.0,
     place: ChartPlace::Beside,
-    compared: false,
+    is_overlaid: false,
 };
 
 const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..EMPTY_CHART };
-const MOMENT: Chart =
-    Chart { title: "Base moment", unit: "N m", signals: &["moment/total"], least: 0.5, compared: true, ..EMPTY_CHART };
+const MOMENT: Chart = Chart {
+    title: "Base moment",
+    unit: "N m",
+    signals: &["moment/total"],
+    min_range: 0.5,
+    is_overlaid: true,
+    ..EMPTY_CHART
+};
 /// Moment that the machine transmits, and the moment that reaches the base after its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 const FORCE: Chart =
-    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], least: 0.5, ..EMPTY_CHART };
-const BASE: Chart =
-    Chart { title: "Base", unit: "mm, mrad", signals: &["base", "attitude"], least: 0.01, times: 1e3, ..EMPTY_CHART };
-const FRICTION: Chart = Chart { title: "Friction", unit: "N m", signals: &["friction"], least: 0.01, ..EMPTY_CHART };
+    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], min_range: 0.5, ..EMPTY_CHART };
+const BASE: Chart = Chart {
+    title: "Base",
+    unit: "mm, mrad",
+    signals: &["base", "attitude"],
+    min_range: 0.01,
+    scale: 1e3,
+    ..EMPTY_CHART
+};
+const FRICTION: Chart =
+    Chart { title: "Friction", unit: "N m", signals: &["friction"], min_range: 0.01, ..EMPTY_CHART };
 const PINS: Chart = Chart {
     title: "Pin forces",
     unit: "N",
     signals: &["pin/worst"],
-    least: 1.0,
+    min_range: 1.0,
     centred: false,
     place: ChartPlace::Pins,
     ..EMPTY_CHART
 };
 const ANGLES: Chart =
-    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], least: 0.5, centred: false, ..EMPTY_CHART };
-const POSE: Chart =
-    Chart { title: "Pose constant", unit: "rad", signals: &["pose/b"], centred: false, compared: true, ..EMPTY_CHART };
+    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], min_range: 0.5, centred: false, ..EMPTY_CHART };
+const POSE: Chart = Chart {
+    title: "Pose constant",
+    unit: "rad",
+    signals: &["pose/b"],
+    centred: false,
+    is_overlaid: true,
+    ..EMPTY_CHART
+};
 const INSIDE: Chart = Chart { place: ChartPlace::Inside, centred: false, ..EMPTY_CHART };
-const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], least: 1.0, ..INSIDE };
+const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], min_range: 1.0, ..INSIDE };
 const TILT: Chart = Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], centred: true, ..INSIDE };
 const TRANSMISSION: Chart =
     Chart { title: "Transmission |sin(q_k − q_l)|", unit: "1", signals: &["transmission"], ..INSIDE };
@@ -123,7 +142,7 @@ impl Chart {
 
     /// Returns the SI unit of the values; empty if dimensionless.
     pub fn si_unit(&self) -> String {
-        match (self.times == 1.0, self.unit) {
+        match (self.scale == 1.0, self.unit) {
             (_, "1") => String::new(),
             (true, unit) => unit.into(),
             // Every scaled chart is in thousandths.
@@ -132,17 +151,18 @@ impl Chart {
     }
 
     /// Returns bounds of the axis, rounded outwards about the values from `low` to `high`. Rounded bounds seldom change
-    /// as values arrive. The range is never smaller than `least`, so that rounding noise does not look like a signal.
+    /// as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like a
+    /// signal.
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         if self.centred {
-            let most = round_up(low.abs().max(high.abs()).max(self.least));
-            let most = if most.is_finite() { most } else { self.least };
+            let most = round_up(low.abs().max(high.abs()).max(self.min_range));
+            let most = if most.is_finite() { most } else { self.min_range };
             return [-most, most];
         }
         if !(low.is_finite() && high.is_finite()) {
             return [0.0, 1.0];
         }
-        let step = round_up((high - low).max(self.least) / 2.0);
+        let step = round_up((high - low).max(self.min_range) / 2.0);
         let bottom = (low / step).floor() * step;
         let count = ((high - bottom) / step).ceil().max(1.0);
         [bottom, bottom + count * step]

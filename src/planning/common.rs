@@ -98,14 +98,16 @@ pub fn unreachable_reason(space: &PoseSpace, points: &[Vector], i: usize, b: f64
         (Some(common), _) => {
             let serves = |b: f64| points.iter().all(|p| space.reaches(*p, b));
             let nearest = common.nearest(b);
-            let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.inwards(b, share)));
+            let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.moved_inside(b, share)));
             let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
-            let shown_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
-            Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, shown_b }
+            let displayed_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
+            Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, displayed_b }
         }
         (None, Some(why)) => Unreachable::NoCommonPlane(why),
         // Another point cannot be reached at any b.
-        (None, None) => Unreachable::OnThisPlane { x, y, b, would_do: own.in_words(), nearest_b: None, shown_b: None },
+        (None, None) => {
+            Unreachable::OnThisPlane { x, y, b, would_do: own.in_words(), nearest_b: None, displayed_b: None }
+        }
     }
 }
 
@@ -198,7 +200,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
 fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointCorrection) -> Option<PointCorrection> {
     let from = points[mend.point];
     let shared = |to: Vector| {
-        let set = BSet::overlap(&[others.clone(), set_of(space, to).ok()?]).near(mend.b);
+        let set = BSet::overlap(&[others.clone(), set_of(space, to).ok()?]).shifted_near(mend.b);
         let gap = |[low, high]: &[f64; 2]| (mend.b - 0.5 * (low + high)).abs();
         set.intervals.into_iter().min_by(|x, y| gap(x).total_cmp(&gap(y)))
     };

@@ -27,7 +27,7 @@ pub struct Forecast {
     /// Root mean square of the dynamic |f_B|, N.
     pub force_rms: f64,
     /// The drive limit that is exceeded by the largest factor, and that factor; `None` if all are kept.
-    pub over: Option<(DriveLimit, f64)>,
+    pub exceeded_limit: Option<(DriveLimit, f64)>,
     /// Least and greatest b during the motion, rad.
     pub b: [f64; 2],
     /// Mean of b over time, rad.
@@ -60,14 +60,16 @@ impl Forecast {
 
     /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
     pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, instants: usize) -> Self {
-        Self::at_while(motion, (model, around, limits), instants, &mut |_| true)
+        Self::at_while(motion, model, around, limits, instants, &mut |_| true)
     }
 
     /// Returns the same forecast, with progress reported to `goes_on`. If `goes_on` returns false, the computation
     /// stops and the result is to be discarded.
     pub fn at_while(
         motion: &Motion,
-        (model, around, limits): (&Inertia, &Surroundings, &DriveLimits),
+        model: &Inertia,
+        around: &Surroundings,
+        limits: &DriveLimits,
         instants: usize,
         goes_on: ProgressCallback<'_>,
     ) -> Self {
@@ -82,7 +84,7 @@ impl Forecast {
             moment_rms: 0.0,
             force: 0.0,
             force_rms: 0.0,
-            over: None,
+            exceeded_limit: None,
             b: [f64::INFINITY, f64::NEG_INFINITY],
             b_mean: 0.0,
             b_start: lambda.dot(&motion.at(0.0).q),
@@ -99,7 +101,8 @@ impl Forecast {
             let r = motion.at((i as f64 + 0.5) * dt);
             let (torque, wrench) = inverse_with_wrench(model, &r.q.units(), &r.qd, &r.qdd, around);
             let motors = model.motors();
-            let (torque, rate, acceleration) = (motors.torques(&torque), motors.turns(&r.qd), motors.turns(&r.qdd));
+            let (torque, rate, acceleration) =
+                (motors.motor_torques(&torque), motors.to_motors(&r.qd), motors.to_motors(&r.qdd));
             let most = |most: &mut PerDrive, x: &PerDrive| {
                 most.iter_mut().zip(x.iter()).for_each(|(m, x)| *m = m.max(x.abs()));
             };
@@ -113,8 +116,8 @@ impl Forecast {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;
                     // Excess within rounding is ignored.
-                    if factor > EXCEEDED_ABOVE && sum.over.is_none_or(|(_, most)| factor > most) {
-                        sum.over = Some((DriveLimit { quantity, drive }, factor));
+                    if factor > EXCEEDED_ABOVE && sum.exceeded_limit.is_none_or(|(_, most)| factor > most) {
+                        sum.exceeded_limit = Some((DriveLimit { quantity, drive }, factor));
                     }
                 }
             }

@@ -29,7 +29,7 @@ impl Motion {
     /// one.
     pub fn kinks(&self) -> Vec<f64> {
         let mut all = self.profile.kinks();
-        all.extend(self.path.kinks().into_iter().map(|s| self.profile.when(s)));
+        all.extend(self.path.kinks().into_iter().map(|s| self.profile.time_at(s)));
         all.sort_by(f64::total_cmp);
         all.dedup();
         all

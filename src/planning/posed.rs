@@ -66,7 +66,7 @@ pub fn poses_of_points(space: &PoseSpace, points: &[Vector], b: f64) -> Result<V
         }
         return Ok(served);
     };
-    let poses: Vec<Vec<PerDrive>> = points.iter().map(|p| space.sheets(*p, b)).collect();
+    let poses: Vec<Vec<PerDrive>> = points.iter().map(|p| space.representative_poses(*p, b)).collect();
     let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
     let det = |a: &PerDrive| planes.map().det([a[0], a[1]]);
     // For each point, the pose nearest to the previous one, optionally only among those on the sheet of the first.
@@ -89,7 +89,7 @@ pub fn poses_of_points(space: &PoseSpace, points: &[Vector], b: f64) -> Result<V
 pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Option<[PoseAngles; 2]> {
     let pairs: Vec<([PoseAngles; 2], f64)> = match space.planes() {
         Ok(_) => {
-            let [starts, ends] = [0, 1].map(|i| space.sheets(points[i], b[i]));
+            let [starts, ends] = [0, 1].map(|i| space.representative_poses(points[i], b[i]));
             let pair = |x: PerDrive, y: PerDrive| {
                 ([PoseAngles::lifted(space, x, b[0]), PoseAngles::lifted(space, y, b[1])], across(&x, &y))
             };
@@ -123,7 +123,7 @@ pub fn carried_points(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]
         // Second try slightly inside the interval, where rounding does not make the pose infeasible.
         let nearest = shared.nearest(new)?;
         let served = poses_of_points(space, points, nearest)
-            .or_else(|_| poses_of_points(space, points, shared.inwards(nearest, 1e-9)))
+            .or_else(|_| poses_of_points(space, points, shared.moved_inside(nearest, 1e-9)))
             .ok()?;
         Some(served.iter().map(|pose| space.forward(&pose.a, new)).collect())
     };

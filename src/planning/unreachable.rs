@@ -34,7 +34,7 @@ pub enum Unreachable {
         /// The feasible b nearest to the given one, rad.
         nearest_b: Option<f64>,
         /// That b as displayed: rounded to a value that is still feasible.
-        shown_b: Option<Decimal>,
+        displayed_b: Option<Decimal>,
     },
     /// Each point can be reached at some b, but no single b reaches all of them.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]

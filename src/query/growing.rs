@@ -1,5 +1,5 @@
-//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead of being
-//! derived again.
+//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead
+//! of being derived again.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -25,10 +25,10 @@ pub trait IncrementalQuery: Clone + Send + Sync + 'static {
     fn take(&mut self, items: &[Self::Item]);
 
     /// Goes back to the answer for the first `count` items, or for fewer.
-    fn cut(&mut self, count: usize);
+    fn truncate(&mut self, count: usize);
 
     /// Changes to another input. An implementation may keep everything that both inputs share.
-    fn turn_to(&mut self, input: &Self::Input) {
+    fn set_input(&mut self, input: &Self::Input) {
         *self = Self::begin(input);
     }
 }
@@ -100,11 +100,11 @@ impl<G: IncrementalQuery> IncrementalState<G> {
         let kept = items.revision().kept_of(&self.of).min(items.len());
         self.of = items.revision().mark();
         if self.answer.count() > kept {
-            self.change().cut(kept);
+            self.change().truncate(kept);
         }
         if self.input != *input {
             self.input = input.clone();
-            self.change().turn_to(input);
+            self.change().set_input(input);
         }
         let mut remaining = at_most;
         loop {

@@ -8,24 +8,22 @@
 //! | input | a value: all that the answer depends on, and nothing else |
 //! | answer | shared, never changed |
 //! | [`Queries::ask`] | returns the answer at once |
-//! | [`Queries::ask_beside`] | returns the answer if it is known, else the last answer while work runs in the background |
+//! | [`Queries::ask_in_background`] | returns the answer if it is known, else the last answer while work runs in the background |
 //! | [`Queries::grow`] | extends the answer by the new items of a [`Sequence`], in portions |
 //!
 //! An answer depends on its input alone, because the work receives nothing else. Of several inputs requested one after
 //! the other, the newest counts: work on an older one stops, or ends first if it is short. Without threads the work is
 //! done in portions, one at each request.
 
-mod asked;
 mod growing;
 mod input;
 mod job;
 mod queries;
+mod query_result;
 mod question;
 mod sequence;
 mod slot;
 
-#[doc(hidden)]
-pub use asked::{QueryResult, QueryStatus};
 #[doc(hidden)]
 pub use growing::{IncrementalAnswer, IncrementalQuery, answer_sequence};
 pub use input::{ByIdentity, Shared};
@@ -34,6 +32,8 @@ pub use job::{InlineWorkers, Job, Poll, ShortJobs, Ticket, Work, Workers};
 pub use queries::Queries;
 #[doc(hidden)]
 pub use queries::WeakQueries;
+#[doc(hidden)]
+pub use query_result::{QueryResult, QueryStatus};
 #[doc(hidden)]
 pub use question::part;
 pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now};

@@ -6,9 +6,9 @@ use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use super::asked::QueryResult;
 use super::growing::{IncrementalAnswer, IncrementalAnswers, IncrementalQuery, IncrementalState};
 use super::job::{InlineWorkers, Workers};
+use super::query_result::QueryResult;
 use super::question::{Query, answer_now};
 use super::sequence::Sequence;
 use super::slot::{AnySlot, RunningWork, Slot};
@@ -86,7 +86,7 @@ impl Queries {
     }
 
     /// Sets the workers that run background work from now on.
-    pub fn hire(&self, workers: Arc<dyn Workers + Send + Sync>) {
+    pub fn set_workers(&self, workers: Arc<dyn Workers + Send + Sync>) {
         self.execution().workers = Some(workers);
     }
 
@@ -96,7 +96,7 @@ impl Queries {
     }
 
     /// Sets the callback for the end of background work.
-    pub fn wakes(&self, wake: impl Fn() + Send + Sync + 'static) {
+    pub fn on_finished(&self, wake: impl Fn() + Send + Sync + 'static) {
         self.execution().wake = Some(Arc::new(wake));
     }
 
@@ -118,7 +118,7 @@ impl Queries {
 
     /// Returns the answer if it is cached. If not, starts or continues background work and returns the last answer
     /// meanwhile.
-    pub fn ask_beside<Q: Query>(&self, input: &Q::Input) -> QueryResult<Q::Answer> {
+    pub fn ask_in_background<Q: Query>(&self, input: &Q::Input) -> QueryResult<Q::Answer> {
         if let Some(replaced) = self.slot::<Q, _>(|slot| slot.replaced_by(input)) {
             let (workers, wake) = {
                 let execution = self.execution();

@@ -9,7 +9,7 @@ pub trait Query: Send + Sized + 'static {
 
     /// Whether work under way runs to its end although another input has been requested meanwhile. Short work does, so
     /// that answers keep coming while the input changes continuously.
-    const ENDS: bool = false;
+    const RUNS_TO_END: bool = false;
 
     /// Returns the work for an input, not yet started.
     fn begin(input: Self::Input) -> Self;
@@ -18,7 +18,8 @@ pub trait Query: Send + Sized + 'static {
     /// fraction done, from 0 to 1, and stops if it returns `false`.
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer>;
 
-    /// Drops those parts of a cached input that are not compared: see [`IncrementalAnswer::let_go`](super::IncrementalAnswer::let_go).
+    /// Drops those parts of a cached input that are not compared: see
+    /// [`IncrementalAnswer::let_go`](super::IncrementalAnswer::let_go).
     fn let_go(_: &mut Self::Input) {}
 }
 
@@ -73,7 +74,7 @@ impl<Q: QuickQuery> Query for QuickWork<Q> {
     type Input = Q::Input;
     type Answer = Q::Answer;
 
-    const ENDS: bool = true;
+    const RUNS_TO_END: bool = true;
 
     fn begin(input: Q::Input) -> Self {
         Self(input)

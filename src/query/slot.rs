@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use super::asked::{QueryResult, QueryStatus};
 use super::job::{Job, Poll, Workers};
+use super::query_result::{QueryResult, QueryStatus};
 use super::question::{Portion, Query};
 
 /// Cache slot of one query: the newest answer with its input, and the work under way.
@@ -159,7 +159,7 @@ impl<Q: Query> Slot<Q> {
     /// its end.
     pub fn replaced_by(&mut self, input: &Q::Input) -> Option<ReplacedWork<Q>> {
         self.collect();
-        let stays = |work: &mut RunningWork<Q>| Q::ENDS || work.of == *input;
+        let stays = |work: &mut RunningWork<Q>| Q::RUNS_TO_END || work.of == *input;
         let replaced = ReplacedWork::by_another(self.working.take_if(|work| !stays(work)));
         self.given_up = self.given_up.take().filter(|(of, _)| of == input);
         let known = self.known.as_ref().is_some_and(|(of, _)| of == input);

@@ -79,7 +79,7 @@ fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
     }
     for (chart, range) in &mut all {
         // Recordings hold SI values, also where the window shows thousandths.
-        let si = Chart { least: chart.least / chart.times, ..*chart };
+        let si = Chart { min_range: chart.min_range / chart.scale, ..*chart };
         let [low, high] = si.range(range[0], range[1]);
         let margin = 0.06 * (high - low);
         *range = [low - margin, high + margin];
@@ -124,7 +124,7 @@ impl Layout<'_> {
 
     /// Adds a container of tabs; `front` is the index of the active tab.
     fn tabs(&mut self, name: &str, parts: &[Part], front: usize) -> Result<Part, StoreError> {
-        self.parted(ContainerKind::Tabs, name, parts, (&[], front))
+        self.parted(ContainerKind::Tabs, name, parts, &[], front)
     }
 
     fn container(
@@ -134,7 +134,7 @@ impl Layout<'_> {
         parts: &[Part],
         shares: &[f32],
     ) -> Result<Part, StoreError> {
-        self.parted(kind, name, parts, (shares, 0))
+        self.parted(kind, name, parts, shares, 0)
     }
 
     /// Adds a container; `shares` are the relative sizes of its parts, `front` is the index of the active tab.
@@ -143,7 +143,8 @@ impl Layout<'_> {
         kind: ContainerKind,
         name: &str,
         parts: &[Part],
-        (shares, front): (&[f32], usize),
+        shares: &[f32],
+        front: usize,
     ) -> Result<Part, StoreError> {
         let parted: Vec<String> = parts.iter().map(|part| part.id.to_string()).collect();
         let words: Vec<&str> = parted.iter().map(String::as_str).collect();
@@ -200,7 +201,7 @@ impl Layout<'_> {
                 self.container(ContainerKind::Horizontal, "Pictures", &pictures, &vec![1.0; pictures.len()])?;
             top = self.container(ContainerKind::Tabs, "", &[top, pictures], &[])?;
         }
-        let compared: Vec<_> = self.charts.iter().filter(|(chart, _)| chart.compared).copied().collect();
+        let compared: Vec<_> = self.charts.iter().filter(|(chart, _)| chart.is_overlaid).copied().collect();
         let mut below = Vec::new();
         for (chart, range) in compared {
             below.push(self.compared(cases, &chart, range)?);

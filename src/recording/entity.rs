@@ -243,7 +243,8 @@ impl Entity {
     pub fn note(
         &mut self,
         store: &mut Store,
-        (at, since): (Instant, Option<Instant>),
+        at: Instant,
+        since: Option<Instant>,
         outer: &Rigid,
         eye: &Eye,
     ) -> Result<(), StoreError> {

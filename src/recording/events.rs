@@ -102,7 +102,7 @@ impl Events {
         all.iter().for_each(|event| self.add_event(event, dt));
         let torques: Vec<String> = peaks.torque.iter().map(|t| brief(*t)).collect();
         self.add(end, format!("peak |τ| {} N m", torques.join(", ")), TextLogLevel::INFO, self.palette.ink);
-        let (level, rgba) = match verdict.is_good() {
+        let (level, rgba) = match verdict.spares_base() {
             true => (TextLogLevel::INFO, self.palette.zero),
             false => (TextLogLevel::WARN, self.palette.reaction),
         };

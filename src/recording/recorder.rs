@@ -124,7 +124,7 @@ impl<'a> Recorder<'a> {
             edit => {
                 let plant = edit.part("plant");
                 let bars = plant.is_some_and(|plant| ["length", "link"].iter().any(|key| plant.contains_key(*key)));
-                bars || edit.sets_machine() || edit.sets(&["compare_b"]) || edit.leads()
+                bars || edit.sets_machine() || edit.sets(&["compare_b"]) || edit.is_drag()
             }
         };
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
@@ -135,7 +135,7 @@ impl<'a> Recorder<'a> {
             tower: forecast.tower.map(|eye| space("tower", eye)),
             trail: Thinned::new(1, MAX_TRAIL_POINTS),
             events: Events::new(prefix, palette),
-            options: ViewOptions { invites: false, scale: Some(*scale), ..ViewOptions::default() },
+            options: ViewOptions { show_hints: false, scale: Some(*scale), ..ViewOptions::default() },
             store,
             pictures,
             scenario,
@@ -186,7 +186,7 @@ impl<'a> Recorder<'a> {
     /// Updates the views; returns whether their constant parts have changed.
     fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
         let force = run.scenario().plant.force;
-        self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
+        self.options.external_force = Some(force).filter(|force| *force != [0.0; 2]);
         let queries = &self.forecast.queries;
         let made = Views::made(queries, run, Some(self.forecast.b));
         let views = Views::completed(&made, queries, run, None);

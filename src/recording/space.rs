@@ -118,7 +118,7 @@ impl RecordingSpace {
                 Some(pose)
             });
             let eye = self.eye;
-            self.entities[i].note(store, (at, since), &outer.unwrap_or(Rigid::IDENTITY), &eye)?;
+            self.entities[i].note(store, at, since, &outer.unwrap_or(Rigid::IDENTITY), &eye)?;
         }
         Ok(())
     }

@@ -55,7 +55,7 @@ impl Topic {
             let group = signal.group();
             let group = if group.starts_with("audit_") { "audit" } else { group };
             let of = TOPICS.iter().find(|(_, groups)| groups.contains(&group));
-            let is_compared = charts.iter().any(|chart| chart.compared && chart.signals[0] == signal.path);
+            let is_compared = charts.iter().any(|chart| chart.is_overlaid && chart.signals[0] == signal.path);
             let name = if is_compared { &signal.path } else { of.map_or(group, |(name, _)| name) }.to_owned();
             match topics.iter_mut().find(|topic| topic.name == name) {
                 Some(topic) => topic.signals.push(signal),

@@ -17,7 +17,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
         Edit::Push { x, y } => {
             scenario.plant.force = [*x, *y];
         }
-        Edit::Set { change } => scenario = scenario.with(change)?,
+        Edit::Set { change } => scenario = scenario.with_settings(change)?,
         Edit::PoseB { .. }
         | Edit::DragTarget { .. }
         | Edit::DragAngles { .. }
@@ -66,7 +66,7 @@ pub(super) fn task_at_b(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) 
 
 /// Returns the number of edits at step 0 before the first drag.
 pub(super) fn opening<'a>(script: impl IntoIterator<Item = &'a TimedEdit>) -> usize {
-    script.into_iter().take_while(|e| e.step == 0 && !e.edit.leads()).count()
+    script.into_iter().take_while(|e| e.step == 0 && !e.edit.is_drag()).count()
 }
 
 /// Returns the indices of the edits sorted by step; edits of one step keep their order.

@@ -69,7 +69,7 @@ impl DesignBrief {
         if !self.keep_balanced {
             return Ok(change.clone());
         }
-        let changed = machine.with(change).map_err(|why| why.to_string())?;
+        let changed = machine.with_settings(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
         let problem = self.free_numbers(&changed, start, &named);
         let kept = rebalance(&changed, &problem).map_err(|why| why.to_string())?;
@@ -169,7 +169,7 @@ impl DesignBrief {
         let drives = machine.spec().drives.iter().enumerate();
         let rotors = drives.filter_map(|(drive, of)| {
             let ends = *self.ratio.get(&of.name)?;
-            Some(FreeRotor { drive, free: RotorFreedom::Ratio(ends) })
+            Some(FreeRotor { drive, parameter: RotorFreedom::Ratio(ends) })
         });
         place_weights(machine, &CounterweightSpec { objective, rotors: rotors.collect(), ..self.weighing(machine) })
     }
@@ -206,7 +206,7 @@ pub fn length_edit(link: &Link, to: f64) -> Edit {
 /// # Errors
 /// If the brief cannot be changed so, or nothing balances the machine: what prevents it, and what would be feasible.
 pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
-    let next = scenario.with(change).map_err(|why| why.to_string())?;
+    let next = scenario.with_settings(change).map_err(|why| why.to_string())?;
     let begins = next.design.keep_balanced && !scenario.design.keep_balanced;
     if !begins || Inertia::of(&next.machine).is_balanced() {
         return Ok(Edit::Set { change: change.clone() });

@@ -38,7 +38,7 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<DesignVersion>, Refusal> {
     for (i, timed) in edits.iter().enumerate() {
         let Edit::Set { change } = &timed.edit else { continue };
         let of_machine: Table = change.clone().into_iter().filter(|(key, _)| is_of_machine(key)).collect();
-        now = now.with(&of_machine)?;
+        now = now.with_settings(&of_machine)?;
         if edits.get(i + 1).is_some_and(|next| is_dragged_on(timed, next, scenario.step)) {
             continue;
         }

@@ -90,7 +90,7 @@ impl Document {
             !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
-        let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
+        let run = replay::perform(&self.scenario, &self.script.to_vec(), end, patient, known, see)?;
         Ok(DocumentRun { run, frames, machines })
     }
 
@@ -114,7 +114,7 @@ impl Document {
         if let Some(change) = timed.edit.take("duration") {
             // A saved session stores its length as `duration`, so this setting changes the scenario and is not part of
             // the script.
-            if let Ok(scenario) = document.scenario.with(&change) {
+            if let Ok(scenario) = document.scenario.with_settings(&change) {
                 document.scenario = Arc::new(scenario);
             }
             if timed.edit.sets_nothing() {
@@ -123,10 +123,10 @@ impl Document {
         }
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
-        if timed.edit.sets_path() && document.script.is_led() {
+        if timed.edit.sets_path() && document.script.is_dragged() {
             // A new plan puts a dragged machine back on its path: edits that drag it are dropped, others go to step 0.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
-            for e in script.drain(..).filter(|e| !e.edit.leads()) {
+            for e in script.drain(..).filter(|e| !e.edit.is_drag()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
                     continue;
                 }
@@ -137,7 +137,7 @@ impl Document {
             document.end = 0;
         }
         // The edit goes before the first drag, so that a drag at step 0 starts from the pose that this edit gives.
-        let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
+        let place = script.iter().position(|e| e.step > 0 || e.edit.is_drag());
         let sets_no_key = timed.edit.part("task").is_some_and(toml::Table::is_empty);
         if !sets_no_key {
             script.insert(place.unwrap_or(script.len()), timed.clone());

@@ -170,13 +170,13 @@ impl Edit {
 
     /// Whether no frame depends on its settings; they then hold for the whole run.
     pub fn is_aside(&self) -> bool {
-        self.effect() == Effect::Aside
+        self.effect() == Effect::NoFrame
     }
 
     /// Returns the settings that it changes and on which no frame depends, if there are any.
     pub(super) fn asides(&self) -> Option<Self> {
         let change = self.settings()?;
-        let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::Aside;
+        let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::NoFrame;
         let change: Table = change.iter().filter(aside).map(|(part, value)| (part.clone(), value.clone())).collect();
         (!change.is_empty()).then_some(Self::Set { change })
     }
@@ -242,7 +242,7 @@ impl Edit {
     }
 
     /// Whether it drags the machine: by the target, the angles, a link, or the slider of b.
-    pub fn leads(&self) -> bool {
+    pub fn is_drag(&self) -> bool {
         matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::PullLink { .. } | Self::SlideB { .. })
     }
 

@@ -60,17 +60,17 @@ const AT_LIMIT_UNTIL: f64 = 0.98;
 pub fn gestures(edits: &[TimedEdit], step: f64) -> Vec<Event> {
     let mut order: Vec<&TimedEdit> = edits.iter().collect();
     order.sort_by_key(|timed| timed.step);
-    grouped(order, step).told().collect()
+    grouped(order, step).events().collect()
 }
 
 /// Returns the first gesture of edits in the order of steps.
 pub(super) fn first_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
-    grouped(edits.iter().copied(), step).told().next()
+    grouped(edits.iter().copied(), step).events().next()
 }
 
 /// Returns the last gesture of edits in the order of steps.
 pub(super) fn last_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
-    grouped(edits.iter().copied(), step).told().next_back()
+    grouped(edits.iter().copied(), step).events().next_back()
 }
 
 fn grouped<'a>(edits: impl IntoIterator<Item = &'a TimedEdit>, step: f64) -> Gestures {
@@ -91,7 +91,7 @@ pub struct Gestures {
 
 impl Gestures {
     /// Returns the gestures as events, in order.
-    pub fn told(&self) -> impl DoubleEndedIterator<Item = Event> {
+    pub fn events(&self) -> impl DoubleEndedIterator<Item = Event> {
         self.all.iter().map(|gesture| gesture.event(self.step))
     }
 
@@ -122,7 +122,7 @@ impl IncrementalQuery for Gestures {
         edits.iter().for_each(|timed| self.see(timed));
     }
 
-    fn cut(&mut self, count: usize) {
+    fn truncate(&mut self, count: usize) {
         while self.all.pop_if(|last| last.count > count).is_some() {
             self.all.extend(self.before.take());
         }
@@ -236,21 +236,21 @@ impl IncrementalQuery for EventLog {
         }
     }
 
-    fn cut(&mut self, count: usize) {
+    fn truncate(&mut self, count: usize) {
         if count < self.now.frames {
             self.now = if self.before.frames <= count { self.before } else { Seen::default() };
             Arc::make_mut(&mut self.events).truncate(self.now.events);
         }
     }
 
-    fn turn_to(&mut self, input: &Self::Input) {
+    fn set_input(&mut self, input: &Self::Input) {
         let (step, machines) = input;
         if self.step != *step {
             *self = Self::begin(input);
             return;
         }
         // There is a frame a step.
-        self.cut(usize::try_from(self.machines.differ_from(machines)).unwrap_or(usize::MAX));
+        self.truncate(usize::try_from(self.machines.differ_from(machines)).unwrap_or(usize::MAX));
         self.machines = machines.clone();
     }
 }
@@ -321,7 +321,7 @@ impl EventLog {
             (true, false) => self.add(step, EventKind::Note, "the reaction wheel gives what is wanted again"),
             _ => {}
         }
-        if let Some(fault) = (!self.now.faulty).then(|| frame.fault()).flatten() {
+        if let Some(fault) = (!self.now.faulty).then(|| frame.first_violation()).flatten() {
             self.now.faulty = true;
             let text = format!("audit failed: {} ({}) {:.1e} {}", fault.name, fault.meaning, fault.value, fault.unit);
             self.add(step, EventKind::Fault, text);
@@ -353,7 +353,7 @@ impl EventLog {
     /// Adds events at which the base begins to feel the arm or feels nothing again. `dt` is the step size, s.
     fn base(&mut self, frame: &Frame, dt: f64) {
         let [ever, of_late] = self.now.felt;
-        if !frame.base_feels_nothing() && !frame.peaks.base_feels_nothing() {
+        if !frame.is_base_unloaded() && !frame.peaks.is_base_unloaded() {
             self.now.quiet = None;
             self.now.felt = [true, true];
             match (ever, of_late) {
@@ -379,8 +379,8 @@ impl EventLog {
         let (text, kind) = match reach {
             Reach::Inside => ("the target is inside the reactionless workspace".into(), EventKind::Within),
             Reach::Carried => ("the target turns with the workspace".into(), EventKind::Within),
-            Reach::Outside { shown_b, .. } => {
-                let mend = shown_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it"));
+            Reach::Outside { displayed_b, .. } => {
+                let mend = displayed_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it"));
                 (format!("the target is outside the reactionless workspace: {mend}"), EventKind::Beyond)
             }
         };

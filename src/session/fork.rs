@@ -19,7 +19,7 @@ pub struct Fork {
 impl LeftBranch {
     /// Returns the difference between the branch and a run with other edits that ends at step `end`.
     pub(super) fn beside(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
-        Fork::of((&self.script.in_order(), self.end, self.script.is_led()), (edits, end), self.step)
+        Fork::of((&self.script.in_order(), self.end, self.script.is_dragged()), (edits, end), self.step)
     }
 }
 

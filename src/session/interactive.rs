@@ -47,7 +47,7 @@ pub struct Session {
     /// starts from it.
     unedited: Option<Run>,
     /// Number of branches made so far, and the title of the branch that the last of them has displaced.
-    partings: (u64, Option<String>),
+    branch_events: (u64, Option<String>),
 }
 
 impl Session {
@@ -125,7 +125,7 @@ impl Session {
     /// dragged machine it is that of the run.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
-        if self.is_led() { done } else { done.max(self.run.planned_time()) }
+        if self.is_dragged() { done } else { done.max(self.run.planned_time()) }
     }
 
     /// Returns the b to which a dragged machine moves, if the newest frame is on display, otherwise the reference b of
@@ -139,7 +139,7 @@ impl Session {
 
     /// Returns the pose constant nearest to `b`, rad, at which the points of the task stay where they are. Returns
     /// `None` if no b reaches all of them.
-    pub fn serving(&self, b: f64) -> Option<f64> {
+    pub fn nearest_feasible_b(&self, b: f64) -> Option<f64> {
         let task = &self.scenario().task;
         if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {
             // Samples of the drives have a b of their own.
@@ -147,33 +147,33 @@ impl Session {
         }
         // If each point is reached at a single b, points turn with b.
         let several = self.run.pose_space().is_ok_and(|space| space.reaches_area());
-        let common = if several { self.run.bands()? } else { return None };
+        let common = if several { self.run.feasible_b()? } else { return None };
         let nearest = common.nearest(b)?;
-        Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
+        Some(if nearest == b { b } else { common.moved_inside(nearest, 1e-6) })
     }
 
     /// Returns the pose constant nearest to `b` within a range, rad, at which the points of the task stay where they
-    /// are. Unlike [`serving`](Self::serving) it does not wrap around the period of b.
-    pub fn serving_within(&self, b: f64, [low, high]: [f64; 2]) -> Option<f64> {
-        if self.serving(b)? == b {
+    /// are. Unlike [`nearest_feasible_b`](Self::nearest_feasible_b) it does not wrap around the period of b.
+    pub fn nearest_feasible_b_within(&self, b: f64, [low, high]: [f64; 2]) -> Option<f64> {
+        if self.nearest_feasible_b(b)? == b {
             return Some(b);
         }
-        let common = self.run.bands()?;
+        let common = self.run.feasible_b()?;
         let turns = |from: f64| [-1.0, 0.0, 1.0].map(|turn| from + turn * common.period);
-        let near = common.near(0.5 * (low + high));
+        let near = common.shifted_near(0.5 * (low + high));
         let ends = near.intervals.iter().flatten().flat_map(|end| turns(*end));
         let ends = ends.filter(|end| (low..=high).contains(end));
         let nearest = ends.min_by(|x, y| (x - b).abs().total_cmp(&(y - b).abs()))?;
-        Some(common.inwards(nearest, 1e-6))
+        Some(common.moved_inside(nearest, 1e-6))
     }
 
     /// Whether the user has dragged the machine off its planned motion.
-    pub fn is_led(&self) -> bool {
-        self.document.script.is_led()
+    pub fn is_dragged(&self) -> bool {
+        self.document.script.is_dragged()
     }
 
     /// Whether the user can drag the machine: it has a b to hold, and the run does not wait.
-    pub fn follows_hands(&self) -> bool {
+    pub fn can_be_dragged(&self) -> bool {
         self.run.waiting().is_none() && self.run.pose_space().is_ok()
     }
 

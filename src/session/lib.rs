@@ -2,8 +2,6 @@
 //!
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
-mod ahead;
-mod around;
 mod changes;
 pub mod design;
 mod designs;
@@ -12,6 +10,7 @@ mod edit;
 mod edit_check;
 pub mod events;
 mod fork;
+mod gentle_motion;
 mod interactive;
 mod machines;
 mod older;
@@ -19,19 +18,19 @@ mod planner;
 mod refusal;
 mod replay;
 mod run;
+mod run_ahead;
 pub mod scenario;
 mod script;
 pub mod verdict;
 
 #[doc(hidden)]
-pub use ahead::RunAhead;
-pub use around::gentle_motion;
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
 #[doc(hidden)]
 pub use fork::Fork;
+pub use gentle_motion::gentle_motion;
 pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
@@ -39,3 +38,5 @@ pub use planner::{Plan, curves};
 pub use refusal::Refusal;
 pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
 pub use run::{Run, WaitReason};
+#[doc(hidden)]
+pub use run_ahead::RunAhead;

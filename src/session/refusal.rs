@@ -184,9 +184,9 @@ impl From<RangeCheck> for Refusal {
 
 impl Refusal {
     /// Returns the feasible pose constant nearest to the present one, rad, if a change of b alone would help.
-    pub fn mending_b(&self) -> Option<f64> {
+    pub fn feasible_b(&self) -> Option<f64> {
         match self {
-            Self::Edit { refusal, .. } => refusal.mending_b(),
+            Self::Edit { refusal, .. } => refusal.feasible_b(),
             Self::Blocked(blocked) => blocked.nearest_b,
             Self::Unreachable { unreachable: Unreachable::OnThisPlane { nearest_b, .. }, .. } => *nearest_b,
             _ => None,
@@ -194,11 +194,11 @@ impl Refusal {
     }
 
     /// Returns the same b as it is shown: rounded so that it is still feasible.
-    pub fn shown_b(&self) -> Option<Decimal> {
+    pub fn displayed_b(&self) -> Option<Decimal> {
         match self {
-            Self::Edit { refusal, .. } => refusal.shown_b(),
-            Self::Blocked(blocked) => blocked.shown_b,
-            Self::Unreachable { unreachable: Unreachable::OnThisPlane { shown_b, .. }, .. } => *shown_b,
+            Self::Edit { refusal, .. } => refusal.displayed_b(),
+            Self::Blocked(blocked) => blocked.displayed_b,
+            Self::Unreachable { unreachable: Unreachable::OnThisPlane { displayed_b, .. }, .. } => *displayed_b,
             _ => None,
         }
     }

@@ -60,7 +60,7 @@ fn whole(
         let last = run.whole(script)?;
         allow(last).map(|()| last).map_err(ScriptError::from)
     };
-    let done = perform(scenario, &in_order(&scenario.edits), (end, false), None, see);
+    let done = perform(scenario, &in_order(&scenario.edits), end, false, None, see);
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
@@ -73,10 +73,10 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
     let mut course: [Vec<f64>; 3] = Default::default();
     let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
-        let now = [force.re, force.im, frame.felt_moment()];
+        let now = [force.re, force.im, frame.net_base_moment()];
         course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
     })?;
-    Ok((course, run.frame().fault()))
+    Ok((course, run.frame().first_violation()))
 }
 
 /// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame,
@@ -85,7 +85,8 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, ScriptError>, bool),
+    end: impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, ScriptError>,
+    patient: bool,
     known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame) -> bool,
 ) -> Result<Run, ScriptError> {

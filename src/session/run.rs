@@ -39,7 +39,7 @@ impl WaitReason {
         let unserved = |(i, p): (usize, Vector)| {
             let nearest_b = || {
                 let set = space.reach(p).ok()?;
-                set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
+                set.decimal(set.moved_inside(set.nearest(task.b)?, 1e-6), 4)
             };
             (!space.reaches(p, task.b)).then(|| (i, nearest_b()))
         };
@@ -142,7 +142,7 @@ impl Run {
     }
 
     /// Returns the set of b that reach all points of the task, if there are any.
-    pub fn bands(&self) -> Option<BSet> {
+    pub fn feasible_b(&self) -> Option<BSet> {
         let space = ByIdentity(self.space.clone().ok()?);
         self.queries.ask::<QuickWork<CommonB>>(&(space, self.scenario.task.points())).all.clone()
     }
@@ -168,13 +168,13 @@ impl Run {
     }
 
     /// Returns the place of the end effector in a pose, m.
-    pub fn place(&self, q: &DriveAngles) -> Vector {
+    pub fn end_effector_at(&self, q: &DriveAngles) -> Vector {
         stillbase_mechanics::kinematics::end_effector(self.scenario.machine.end_effector(), &q.units())
     }
 
     /// Returns the place of the end effector after a fraction of the planned time, m.
-    pub fn on_path(&self, share: f64) -> Vector {
-        self.place(&self.plan.motion.at(share * self.planned_time()).q)
+    pub fn end_effector_on_path(&self, share: f64) -> Vector {
+        self.end_effector_at(&self.plan.motion.at(share * self.planned_time()).q)
     }
 
     /// Returns the planned motion, while the machine follows it.
@@ -212,7 +212,7 @@ impl Run {
             self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?);
             return Ok(());
         }
-        if self.is_untouched() && !edit.leads() {
+        if self.is_untouched() && !edit.is_drag() {
             let scenario = checked(after_start_edit(&self.scenario, edit, &self.queries)?, edit)?;
             *self = Self::planned(&scenario, &self.queries)?;
             return Ok(());
@@ -222,7 +222,7 @@ impl Run {
             Edit::DragTarget { x, y } => {
                 let mut follower = self.follower()?;
                 follower.set_target(Vector::new(*x, *y));
-                self.simulation.lead(Guide::Follow(follower));
+                self.simulation.set_guide(Guide::Follow(follower));
             }
             Edit::DragAngles { a1, a2 } => {
                 let mut follower = self.follower()?;
@@ -230,7 +230,7 @@ impl Run {
                     return Err(Refusal::Task(ANGLES_OF_THREE.into()));
                 }
                 follower.set_angles(&PerDrive::from([*a1, *a2]));
-                self.simulation.lead(Guide::Follow(follower));
+                self.simulation.set_guide(Guide::Follow(follower));
             }
             Edit::PullLink { link, along, x, y } => {
                 let chain = self.point_of(link, *along)?;
@@ -239,17 +239,17 @@ impl Run {
                     return Err(Refusal::Task(NO_FREEDOMS.into()));
                 }
                 follower.set_pull(Pull { chain, at: Vector::new(*x, *y) });
-                self.simulation.lead(Guide::Follow(follower));
+                self.simulation.set_guide(Guide::Follow(follower));
             }
             Edit::SlideB { b } => {
                 let mut follower = self.follower()?;
                 follower.set_b(*b);
-                self.simulation.lead(Guide::Follow(follower));
+                self.simulation.set_guide(Guide::Follow(follower));
             }
             Edit::PoseB { b } => {
                 let mut follower = self.follower()?;
                 follower.pose_at(*b);
-                self.simulation.place(Guide::Follow(follower));
+                self.simulation.move_to_reference(Guide::Follow(follower));
             }
             // No motion depends on it.
             edit if edit.effect() == Effect::Picture => {
@@ -281,7 +281,7 @@ impl Run {
             return Err(Refusal::LeavesLimits { key, value });
         }
         let mut simulation = self.simulation.clone();
-        simulation.change(&scenario.setup())?;
+        simulation.reconfigure(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
         if scenario.machine != self.scenario.machine || bound {
             let space = space_of(&scenario, &self.queries);
@@ -295,7 +295,7 @@ impl Run {
                 if lambda == *old.map().lambda() {
                     follower.set_b(old.b_aim());
                 }
-                simulation.lead(Guide::Follow(follower));
+                simulation.set_guide(Guide::Follow(follower));
             }
             self.space = space;
         }
@@ -370,7 +370,7 @@ impl Run {
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
-            Edit::Set { change } => Edit::Set { change: scenario.only(change)? },
+            Edit::Set { change } => Edit::Set { change: scenario.present_values(change)? },
         })
     }
 }
@@ -397,7 +397,7 @@ fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
     let torques_of = |of: &PerDrive, bdd: f64| {
         let (n, u) = (machine.drives(), map.lift_rates(of, bdd));
         let h = PerDrive::from_fn(n, |k| (0..n).map(|l| inertia.constant(k, l) * u[l]).sum());
-        inertia.motors().torques(&h)
+        inertia.motors().motor_torques(&h)
     };
     let one = |of: usize| PerDrive::from_fn(map.joints().len(), |i| f64::from(u8::from(i == of)));
     let all: Vec<PerDrive> = (0..map.joints().len()).map(|of| torques_of(&one(of), 0.0)).collect();

@@ -16,7 +16,7 @@ pub(super) struct Script {
 struct Entry {
     timed: TimedEdit,
     /// Whether the user has dragged the machine off its planned motion, in this edit or before.
-    led: bool,
+    is_dragged: bool,
     before: Option<Arc<Self>>,
 }
 
@@ -33,9 +33,9 @@ impl Drop for Entry {
 impl Script {
     /// Adds an edit at the end.
     pub fn push(&mut self, timed: TimedEdit) {
-        let leads = timed.edit.leads() || (timed.step > 0 && matches!(timed.edit, Edit::PoseB { .. }));
-        let led = leads || self.is_led();
-        self.last = Some(Arc::new(Entry { timed, led, before: self.last.take() }));
+        let leads = timed.edit.is_drag() || (timed.step > 0 && matches!(timed.edit, Edit::PoseB { .. }));
+        let is_dragged = leads || self.is_dragged();
+        self.last = Some(Arc::new(Entry { timed, is_dragged, before: self.last.take() }));
         self.count += 1;
     }
 
@@ -66,12 +66,12 @@ impl Script {
     }
 
     /// Whether the user drags the machine off its planned motion.
-    pub fn is_led(&self) -> bool {
-        self.last.as_ref().is_some_and(|entry| entry.led)
+    pub fn is_dragged(&self) -> bool {
+        self.last.as_ref().is_some_and(|entry| entry.is_dragged)
     }
 
     /// Removes the edits after a step.
-    pub fn cut(&mut self, end: u64) {
+    pub fn truncate(&mut self, end: u64) {
         while self.last().is_some_and(|timed| timed.step > end) {
             self.pop();
         }

@@ -40,7 +40,7 @@ pub struct Verdict {
     /// Whether the arm transmits nothing, neither n_B nor dynamic f_B, and no audit has failed.
     pub reactionless: bool,
     /// Whether the base feels nothing, past a reaction wheel if it has one.
-    pub base_feels_nothing: bool,
+    pub is_base_unloaded: bool,
     /// Whether the arm has moved at all.
     pub moved: bool,
     /// Largest |n_B|, N m.
@@ -52,13 +52,13 @@ pub struct Verdict {
     /// Largest moment that tilts the base, from heights along the axis, N m: outside of the verdict.
     pub tilt: f64,
     /// Distance of the end effector from its target, m; for samples of drive angles the target is where they end.
-    pub miss: f64,
+    pub target_distance: f64,
     /// Whether the run has a target: samples of drive angles prescribe no point of the end effector.
     pub has_target: bool,
     /// Relative joint angle that exceeded its limit by most, and the largest excess, rad.
     pub past_limit: Option<(String, f64)>,
     /// Torque or speed limit of a drive that was exceeded by the largest factor, and that factor.
-    pub over: Option<(DriveLimit, f64)>,
+    pub exceeded_limit: Option<(DriveLimit, f64)>,
     /// First audit that failed; the other figures cannot be trusted then.
     pub fault: Option<AuditFigure>,
     /// End of the run and the later time at which the payload would be picked up, s; `None` if it is picked up.
@@ -102,18 +102,18 @@ impl Verdict {
         let (by, angle) = peaks.past_limit;
         let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
         Self {
-            reactionless: peaks.is_reactionless() && frame.fault().is_none(),
-            base_feels_nothing: peaks.base_feels_nothing(),
+            reactionless: peaks.is_reactionless() && frame.first_violation().is_none(),
+            is_base_unloaded: peaks.is_base_unloaded(),
             moved: peaks.rate.iter().any(|rate| *rate > MIN_RATE_RAD_S),
-            over: over(&DriveLimits::of(&scenario.machine), peaks),
+            exceeded_limit: over(&DriveLimits::of(&scenario.machine), peaks),
             arm_moment: peaks.arm_moment,
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
             force: peaks.force,
             tilt: peaks.tilt,
-            miss: (frame.end_effector - frame.target.at).norm(),
+            target_distance: (frame.end_effector - frame.target.at).norm(),
             has_target: !gives_drives(scenario, frame),
             past_limit: (by > LIMIT_TOLERANCE).then(|| (name(angle), by)),
-            fault: frame.fault(),
+            fault: frame.first_violation(),
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
                 scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
             }),
@@ -123,13 +123,13 @@ impl Verdict {
     }
 
     /// Whether the arm transmits nothing, or a wheel keeps all of it from the base, and no audit has failed.
-    pub fn is_good(&self) -> bool {
-        self.fault.is_none() && (self.reactionless || self.base_feels_nothing)
+    pub fn spares_base(&self) -> bool {
+        self.fault.is_none() && (self.reactionless || self.is_base_unloaded)
     }
 
     /// `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`.
     pub fn word(&self) -> &'static str {
-        match (&self.fault, self.reactionless, self.base_feels_nothing) {
+        match (&self.fault, self.reactionless, self.is_base_unloaded) {
             (Some(_), ..) => "untrusted",
             (None, true, _) => "reactionless",
             (None, false, true) => "reactionless past the wheel",
@@ -174,7 +174,7 @@ impl Verdict {
             );
             add("payload never held", long);
         }
-        if let Some(past_wheel) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
+        if let Some(past_wheel) = self.past_wheel.filter(|_| self.is_base_unloaded && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
                 "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",
@@ -192,15 +192,15 @@ impl Verdict {
         if let Some((angle, by)) = &self.past_limit {
             add("past a joint limit", format!("{angle} passes its limit by up to {} rad", significant(*by)));
         }
-        if let Some((limit, factor)) = self.over {
+        if let Some((limit, factor)) = self.exceeded_limit {
             let short = match limit.quantity {
                 LimitedQuantity::Torque => "past a torque limit",
                 _ => "past a speed limit",
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
-        if finished && self.has_target && (self.miss > TARGET_TOLERANCE || self.miss.is_nan()) {
-            add("off its target", format!("ends {} m from its target", significant(self.miss)));
+        if finished && self.has_target && (self.target_distance > TARGET_TOLERANCE || self.target_distance.is_nan()) {
+            add("off its target", format!("ends {} m from its target", significant(self.target_distance)));
         }
         all
     }

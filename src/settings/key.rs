@@ -32,7 +32,7 @@ pub struct Key {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
     /// No frame of the run, but only studies, designs or recordings. Such a key applies to the whole run.
-    Aside,
+    NoFrame,
     /// No frame of the run, but only the display from the present step on.
     Picture,
     /// Frames from the present step on.

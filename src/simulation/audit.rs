@@ -46,7 +46,7 @@ pub struct AuditFigure {
 
 impl AuditFigure {
     /// Returns whether the figure is within its tolerance; NaN never is.
-    pub fn is_good(&self) -> bool {
+    pub fn is_within_tolerance(&self) -> bool {
         self.limit.is_none_or(|limit| self.value <= limit)
     }
 }

@@ -24,8 +24,8 @@ keyed! {
     /// Settings of control.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Control at "control" {
-        /// What control computes: torques from the model, the same with the payload in it while it is held, or PD from the
-        /// errors alone.
+        /// What control computes: torques from the model, the same with the payload in it while it is held, or PD from
+        /// the errors alone.
         law: ControlLaw = "computed-torque";
         /// Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.
         kp: DriveValues = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
@@ -197,12 +197,12 @@ impl Controller {
         let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
         let motors = model.arm().motors();
         if motors.in_joints() {
-            self.by_motors::<N>(n, (aim, aim_rate), (q, qd), &mut wanted);
+            self.by_motors::<N>(n, aim, aim_rate, q, qd, &mut wanted);
         }
         if self.law == ControlLaw::Pd {
-            return std::array::from_fn(|k| if k < n { model.arm().carried(k) * wanted[k] } else { 0.0 });
+            return std::array::from_fn(|k| if k < n { model.arm().inertia_at_motor(k) * wanted[k] } else { 0.0 });
         }
-        motors.drive(&mut wanted);
+        motors.transform_to_drives(&mut wanted);
         let acceleration = reference.qdd.array::<N>();
         (0..n).for_each(|k| wanted[k] += acceleration[k]);
         let mut torque = if !MOVES {
@@ -216,7 +216,7 @@ impl Controller {
             torque[N - 1] = 0.0;
             torque
         };
-        motors.give(&mut torque);
+        motors.transform_to_motor_torques(&mut torque);
         torque
     }
 
@@ -225,15 +225,17 @@ impl Controller {
     fn by_motors<const N: usize>(
         &self,
         n: usize,
-        (aim, aim_rate): (&[f64; N], &[f64; N]),
-        (q, qd): (&[f64; N], &[f64; N]),
+        aim: &[f64; N],
+        aim_rate: &[f64; N],
+        q: &[f64; N],
+        qd: &[f64; N],
         wanted: &mut [f64; N],
     ) {
         let motors = self.arm().motors();
         let mut error: [f64; N] = std::array::from_fn(|k| aim[k] - q[k]);
         let mut rate: [f64; N] = std::array::from_fn(|k| aim_rate[k] - qd[k]);
-        motors.turn(&mut error);
-        motors.turn(&mut rate);
+        motors.transform_to_motors(&mut error);
+        motors.transform_to_motors(&mut rate);
         let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
         (0..n).for_each(|k| wanted[k] = kd[k] * rate[k] + kp[k] * error[k]);
     }

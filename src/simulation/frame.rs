@@ -105,8 +105,8 @@ impl Phase {
 
 impl Frame {
     /// Returns the first figure of the audit that exceeds its tolerance.
-    pub fn fault(&self) -> Option<AuditFigure> {
-        self.audit.figures(&self.peaks, &self.totals).into_iter().find(|figure| !figure.is_good())
+    pub fn first_violation(&self) -> Option<AuditFigure> {
+        self.audit.figures(&self.peaks, &self.totals).into_iter().find(|figure| !figure.is_within_tolerance())
     }
 
     /// Returns whether angles, rates and torques are finite, which fails when a run diverges.
@@ -120,7 +120,7 @@ impl Frame {
     }
 
     /// Returns n_B less the torque of a reaction wheel, N m: the net moment on the base.
-    pub fn felt_moment(&self) -> f64 {
+    pub fn net_base_moment(&self) -> f64 {
         self.base_moment() - self.wheel.torque
     }
 
@@ -135,8 +135,8 @@ impl Frame {
     }
 
     /// Returns whether the net moment and force on the base are zero now, relative to the run's peaks.
-    pub fn base_feels_nothing(&self) -> bool {
-        self.felt_moment().abs() <= self.peaks.no_moment().max(1e-15)
+    pub fn is_base_unloaded(&self) -> bool {
+        self.net_base_moment().abs() <= self.peaks.no_moment().max(1e-15)
             && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
     }
 }

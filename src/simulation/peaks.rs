@@ -91,7 +91,7 @@ impl Peaks {
     }
 
     /// Returns whether the net moment, including a reaction wheel, and the dynamic force on the base count as zero.
-    pub fn base_feels_nothing(&self) -> bool {
+    pub fn is_base_unloaded(&self) -> bool {
         self.moment <= self.no_moment() && self.force <= self.no_force()
     }
 }

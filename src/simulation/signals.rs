@@ -113,7 +113,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
         ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
         ("moment/dynamic", "n_B dyn", "base moment, from motion", "N m", |f| f.wrench.dynamic.moment),
-        ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.felt_moment()),
+        ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.net_base_moment()),
         ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
         ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.totals.moment_rms()),
         ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
@@ -168,7 +168,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ),
         ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
         ("reactionless/now", "reactionless", "1 while the base feels nothing", "1", |f| {
-            f64::from(u8::from(f.base_feels_nothing()))
+            f64::from(u8::from(f.is_base_unloaded()))
         }),
     ];
     for &(path, symbol, label, unit, value) in whole {

@@ -89,7 +89,7 @@ fn greatest_torque(machine: &Machine, motion: &Motion) -> f64 {
     let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
     let at = |r: stillbase_planning::Reference| {
         let (torque, _) = inverse_with_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
-        inertia.motors().torques(&torque).iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+        inertia.motors().motor_torques(&torque).iter().fold(0.0_f64, |most, x| most.max(x.abs()))
     };
     instants(motion).map(at).fold(0.0, f64::max)
 }

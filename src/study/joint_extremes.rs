@@ -204,7 +204,7 @@ impl JointExtremes {
             pins,
             transmission: Inertia::pairs(machine.drives()).zip(&self.pairs).filter_map(pair).collect(),
             tilt: TiltExtremes { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
-            audit_failed: last.fault().map(|lamp| lamp.to_string()),
+            audit_failed: last.first_violation().map(|lamp| lamp.to_string()),
         }
     }
 }

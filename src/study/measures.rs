@@ -66,7 +66,7 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
         let mut sum = [0.0; 3];
         for r in instants(motion) {
             let (torque, wrench) = inverse_with_wrench(inertia, &r.q.units(), &r.qd, &r.qdd, &around);
-            let torque = inertia.motors().torques(&torque);
+            let torque = inertia.motors().motor_torques(&torque);
             sum[0] += wrench.dynamic.force.norm_sqr();
             sum[1] += wrench.total().moment.powi(2);
             sum[2] += torque.iter().map(|x| x * x).sum::<f64>();

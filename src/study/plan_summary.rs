@@ -173,7 +173,7 @@ impl PlanCost {
             blended: plan.blended,
             price: plan.price.map(price).transpose()?,
             alternatives: plan.verdicts.clone(),
-            over: forecast.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            over: forecast.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             cycles: (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect()),
             drift: if closed { plan.drift().collect() } else { Vec::new() },
         })
@@ -185,7 +185,7 @@ impl Obstacle {
     pub fn of(refusal: &Refusal) -> Self {
         Self {
             blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },
-            mending_b: refusal.mending_b(),
+            mending_b: refusal.feasible_b(),
             mend: if let Refusal::NoCommonPlane { why, .. } = refusal { why.mend } else { None },
         }
     }

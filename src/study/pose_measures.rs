@@ -57,7 +57,7 @@ impl PoseMeasures {
     }
 
     fn of(machine: &Machine, space: &PoseSpace, q: &DriveAngles) -> Self {
-        let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
+        let arms: Vec<Vector> = q.units().iter().zip(space.arms().iter()).map(|(e, c)| e * *c).collect();
         let squares: Vector = arms.iter().map(|j| j * j).sum();
         let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
         // The eigenvalues of J Jᵀ are ½ (lengths ± |squares|).

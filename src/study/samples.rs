@@ -25,7 +25,7 @@ impl IncrementalQuery for SignalSamples {
 
     fn begin(wanted: &Vec<Signal>) -> Self {
         let mut samples = Self::default();
-        samples.turn_to(wanted);
+        samples.set_input(wanted);
         samples
     }
 
@@ -48,13 +48,13 @@ impl IncrementalQuery for SignalSamples {
         }
     }
 
-    fn cut(&mut self, count: usize) {
+    fn truncate(&mut self, count: usize) {
         self.times.truncate(count);
         self.series.iter_mut().for_each(|(_, series)| series.truncate(count));
     }
 
     /// Keeps the series of signals that are still requested.
-    fn turn_to(&mut self, wanted: &Vec<Signal>) {
+    fn set_input(&mut self, wanted: &Vec<Signal>) {
         let mut known: Vec<(Signal, (String, Series))> =
             std::mem::take(&mut self.signals).into_iter().zip(std::mem::take(&mut self.series)).collect();
         for signal in wanted {

@@ -169,7 +169,7 @@ impl WorkspaceInterior {
         };
         Self {
             interior_singularity: boundary.interior_singularity(),
-            sheets: boundary.sheets(),
+            sheets: boundary.max_pose_count(),
             areas_by_poses: boundary.areas_by_poses(),
             fold_curves: boundary.fold_curves().iter().map(|l| l.turned(turn)).collect(),
             cusps: boundary.cusps().iter().map(|c| cusp(c.at)).collect(),

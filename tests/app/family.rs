@@ -51,7 +51,9 @@ fn the_ring_turns_and_another_b_is_compared() {
             // It stops where A or B would be out of reach.
             drag(&mut h, from, to);
             h.run_steps(4);
-            let end = session(&h).run().bands().expect("b that serve both").near(frame.b_reference).intervals[0][1];
+            let end =
+                session(&h).run().feasible_b().expect("b that serve both").shifted_near(frame.b_reference).intervals[0]
+                    [1];
             assert!((session(&h).b_aim() - end).abs() < 1e-4, "{} of {end}", session(&h).b_aim());
             h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
             h.run_steps(4);
@@ -199,9 +201,9 @@ fn other_numbers_of_drives_are_told_which_b_serves() {
     for (case, low, high) in [("two-drive", 1.199, 1.201), ("four-drive", 2.8, 3.0)] {
         let mut h = window(case, Theme::Dark);
         h.run_steps(3);
-        let common = session(&h).run().bands().expect("a b for both").clone();
+        let common = session(&h).run().feasible_b().expect("a b for both").clone();
         assert!(common.contains(session(&h).scenario().task.b), "{case}: {common:?}");
-        let [from, to] = common.near(0.5 * (low + high)).intervals[0];
+        let [from, to] = common.shifted_near(0.5 * (low + high)).intervals[0];
         assert!(from <= high && to >= low, "{case}: {from} {to}");
         assert!(h.query_by_label_contains("A and B: b ").is_some(), "{case}");
         let plot = h.get_by_label("Which b: the b that reach each point").rect();

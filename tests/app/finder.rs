@@ -212,7 +212,7 @@ fn arrows_move_the_target_and_a_burst_is_one_undo() {
     h.run_steps(200);
     let moved = target(&h) - start;
     assert!((moved.im - 0.03).abs() < 1e-9 && (moved.re + 0.001).abs() < 1e-9, "{moved}");
-    assert!(session(&h).is_led());
+    assert!(session(&h).is_dragged());
     for _ in 0..4 {
         if session(&h).to_scenario() != before {
             press(&mut h, ctrl, Key::Z);

@@ -97,7 +97,7 @@ fn a_motion_of_ones_own_becomes_one_without_reactions() {
 fn a_measured_machine_is_taken_as_it_is_and_mended() {
     let folder = Folder::new("given");
     let case = Scenario::builtin("case-1").expect("built in");
-    let built = case.with(&single_change("link.5.com", -0.02)).expect("a machine");
+    let built = case.with_settings(&single_change("link.5.com", -0.02)).expect("a machine");
     let file = folder.file("plate.csv", table(&built, true, 1));
     let mut h = window("case-3", Theme::Dark);
     open(&mut h, file);

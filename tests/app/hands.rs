@@ -102,13 +102,13 @@ fn a_click_shows_the_place_in_the_panel() {
     h.hover_at(place.center());
     h.run_steps(2);
     let (number, _) = link(&h, "5");
-    assert_eq!(h.state().app_state().view_state().pointed.lit, Some(Handle::Link(number)), "and it lights up");
+    assert_eq!(h.state().app_state().view_state().pointed.panel_object, Some(Handle::Link(number)), "and it lights up");
 }
 
 fn a_row_of_the_panel_lights_up_its_thing() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    let lit = |h: &Window| h.state().app_state().view_state().pointed.lit;
+    let lit = |h: &Window| h.state().app_state().view_state().pointed.panel_object;
     assert_eq!(lit(&h), None);
     let row = h.get_by_label("B x m").rect().center();
     h.hover_at(row);

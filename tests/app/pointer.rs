@@ -115,9 +115,9 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     drag(&mut h, from, to);
     h.run_steps(120);
     let f = *session(&h).frame();
-    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, feasible_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert!((nearest - f.end_effector).norm() < 1e-6, "the machine waits at the nearest point");
-    let b = mending_b.expect("another plane reaches it");
+    let b = feasible_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
     assert!(
         !planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty()
@@ -166,7 +166,7 @@ fn waypoints_are_handles() {
     let (from, to) = (on_screen(&h, 0.50, 0.50) + letter, on_screen(&h, 0.45, 0.45));
     drag(&mut h, from, to);
     assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
-    assert!(!session(&h).is_led(), "nobody leads the machine");
+    assert!(!session(&h).is_dragged(), "nobody leads the machine");
     assert!((session(&h).frame().end_effector - points(&h)[0]).norm() < 1e-9, "it waits at A");
     // Each drag is one undo.
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
@@ -200,7 +200,7 @@ fn the_target_comes_before_the_point_that_it_covers() {
     let hot = |h: &mut Window, left: f32| {
         h.hover_at(ring - egui::vec2(left, 0.0));
         h.run_steps(40);
-        h.state().app_state().view_state().pointed.hot
+        h.state().app_state().view_state().pointed.object
     };
     for left in [0.0, 9.0, 13.0, -13.0] {
         assert_eq!(hot(&mut h, left), Some(Handle::Target), "{left} px left");
@@ -209,7 +209,7 @@ fn the_target_comes_before_the_point_that_it_covers() {
     assert_eq!(hot(&mut h, 19.0), Some(Handle::Waypoint(0)));
     assert!(h.query_by_label_contains("start point A of the path").is_some());
     drag(&mut h, ring - egui::vec2(11.0, 0.0), ring + egui::vec2(-40.0, 0.0));
-    assert!(session(&h).is_led() && session(&h).scenario().task.from == [0.5, 0.5]);
+    assert!(session(&h).is_dragged() && session(&h).scenario().task.from == [0.5, 0.5]);
 }
 
 /// On two drives there is no case 3: it comes with the paper's machine, says so, and is undone.
@@ -247,7 +247,7 @@ fn the_moving_arm_is_caught_at_the_first_press() {
         let scene = h.get_by_label_contains("Scene:").rect();
         drag(&mut h, scene.left_bottom() + egui::vec2(60.0, -200.0), scene.left_bottom() + egui::vec2(160.0, -90.0));
         assert_eq!(*h.state().app_state().view_state().camera(), camera, "a miss moves nothing");
-        assert!(session(&h).is_moving() && !session(&h).is_led());
+        assert!(session(&h).is_moving() && !session(&h).is_dragged());
         h.run_steps(2);
         let at = session(&h).frame().end_effector;
         let from = on_screen(&h, at.re, at.im) + aside;
@@ -264,7 +264,7 @@ fn the_moving_arm_is_caught_at_the_first_press() {
         }
         h.drop_at(from + egui::vec2(-30.0, 30.0));
         h.run_steps(3);
-        assert!(session(&h).is_led(), "and it follows");
+        assert!(session(&h).is_dragged(), "and it follows");
         assert!(h.query_by_label("Now drag it out of the amber area.").is_some());
     }
 }
@@ -341,7 +341,7 @@ fn a_hand_is_named_and_let_go() {
     let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.45, 0.62));
     drag(&mut h, from, to);
     h.run_steps(20);
-    assert!(session(&h).is_led() && h.query_by_label("led by hand").is_some());
+    assert!(session(&h).is_dragged() && h.query_by_label("led by hand").is_some());
     assert!(h.query_by_label_contains(band).is_none() && h.query_by_label("planned").is_none());
     for by_key in [true, false] {
         match by_key {
@@ -349,12 +349,12 @@ fn a_hand_is_named_and_let_go() {
             false => h.get_by_label("back to the path").click(),
         }
         h.run_steps(3);
-        assert!(!session(&h).is_led() && h.query_by_label_contains(band).is_some());
+        assert!(!session(&h).is_dragged() && h.query_by_label_contains(band).is_some());
         assert_eq!(session(&h).frame().step, 0);
         assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
         h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         h.run_steps(3);
-        assert!(session(&h).is_led(), "the hand comes back");
+        assert!(session(&h).is_dragged(), "the hand comes back");
     }
     let gravity = Edit::set("gravity", stillbase::settings::change::value("0,-9.81"));
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(gravity));

@@ -58,7 +58,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
 fn a_scenario_that_cannot_be_planned_is_explained() {
     let scenario = Scenario::builtin("case-3").expect("built in");
     let keys = "shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]";
-    let task = scenario.task.with(&toml::from_str(keys).expect("keys"), &scenario.machine).expect("a task");
+    let task = scenario.task.with_change(&toml::from_str(keys).expect("keys"), &scenario.machine).expect("a task");
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
@@ -125,19 +125,19 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     h.run_steps(2);
     let words = |h: &Window| {
         let app_state = h.state().app_state();
-        let options = ViewOptions { invites: session(h).follows_hands(), ..Default::default() };
+        let options = ViewOptions { show_hints: session(h).can_be_dragged(), ..Default::default() };
         let scene = app_state.stage().scene(session(h).frame(), &options);
         scene.labels.iter().any(|label| label.text == "drag me")
     };
-    assert!(words(&h) && session(&h).follows_hands());
+    assert!(words(&h) && session(&h).can_be_dragged());
     type_into(&mut h, "a₁ greatest °", "150");
-    assert!(session(&h).run().waiting().is_some() && !session(&h).follows_hands() && !words(&h));
+    assert!(session(&h).run().waiting().is_some() && !session(&h).can_be_dragged() && !words(&h));
     assert!(h.query_by_label_contains("the run waits: change points, limits or b").is_some());
     let tip = session(&h).frame().end_effector;
     let from = on_screen(&h, tip.re, tip.im);
     h.hover_at(from + egui::vec2(14.0, 10.0));
     h.run_steps(3);
-    assert_ne!(h.state().app_state().view_state().pointed.hot, Some(Handle::Target));
+    assert_ne!(h.state().app_state().view_state().pointed.object, Some(Handle::Target));
     drag(&mut h, from + egui::vec2(14.0, 10.0), from + egui::vec2(60.0, 40.0));
     h.run_steps(3);
     let has_way_out = |h: &Window| {
@@ -157,5 +157,5 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     assert!(scene.contains_rect(card.expand(8.0)), "{card} covers no panel: {scene}");
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
-    assert!(session(&h).run().waiting().is_none() && session(&h).follows_hands());
+    assert!(session(&h).run().waiting().is_none() && session(&h).can_be_dragged());
 }

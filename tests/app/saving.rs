@@ -78,7 +78,7 @@ fn programs_beside_each_other_keep_a_journal_each() {
 fn found(file: &std::path::Path) -> Window {
     let scenario = Scenario::builtin("case-3").expect("built in");
     let app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
-    let app_state = app_state.finding(Some((file.into(), "3 minutes ago".into())));
+    let app_state = app_state.offering_recovery(Some((file.into(), "3 minutes ago".into())));
     Harness::builder()
         .with_size([1280.0, 800.0])
         .with_step_dt(0.02)

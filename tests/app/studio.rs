@@ -89,7 +89,7 @@ fn bars_say_which_link_brings_what() {
     for x in (rect.left() as i32..rect.right() as i32).step_by(4) {
         h.hover_at(egui::pos2(x as f32, rect.top() + 12.0));
         h.run_steps(2);
-        lit.extend(h.state().app_state().view_state().pointed.lit);
+        lit.extend(h.state().app_state().view_state().pointed.panel_object);
     }
     let links: Vec<usize> = [4, 3, 8].into_iter().filter(|i| lit.contains(&Handle::Link(*i))).collect();
     assert_eq!(links, [4, 3, 8], "links 5, 4 and 9 are in the bar: {lit:?}");

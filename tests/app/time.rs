@@ -232,12 +232,12 @@ fn another_path_keeps_what_a_hand_did() {
     press(&mut h, PLAIN, Key::Space);
     let led = session(&h).frames().to_vec();
     super::type_into(&mut h, "B y m", "0.88");
-    assert!(!session(&h).is_led() && session(&h).branch_count() == 1, "{:?}", session(&h).forks());
+    assert!(!session(&h).is_dragged() && session(&h).branch_count() == 1, "{:?}", session(&h).forks());
     assert!(h.query_by_label("what you led by hand is kept as a branch (H)").is_some());
     h.snapshot("kept-by-hand-dark");
     h.get_by_label("Show the branch").click();
     h.run_steps(4);
-    assert!(session(&h).is_led() && *session(&h).frames() == led, "here it is again");
+    assert!(session(&h).is_dragged() && *session(&h).frames() == led, "here it is again");
     assert!(h.query_by_label("Show the branch").is_none());
 }
 
@@ -311,14 +311,14 @@ fn slow_time_is_said_and_stays_smooth() {
     let bar = |h: &Window| h.get_by_role_and_label(Role::Slider, "Time").rect();
     h.get_by_label("Play").click();
     h.run_steps(40);
-    assert!(h.query_by_label_contains("real time").is_none() && h.state().app_state().behind().is_none());
+    assert!(h.query_by_label_contains("real time").is_none() && h.state().app_state().lagging_rate().is_none());
     let before = bar(&h);
     // Each step takes 2 ms from now on; of a repaint of 20 ms, 12 are for them.
     for _ in 0..80 {
         let step = session(&h).frame().step;
         h.step();
         let done = session(&h).frame().step - step;
-        h.state_mut().app_state_mut().took(0.002 * done as f64);
+        h.state_mut().app_state_mut().record_cost(0.002 * done as f64);
     }
     let step = session(&h).frame().step;
     h.run_steps(10);
@@ -332,14 +332,14 @@ fn slow_time_is_said_and_stays_smooth() {
     assert!(h.query_by_label_contains("real time").is_none(), "time stands");
     // What is known already is played back at its own pace.
     for _ in 0..10 {
-        h.state_mut().app_state_mut().took(0.0);
+        h.state_mut().app_state_mut().record_cost(0.0);
         h.step();
     }
     press(&mut h, PLAIN, Key::Home);
     press(&mut h, PLAIN, Key::Space);
     for _ in 0..60 {
-        h.state_mut().app_state_mut().took(1e-6);
+        h.state_mut().app_state_mut().record_cost(1e-6);
         h.step();
     }
-    assert!(h.query_by_label_contains("real time").is_none(), "{:?}", h.state().app_state().behind());
+    assert!(h.query_by_label_contains("real time").is_none(), "{:?}", h.state().app_state().lagging_rate());
 }

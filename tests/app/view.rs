@@ -57,7 +57,7 @@ fn clear_words(h: &Window, name: &str, view: ViewKind, size: egui::Vec2) {
     let content = views.content(view, frame, &[]);
     let room = PictureArea { size: [f64::from(size.x), f64::from(size.y)], covered: Vec::new() };
     let camera = content.framed(views.camera(view), &room);
-    let options = ViewOptions { invites: true, limits: true, ..Default::default() };
+    let options = ViewOptions { show_hints: true, limits: true, ..Default::default() };
     let scene = views.scene(view, frame, &options, &camera);
     let painter = egui::Painter::new(h.ctx.clone(), egui::LayerId::background(), rect);
     let grid = egui::Rect::from_min_max(rect.right_bottom() - egui::vec2(90.0, 28.0), rect.right_bottom());

@@ -98,7 +98,7 @@ fn joints_add_up_to_directions_and_places() {
         }
         for _ in 0..5 {
             let q = PerDrive::from_fn(machine.drives(), |_| noise.between(-4.0, 4.0));
-            let (turns, e) = (machine.motors().turns(&q), DriveAngles(q).units());
+            let (turns, e) = (machine.motors().to_motors(&q), DriveAngles(q).units());
             let motors = (0..machine.drives()).map(|k| (joint(&machine, k), turns[k])).collect();
             for (link, part) in machine.links().iter().zip(machine.resolved_links()) {
                 let (direction, place) = frame(&joints, &motors, &format!("link_{}", link.name));

@@ -35,7 +35,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "picture/render/shader.rs",
             "app/jobs.rs",
             "app/window/chooser/portal.rs",
-            "app/window/guest.rs",
+            "app/window/app.rs",
             "app/window/keeper.rs",
             "app/window/shell.rs",
             "app/window/times.rs",

@@ -198,10 +198,10 @@ fn a_machine_that_cannot_be_balanced_says_where() {
     spec.links[1].com_normal = 0.03;
     let off_axis = Machine::new(spec).expect("valid");
     let error = design(&off_axis, &[1.0, 1.0]).expect_err("inconsistent");
-    let DesignError::Inconsistent { condition, left } = &error else { panic!("{error}") };
+    let DesignError::Inconsistent { condition, residual } = &error else { panic!("{error}") };
     assert_eq!(condition, "the force balance of drive 2, (7)");
     // m_2 · com_normal = 2.5 · 0.03 kg m
-    assert_eq!(left, "7.500e-2 kg m");
+    assert_eq!(residual, "7.500e-2 kg m");
     assert!(error.to_string().contains("no centres of mass along the links balance this machine"), "{error}");
 
     // A crank on the base evens out the force of the same offset, but not its coupling with the arm that carries it.
@@ -221,10 +221,10 @@ fn a_machine_that_cannot_be_balanced_says_where() {
     .concat();
     let machine = parse(&text, "coupled").expect("valid");
     let error = design(&machine, &[1.0; 3]).expect_err("inconsistent");
-    let DesignError::Inconsistent { condition, left } = &error else { panic!("{error}") };
+    let DesignError::Inconsistent { condition, residual } = &error else { panic!("{error}") };
     assert_eq!(condition, "the coupling of drives 1 and 2, (8)");
     // m · l_arm · com_normal = 1 · 0.5 · 0.02 kg m²
-    assert_eq!(left, "1.000e-2 kg m²");
+    assert_eq!(residual, "1.000e-2 kg m²");
     // Straightened, it can be balanced.
     let straight = machine.set_all([("link.crank.com_normal", "0"), ("link.fore.com_normal", "0")]).expect("valid");
     assert!(design(&straight, &[1.0; 3]).is_ok());

@@ -34,9 +34,9 @@ fn what_the_parts_bring_sums_to_what_is_left() {
         assert_eq!((breakdown.terms.len(), breakdown.sources.len()), (n + n * (n - 1) / 2, bodies));
         for (term, condition) in breakdown.terms.iter().zip(Condition::all(n)) {
             assert_eq!(term.condition, condition);
-            assert_eq!(term.left, condition.left(&inertia));
+            assert_eq!(term.residual, condition.residual(&inertia));
             let sum: Vector = term.parts.iter().sum();
-            assert!((sum - term.left).norm() < 1e-14 * size(term), "{condition:?}: {sum} and {}", term.left);
+            assert!((sum - term.residual).norm() < 1e-14 * size(term), "{condition:?}: {sum} and {}", term.residual);
             let by_link: Vector = (0..spec.links.len()).map(|j| breakdown.of_link(term, j)).sum();
             assert!((by_link - sum).norm() < 1e-14 * size(term));
         }
@@ -62,7 +62,7 @@ fn a_part_brings_what_its_mass_adds() {
             }
             let doubled = Inertia::of(&Machine::new(spec).expect("still a machine"));
             for term in &breakdown.terms {
-                let added = term.condition.left(&doubled) - term.condition.left(&inertia);
+                let added = term.condition.residual(&doubled) - term.condition.residual(&inertia);
                 assert!((added - term.parts[i]).norm() < 1e-13 * size(term), "{source:?}: {added} {}", term.parts[i]);
             }
         }

@@ -528,8 +528,10 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
     let with = bare.set("drive.1.rotor.inertia", "0.01").and_then(|m| m.set("drive.1.rotor.ratio", "-20"));
     let geared = with.expect("in range");
     let objective = || Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
-    let free =
-        |free| CounterweightSpec { rotors: vec![FreeRotor { drive: 0, free }], ..weighing(&geared, objective()) };
+    let free = |parameter| CounterweightSpec {
+        rotors: vec![FreeRotor { drive: 0, parameter }],
+        ..weighing(&geared, objective())
+    };
     let alone = place_weights(&bare, &weighing(&bare, objective())).expect("it can be balanced");
     for freedom in [RotorFreedom::Inertia([0.0, 1.0]), RotorFreedom::Ratio([-1000.0, 0.0])] {
         let found = place_weights(&geared, &free(freedom)).expect("it can be balanced");
@@ -553,20 +555,20 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
     // One with its stator on another drive.
     let serial = family_machine("serial-3r");
     let asked = CounterweightSpec {
-        rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([-300.0, 300.0]) }],
+        rotors: vec![FreeRotor { drive: 1, parameter: RotorFreedom::Ratio([-300.0, 300.0]) }],
         ..weighing(&serial, objective())
     };
     let found = place_weights(&serial, &asked).expect("it can be balanced");
     assert!(Inertia::of(&found.machine).is_balanced() && found.gap < 1e-6, "{}", found.gap);
     for ratio in [-290.0, -50.0, -1.0, 50.0, 290.0] {
         let fixed = CounterweightSpec {
-            rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([ratio, ratio]) }],
+            rotors: vec![FreeRotor { drive: 1, parameter: RotorFreedom::Ratio([ratio, ratio]) }],
             ..weighing(&serial, objective())
         };
         assert!(place_weights(&serial, &fixed).expect("it can be balanced").value > found.value - 1e-6);
     }
     let none = CounterweightSpec {
-        rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio([-3.0, 3.0]) }],
+        rotors: vec![FreeRotor { drive: 1, parameter: RotorFreedom::Ratio([-3.0, 3.0]) }],
         ..weighing(&bare, Objective::mass())
     };
     assert_eq!(place_weights(&bare, &none).expect_err("it has none"), CounterweightError::NoRotor("2".into()));
@@ -791,7 +793,7 @@ fn no_other_gear_comes_to_less() {
     let asked = |ratios: [f64; 2]| {
         let objective = Objective { momentum: 1.0, mass: 1e-2, inertia: 0.1, ..Objective::mass() };
         CounterweightSpec {
-            rotors: vec![FreeRotor { drive: 1, free: RotorFreedom::Ratio(ratios) }],
+            rotors: vec![FreeRotor { drive: 1, parameter: RotorFreedom::Ratio(ratios) }],
             ..weighing(&serial, objective)
         }
     };

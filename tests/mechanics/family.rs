@@ -36,7 +36,7 @@ fn state(what: &str, machine: &Machine, want: &serde_json::Value) {
     let check = |field: &str, got: &[f64]| close(&format!("{what}, {field}"), got, &numbers(&want[field]), 1e-9);
     check("mass_matrix", &rows);
     check("d", &d);
-    check("torque", &inertia.motors().torques(&torque));
+    check("torque", &inertia.motors().motor_torques(&torque));
     check("base_force", &xy(wrench.total().force));
     check("base_moment", &[wrench.total().moment]);
     check("com", &xy(centre_of_mass(&inertia, &e)));
@@ -135,7 +135,12 @@ fn as_bodies(what: &str, machine: &Machine, noise: &mut Noise) {
         let rows: Vec<f64> = (0..n * n).map(|i| h.get(i / n, i % n)).collect();
         close(&format!("{what}: H"), &rows, &bodies.mass_matrix(&q), 1e-11);
         let (torque, wrench) = inverse_with_wrench(&inertia, &e, &qd, &qdd, &around(machine));
-        close(&format!("{what}: motors"), &inertia.motors().torques(&torque), &bodies.torques(&q, &qd, &qdd), 1e-8);
+        close(
+            &format!("{what}: motors"),
+            &inertia.motors().motor_torques(&torque),
+            &bodies.torques(&q, &qd, &qdd),
+            1e-8,
+        );
         let (force, moment) = bodies.wrench(&q, &qd, &qdd);
         close(&format!("{what}: f_B"), &xy(wrench.total().force), &xy(force), 1e-8);
         // Of the size of what cancels in it.
@@ -148,9 +153,9 @@ fn as_bodies(what: &str, machine: &Machine, noise: &mut Noise) {
         close(&format!("{what}: momentum"), &[angular_momentum(&inertia, &e, &qd)], &[d], 1e-11);
         // What the motors bring is what comes into motion: power is the same in their angles and in those of drives.
         let motors = inertia.motors();
-        let own = motors.torques(&torque).dot(&motors.turns(&qd));
+        let own = motors.motor_torques(&torque).dot(&motors.to_motors(&qd));
         close(&format!("{what}: power"), &[own], &[torque.dot(&qd)], 1e-10);
-        let back = motors.generalised(&motors.torques(&torque));
+        let back = motors.generalised_torques(&motors.motor_torques(&torque));
         close(&format!("{what}: there and back"), &back, &torque, 1e-12);
     }
 }
@@ -228,7 +233,7 @@ fn pins_and_motors_agree() {
         let (torque, wrench) = inverse_with_wrench(&inertia, &e, &qd, &qdd, &around(&machine));
         let forces = joints.forces(&e, &qd, &qdd, &around(&machine));
         let found = forces.torque().expect("not flat");
-        close(machine.name(), &found, &inertia.motors().torques(&torque), 1e-8);
+        close(machine.name(), &found, &inertia.motors().motor_torques(&torque), 1e-8);
         close(machine.name(), &xy(joints.on_base(&forces)), &xy(wrench.total().force), 1e-8);
         on_loops += usize::from(machine.name() == "four-drive");
     }

@@ -196,7 +196,7 @@ fn areas_by_poses_match_a_raster() {
         let map = within(limits);
         let boundary = Boundary::of(&map);
         let areas = boundary.areas_by_poses();
-        assert_eq!(areas.len(), boundary.sheets());
+        assert_eq!(areas.len(), boundary.max_pose_count());
         assert!((areas[0] - boundary.area()).abs() < 1e-12, "{areas:?} {}", boundary.area());
         assert!((areas.iter().sum::<f64>() - boundary.sheet_area()).abs() < 1e-10, "{limits:?} {areas:?}");
         assert!(areas.windows(2).all(|w| w[0] > w[1] && w[1] > 0.0), "{areas:?}");
@@ -206,7 +206,7 @@ fn areas_by_poses_match_a_raster() {
         let points: Vec<Vector> = (0..N * N).map(|i| Vector::new(at(i / N), at(i % N))).collect();
         let counts = covered(&map, 200, &points);
         // The net may err next to a fold.
-        assert!(counts.iter().filter(|&&c| c > boundary.sheets()).count() <= 3, "{limits:?}");
+        assert!(counts.iter().filter(|&&c| c > boundary.max_pose_count()).count() <= 3, "{limits:?}");
         for (n, area) in areas.iter().enumerate() {
             let raster = counts.iter().filter(|&&c| c > n).count() as f64 * h * h;
             assert!((raster - area).abs() < 0.01, "{limits:?}, {n}: {raster} {area}");
@@ -435,7 +435,7 @@ fn degenerate_limits_are_sound() {
     {
         let map = within(limits);
         let boundary = Boundary::of(&map);
-        assert_eq!((boundary.area(), boundary.sheets()), (0.0, 1));
+        assert_eq!((boundary.area(), boundary.max_pose_count()), (0.0, 1));
         assert!(boundary.fold_curves().is_empty() && boundary.inner_limits().is_empty() && boundary.cusps().is_empty());
         assert_eq!(boundary.areas_by_poses(), [0.0]);
         let on = map.forward(share(&map, 0.3, 0.6), B);

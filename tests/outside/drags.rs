@@ -40,19 +40,19 @@ fn a_drag(noise: &mut Noise, machine: &Machine, space: &PoseSpace) -> Value {
     let near = noise.between(0.0, 1.0);
     let there = match near {
         // Within reach, and far beyond it.
-        near if near < 0.4 => space.place(&space.lift(&a_pose(noise, space), b)),
+        near if near < 0.4 => space.end_effector(&space.lift(&a_pose(noise, space), b)),
         _ => noise.between(0.0, 1.3) * space.farthest() * unit(noise.between(-3.2, 3.2)),
     };
-    let (a, _) = space.pose_for(there, b, &from);
-    let at = space.place(&space.lift(&from, b));
+    let (a, _) = space.target_pose(there, b, &from);
+    let at = space.end_effector(&space.lift(&from, b));
     let step = STEP * space.farthest() * unit(noise.between(-3.2, 3.2));
-    let led = |lead: GuidanceMode| space.clone().led(lead);
+    let led = |lead: GuidanceMode| space.clone().with_guidance(lead);
     let list = |a: &PerDrive| a.to_vec();
     let two = |p: Vector| [p.re, p.im];
     let middle = led(GuidanceMode::Middle).follow(at, b, &from).expect("it is there");
     let inverse = PostureWeights::of(machine, space).least_torque().expect("regular");
-    let torque = led(GuidanceMode::Weighed(Box::new(inverse))).toward(at + step, b, &from).0;
-    let energy = space.toward(at + step, b, &from).0;
+    let torque = led(GuidanceMode::Weighed(Box::new(inverse))).drag_to(at + step, b, &from).0;
+    let energy = space.drag_to(at + step, b, &from).0;
     json!({
         "b": b, "p": two(there), "at": two(at), "step": two(step), "from": list(&from), "a": list(&a),
         "centred": list(&middle), "torque": list(&torque), "energy": list(&energy),

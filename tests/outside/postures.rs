@@ -39,7 +39,7 @@ fn a_case(noise: &mut Noise, n: usize) -> Case {
     loop {
         let (machine, space) = a_space(noise, n);
         let b = noise.between(0.0, space.period());
-        let from = space.place(&space.lift(&a_pose(noise, &space), b));
+        let from = space.end_effector(&space.lift(&a_pose(noise, &space), b));
         let to = from + noise.between(0.03, 0.4) * space.farthest() * unit(noise.between(-3.2, 3.2));
         if space.reaches(to, b) {
             return Case { machine, space, b, ends: [from, to] };

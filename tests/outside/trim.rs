@@ -76,7 +76,7 @@ fn scipy_finds_the_same() {
         let part = if machine.gravity() == Vector::default() { 1e-6 } else { 1e-3 };
         for (i, theirs) in found.iter().enumerate() {
             let off = (ours.measured[i] - theirs.as_f64().expect("a number")).abs();
-            assert!(ours.told[i] && off < part * ours.half_width(i), "{} {i}: {off:e}", machine.name());
+            assert!(ours.identifiable[i] && off < part * ours.half_width(i), "{} {i}: {off:e}", machine.name());
         }
         for (ours, theirs) in ours.noise.iter().zip(theirs["sigma"].as_array().expect("two")) {
             assert!((ours / theirs.as_f64().expect("a number") - 1.0).abs() < 1e-3);

@@ -85,7 +85,7 @@ fn a_question(noise: &mut Noise) -> (Machine, CounterweightSpec) {
             let free = RotorFreedom::Inertia([low, low + noise.between(0.0, 0.05)]);
             let ratio = noise.sign() * noise.between(1.0, 60.0);
             machine = machine.set(&format!("drive.{}.rotor.ratio", drive + 1), &format!("{ratio}")).expect("in range");
-            asked.rotors.push(FreeRotor { drive, free });
+            asked.rotors.push(FreeRotor { drive, parameter: free });
         } else {
             let (low, wide) = (noise.between(-200.0, 100.0), noise.between(0.0, 200.0));
             machine = machine
@@ -94,7 +94,7 @@ fn a_question(noise: &mut Noise) -> (Machine, CounterweightSpec) {
                     (format!("drive.{}.rotor.ratio", drive + 1).as_str(), "-5"),
                 ])
                 .expect("in range");
-            asked.rotors.push(FreeRotor { drive, free: RotorFreedom::Ratio([low, low + wide]) });
+            asked.rotors.push(FreeRotor { drive, parameter: RotorFreedom::Ratio([low, low + wide]) });
         }
         if machine.spec().drives[drive].on.is_some() {
             asked.objective.torque = 0.0;
@@ -108,7 +108,7 @@ fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&Placed>, se
         .sites
         .iter()
         .map(|site| json!([site.link, site.from, site.to, Some(site.most).filter(|x| x.is_finite())]));
-    let rotor = |rotor: &FreeRotor| match rotor.free {
+    let rotor = |rotor: &FreeRotor| match rotor.parameter {
         RotorFreedom::Inertia(ends) => json!({ "drive": rotor.drive, "free": "inertia", "ends": ends }),
         RotorFreedom::Ratio(ends) => json!({ "drive": rotor.drive, "free": "ratio", "ends": ends }),
     };

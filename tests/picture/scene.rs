@@ -253,7 +253,8 @@ fn check_handles(session: &Session) {
 fn a_held_target_is_drawn_under_the_pointer() {
     let session = dragged_outside();
     let stage = Stage::of(session.run());
-    let options = ViewOptions { held: Some([0.1, 1.2]), hot: Some(Handle::Target), ..ViewOptions::default() };
+    let options =
+        ViewOptions { drag_position: Some([0.1, 1.2]), highlighted: Some(Handle::Target), ..ViewOptions::default() };
     let scene = stage.scene(session.frame(), &options);
     let target = scene.markers.iter().find(|m| m.name == "target").expect("a marker");
     assert_eq!([target.at[0], target.at[1]], [0.1, 1.2]);
@@ -619,7 +620,7 @@ fn words_are_of_the_frame_however_it_is_drawn() {
                 let options = ViewOptions {
                     pin_forces: true,
                     limits: true,
-                    push: Some([0.4, -0.2]),
+                    external_force: Some([0.4, -0.2]),
                     others,
                     ..Default::default()
                 };

@@ -24,7 +24,7 @@ fn parts_of_the_default_workspace_on_either_side() {
     assert!(parts == [0.378, 0.467] || parts == [0.467, 0.378], "{parts:?}");
     for b in [&near, &far] {
         assert!((b.area() - b.sheet_area()).abs() < 1e-13);
-        assert_eq!((b.loops().len(), b.sheets()), (1, 1));
+        assert_eq!((b.loops().len(), b.max_pose_count()), (1, 1));
         assert!(b.loops()[0].vertices().iter().any(|v| v.curve == BoundaryCurve::Change { pair: 2 }));
     }
     for (x, y) in [(0.5, 0.5), (0.55, 0.9)] {
@@ -101,7 +101,7 @@ pub fn parts_add_up(map: &PlaneMap) {
             sheets += part.sheet_area();
             covered += part.area();
             largest = largest.max(part.area());
-            assert!(part.sheets() <= boundary.sheets());
+            assert!(part.max_pose_count() <= boundary.max_pose_count());
         }
         let (all, area) = (boundary.sheet_area(), boundary.area());
         assert!((sheets - all).abs() < 1e-9 * scale, "{:?} pair {pair}: {sheets} {all}", map.limits());

@@ -18,7 +18,7 @@ fn points(noise: &mut Noise, space: &PoseSpace, count: usize) -> Vec<Vector> {
     (0..count)
         .map(|_| {
             let a = a_pose(noise, space);
-            space.place(&space.lift(&a, noise.between(0.0, space.period())))
+            space.end_effector(&space.lift(&a, noise.between(0.0, space.period())))
         })
         .collect()
 }
@@ -31,7 +31,10 @@ fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) 
     let Some(why) = no_common(map, &points) else {
         assert!(common_b_set(map, &points).is_some(), "{n} drives: {points:?}");
         let b = middle_b(map, &points).expect("some");
-        assert!(points.iter().all(|p| map.reach(*p).expect("within reach").near(b).nearest(b).is_some()), "{n} drives");
+        assert!(
+            points.iter().all(|p| map.reach(*p).expect("within reach").shifted_near(b).nearest(b).is_some()),
+            "{n} drives"
+        );
         return 0;
     };
     let Some(mend) = why.mend else {
@@ -53,7 +56,7 @@ fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) 
     for _ in 0..poses {
         let a = a_pose(noise, space);
         for [low, high] in &shared.intervals {
-            let at = space.place(&space.lift(&a, noise.between(*low, high.max(low + 1e-12))));
+            let at = space.end_effector(&space.lift(&a, noise.between(*low, high.max(low + 1e-12))));
             let far = (at - was).norm();
             assert!(
                 far > mend.distance - 2e-6 * space.farthest(),
@@ -163,7 +166,10 @@ fn points_have_a_pose_each_and_turn_where_b_does_not_serve_them() {
             let poses = poses_of_points(space, &points, b).expect("both are reached");
             assert_eq!(poses.len(), 2);
             for (pose, p) in poses.iter().zip(&points) {
-                assert!((space.place(&pose.q) - p).norm() < 1e-6 * space.farthest(), "{n} drives: {pose:?} off {p}");
+                assert!(
+                    (space.end_effector(&pose.q) - p).norm() < 1e-6 * space.farthest(),
+                    "{n} drives: {pose:?} off {p}"
+                );
                 assert!((space.b(&pose.q) - b).abs() < 1e-6 && (pose.b - b).abs() < 1e-6, "{n} drives: {pose:?}");
                 assert!(space.angles(&pose.q).minus(&pose.a).max_abs() < 1e-9, "{n} drives: {pose:?}");
             }

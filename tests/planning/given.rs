@@ -328,7 +328,7 @@ fn a_given_motion_lives_in_a_session() {
         let places: Vec<_> = scene.markers.iter().filter(|m| m.name == "plan/waypoints").map(|m| m.at).collect();
         assert_eq!(places.len(), 2);
         for (at, share) in places.into_iter().zip([0.0, 1.0]) {
-            let want = session.run().on_path(share);
+            let want = session.run().end_effector_on_path(share);
             assert!((f64::from(at[0]) - want.re).hypot(f64::from(at[1]) - want.im) < 1e-6);
         }
     };
@@ -430,7 +430,7 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     let (b, rms) = nearest_b(&space, &model, &given, Rule::default(), &mut |_| true).expect("some plane does");
     let best = far(b).expect("it does");
     assert!((best.rms / rms - 1.0).abs() < 1e-3, "{} {rms}", best.rms);
-    assert!(best.tip < 1e-6 && best.rms > 1e-3, "{best:?}");
+    assert!(best.end_effector < 1e-6 && best.rms > 1e-3, "{best:?}");
     for i in 0..given.count() {
         let q = moved(b).expect("it does");
         let [was, is] = [given.values(i), q.values(i)].map(|q| (0..3).map(|k| map.c()[k] * unit(q[k])).sum::<Vector>());

@@ -179,7 +179,7 @@ fn the_course_keeps_its_corridor() {
                 let tip = end_effector(nine_link().end_effector(), &at.q.units());
                 assert!((tip - curve.p).norm() < 1e-9, "u = {u}: {:e}", (tip - curve.p).norm());
                 assert!(map.limits().iter().zip(point.a).all(|(l, a)| l.contains(a, 1e-9)), "u = {u}: {point:?}");
-                let [low, high] = map.reach(curve.p).expect("reached").near(on).intervals[0];
+                let [low, high] = map.reach(curve.p).expect("reached").shifted_near(on).intervals[0];
                 assert!(low - 1e-9 <= on && on <= high + 1e-9, "u = {u}: {on} of {low} to {high}");
                 close("b", &[point.b, map.project_rates(&at.first).1], &[on, first], 1e-9);
                 let n_b = moment(plan.path(), u);

@@ -20,7 +20,7 @@ use crate::support::random::{a_pose, a_space};
 fn scenario(machine: &Machine, task: &str) -> Scenario {
     let base = Scenario::builtin("two-drive").expect("built in");
     let change: TaskChange = toml::from_str(task).expect("keys and values");
-    let task = base.task.with(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
+    let task = base.task.with_change(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
     Scenario { machine: machine.clone(), task, ..base }
 }
 
@@ -73,7 +73,7 @@ fn a_change_of_b_costs_what_it_says() {
         for _ in 0..3 {
             let b = [noise.between(-2.0, 2.0), noise.between(-2.0, 2.0)];
             let poses = b.map(|b| space.lift(&a_pose(&mut noise, &space), b));
-            let [from, to] = poses.map(|q| space.place(&q));
+            let [from, to] = poses.map(|q| space.end_effector(&q));
             let ends = point("from", from) + &point("to", to);
             let text = format!("kind = 'change-b'\n{ends}b = {:?}\nb_to = {:?}\ntime = 0.8\n", b[0], b[1]);
             let run = run(&machine, &text);
@@ -106,12 +106,12 @@ fn a_change_of_b_costs_what_it_says() {
     }
 }
 
-/// Limits are a box, so a straight line of joint space joins any two poses: no change between two b that reach their points
-/// is refused, to a b that is given or to the nearest one.
+/// Limits are a box, so a straight line of joint space joins any two poses: no change between two b that reach their
+/// points is refused, to a b that is given or to the nearest one.
 fn changes_of_b(noise: &mut Noise, n: usize) {
     let (machine, space) = a_space(noise, n);
     let b = [noise.between(-5.0, 5.0), noise.between(-5.0, 5.0)];
-    let [from, to] = b.map(|b| space.place(&space.lift(&a_pose(noise, &space), b)));
+    let [from, to] = b.map(|b| space.end_effector(&space.lift(&a_pose(noise, &space), b)));
     let ends = format!("kind = 'change-b'\n{}{}b = {:?}\n", point("from", from), point("to", to), b[0]);
     for text in [format!("{ends}b_to = {:?}\n", b[1]), ends] {
         let motion = run(&machine, &text).plan().motion.clone();
@@ -182,7 +182,7 @@ fn the_end_effector_goes_as_it_was_with_drive_1_elsewhere() {
                 let a = a_pose(noise, &space);
                 space.lift(&PerDrive::from_fn(a.len(), |i| middle[i] + 0.15 * (a[i] - middle[i])), b)
             };
-            let [from, to] = [near(&mut noise), near(&mut noise)].map(|q| space.place(&q));
+            let [from, to] = [near(&mut noise), near(&mut noise)].map(|q| space.end_effector(&q));
             let ends = point("from", from) + &point("to", to);
             let line = self::run(&machine, &format!("kind = 'reactionless'\n{ends}b = {b:?}\n"));
             let start = line.plan().motion.at(0.0).q;
@@ -221,12 +221,12 @@ fn four_drives_and_more_follow_curves_at_zero_momentum() {
     for (i, machine) in machines.iter().enumerate() {
         let (model, n) = (Inertia::of(machine), machine.drives());
         let space = PoseSpace::nominal(machine).expect("coordinates");
-        let at = space.place(&space.lift(&space.middle(), 0.4));
+        let at = space.end_effector(&space.lift(&space.middle(), 0.4));
         let r = 0.03 * space.farthest();
         let way = [Vector::new(r, 0.4 * r), Vector::new(0.3 * r, r)].map(|off| at + off);
         let b = PoseSpace::of(machine).ok().and_then(|space| {
             let set = space.reach(at).ok()?;
-            Some(set.inwards(set.nearest(space.b(&space.lift(&space.middle(), 0.4)))?, 0.3))
+            Some(set.moved_inside(set.nearest(space.b(&space.lift(&space.middle(), 0.4)))?, 0.3))
         });
         let text = format!(
             "kind = 'zero-momentum'\nshape = 'arc'\n{}via = [[{}, {}]]\n{}closed = true\ncycles = 3\nb = {:?}\n",
@@ -389,13 +389,16 @@ fn the_closest_motion_of_a_b_is_found() {
         moved_some += 1;
         for i in 0..samples.count() {
             let (given, own) = (samples.values(i), moved.values(i));
-            assert!((space.place(given) - space.place(own)).norm() < 1e-9 * space.farthest(), "{n} drives");
+            assert!(
+                (space.end_effector(given) - space.end_effector(own)).norm() < 1e-9 * space.farthest(),
+                "{n} drives"
+            );
             assert!((space.b(own) - 1.02).abs() < 1e-9);
             // Poses beside it with the same point and b are no closer.
             let from = space.angles(own);
             for _ in 0..4 {
                 let beside = PerDrive::from_fn(from.len(), |k| from[k] + noise.between(-0.02, 0.02));
-                let (a, off) = space.toward(space.place(own), 1.02, &beside);
+                let (a, off) = space.drag_to(space.end_effector(own), 1.02, &beside);
                 if off < 1e-10 * space.farthest() {
                     let other = space.lift(&a, 1.02);
                     assert!(far(given, own) <= far(given, &other) + 1e-9, "{n} drives");
@@ -422,7 +425,8 @@ fn the_closest_motion_of_a_b_is_found() {
     assert!(moved_some >= 3, "{moved_some}");
 }
 
-/// The last link points where it is told to, all along a curve or a joint line; where it cannot, it is said where it can.
+/// The last link points where it is told to, all along a curve or a joint line; where it cannot, it is said where it
+/// can.
 #[test]
 fn the_last_link_points_where_it_is_told() {
     let four = builtin("four-drive").expect("built in");
@@ -458,7 +462,8 @@ fn the_last_link_points_where_it_is_told() {
     let words: Vec<&str> = why.split("want it from ").nth(1).expect("a range").split(' ').collect();
     let [low, high] = [words[0], words[2]].map(|word| word.parse::<f64>().expect("a number"));
     for angle in [low, 0.5 * (low + high), high] {
-        let poses = space.facing(Vector::new(0.6, 0.5), 2.9, (3, angle - std::f64::consts::PI), &space.middle());
+        let poses =
+            space.poses_with_drive_angle(Vector::new(0.6, 0.5), 2.9, 3, angle - std::f64::consts::PI, &space.middle());
         assert!(!poses.is_empty(), "{angle} of {low} to {high}");
     }
     // Random machines: every pose that is given is one.
@@ -467,18 +472,19 @@ fn the_last_link_points_where_it_is_told() {
         let (_, space) = a_space(&mut noise, n);
         for _ in 0..5 {
             let q = space.lift(&a_pose(&mut noise, &space), noise.between(-3.0, 3.0));
-            let (p, b) = (space.place(&q), space.b(&q));
-            let found = space.facing(p, b, (n - 1, q[n - 1] + std::f64::consts::TAU), &space.angles(&q));
+            let (p, b) = (space.end_effector(&q), space.b(&q));
+            let found = space.poses_with_drive_angle(p, b, n - 1, q[n - 1] + std::f64::consts::TAU, &space.angles(&q));
             assert!(n > 4 || !found.is_empty(), "the pose it was made of");
             // The nearest first, whatever they are to be near to.
             for near in [space.angles(&q), a_pose(&mut noise, &space), a_pose(&mut noise, &space)] {
                 let far = |other: &DriveAngles| space.angles(other).minus(&near).iter().map(|x| x * x).sum::<f64>();
-                let found = space.facing(p, b, (n - 1, q[n - 1]), &near);
+                let found = space.poses_with_drive_angle(p, b, n - 1, q[n - 1], &near);
                 assert!(found.windows(2).all(|pair| far(&pair[0]) <= far(&pair[1]) + 1e-9), "{n} drives");
             }
             for other in found {
                 assert!(
-                    (space.place(&other) - p).norm() < 1e-6 * space.farthest() && (space.b(&other) - b).abs() < 1e-9
+                    (space.end_effector(&other) - p).norm() < 1e-6 * space.farthest()
+                        && (space.b(&other) - b).abs() < 1e-9
                 );
                 assert!(
                     ((other[n - 1] - q[n - 1]) / std::f64::consts::TAU)

@@ -218,7 +218,7 @@ fn distances_beside_each_other_have_nearly_the_same_b() {
         let space = a_space(&mut noise, n).1;
         for _ in 0..4 {
             let a = a_pose(&mut noise, &space);
-            alike(&space, space.place(&space.lift(&a, 0.0)).norm());
+            alike(&space, space.end_effector(&space.lift(&a, 0.0)).norm());
         }
     }
 }
@@ -290,7 +290,7 @@ fn inside_is_what_poses_reach() {
             })
             .collect();
         for a in &poses {
-            let p = space.place(&space.lift(a, b));
+            let p = space.end_effector(&space.lift(a, b));
             assert!(outline.distance(p) > -2e-5, "{i}: {p} of {a:?} is {} outside", -outline.distance(p));
         }
         for p in points(&mut noise, &outline, 6) {
@@ -309,7 +309,7 @@ fn points(noise: &mut Noise, outline: &Outline, count: usize) -> Vec<Vector> {
 
 /// How near to a point, m, steps of Gauss and Newton come from the nearest of these poses, held at limits.
 fn approached(space: &PoseSpace, p: Vector, b: f64, poses: &[Vec<f64>]) -> f64 {
-    let place = |a: &[f64]| space.place(&space.lift(a, b));
+    let place = |a: &[f64]| space.end_effector(&space.lift(a, b));
     let mut order: Vec<&Vec<f64>> = poses.iter().collect();
     order.sort_by(|x, y| (place(x) - p).norm().total_cmp(&(place(y) - p).norm()));
     let mut best = f64::INFINITY;

@@ -18,7 +18,7 @@ fn is_pose(space: &PoseSpace, q: &[f64], p: Vector, b: f64) -> bool {
         let [low, high] = joint.limits();
         *a >= low - 1e-9 && *a <= high + 1e-9
     });
-    within && (space.place(q) - p).norm() < 1e-9 * space.farthest() && (space.b(q) - b).abs() < 1e-9
+    within && (space.end_effector(q) - p).norm() < 1e-9 * space.farthest() && (space.b(q) - b).abs() < 1e-9
 }
 
 /// How many b were asked for, and how many poses were denied, for each of [`INSIDE`].
@@ -29,7 +29,7 @@ fn denied(n: usize, machines: usize, seed: u64) -> ([usize; 5], [usize; 5]) {
         let (_, space) = a_space(&mut noise, n);
         // A pose is there by construction.
         let own = noise.between(-6.0, 6.0);
-        let p = space.place(&space.lift(&a_pose(&mut noise, &space), own));
+        let p = space.end_effector(&space.lift(&a_pose(&mut noise, &space), own));
         let set = space.reach(p).expect("a pose is there");
         assert!(set.contains(own), "{n} drives at {p}: {own} in {set:?}");
         for [low, high] in &set.intervals {
@@ -66,7 +66,7 @@ fn the_nearest_pose_is_the_nearest() {
     for n in [4, 4, 4, 5] {
         let (_, space) = a_space(&mut noise, n);
         let b = noise.between(-6.0, 6.0);
-        let p = space.place(&space.lift(&a_pose(&mut noise, &space), b));
+        let p = space.end_effector(&space.lift(&a_pose(&mut noise, &space), b));
         let near = if n == 4 { a_pose(&mut noise, &space) } else { space.middle() };
         let far = |a: &PerDrive| a.minus(&near).dot(&a.minus(&near)).sqrt();
         let q = space.poses(p, b, &near)[0];
@@ -76,7 +76,7 @@ fn the_nearest_pose_is_the_nearest() {
             let start = a_pose(&mut noise, &space);
             let share = f64::from(i) / 80.0;
             let between = PerDrive::from_fn(n - 1, |j| near[j] + share * (start[j] - near[j]));
-            let (a, off) = space.toward(p, b, &between);
+            let (a, off) = space.drag_to(p, b, &between);
             let is_there = off < 1e-10 * space.farthest();
             assert!(!is_there || far(&a) > nearest - 1e-6, "{n} drives: {} is nearer than {nearest}", far(&a));
         }
@@ -89,7 +89,7 @@ fn proposals_of_b_reach_their_point_as_printed() {
     let mut noise = Noise::of(19);
     for n in [4, 4, 5] {
         let (_, space) = a_space(&mut noise, n);
-        let p = space.place(&space.lift(&a_pose(&mut noise, &space), 0.3));
+        let p = space.end_effector(&space.lift(&a_pose(&mut noise, &space), 0.3));
         let set = space.reach(p).expect("a pose is there");
         let reaches = |b: f64| !space.poses(p, b, &space.middle()).is_empty();
         for _ in 0..2 {

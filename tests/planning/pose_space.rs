@@ -72,7 +72,7 @@ fn with_three_drives_it_is_the_plane() {
         let Ok(map) = plane_map(&machine) else { continue };
         let a = any_pose(&mut noise, &space);
         let q = space.lift(&a, noise.between(-3.0, 3.0));
-        let p = space.place(&q);
+        let p = space.end_effector(&q);
         let (own, want) = (space.reach(p).expect("a pose is there"), map.reach(p).expect("a pose is there"));
         assert_eq!(own.intervals.len(), want.intervals.len(), "{i}: {p} {own:?} {want:?}");
         close(&format!("{i}"), own.intervals.as_flattened(), want.intervals.as_flattened(), 1e-7);
@@ -99,7 +99,7 @@ fn closed_forms_and_the_general_way_agree() {
         // Where a space has planes its angles are in the order of the machine's.
         let place = |space: &PoseSpace| space.joints().iter().map(|joint| joint.angle()).collect::<Vec<_>>();
         assert_eq!(place(&own), [Some(0), Some(1)]);
-        assert_eq!((own.lambda(), own.tip(), own.period()), (general.lambda(), general.tip(), general.period()));
+        assert_eq!((own.lambda(), own.arms(), own.period()), (general.lambda(), general.arms(), general.period()));
         let order: Vec<usize> = place(&general).into_iter().map(|i| i.expect("an angle")).collect();
         let ordered = |a: &PerDrive| PerDrive::from_fn(2, |i| a[order[i]]);
         let outlines = [&own, &general].map(|space| space.outline(0.7));
@@ -109,14 +109,14 @@ fn closed_forms_and_the_general_way_agree() {
             let (a, b) = (any_pose(&mut noise, &own), noise.between(-4.0, 4.0));
             let (q, p) = (own.lift(&a, b), own.forward(&a, b));
             close("lifted", &q, &general.lift(&ordered(&a), b), 1e-12);
-            close("placed", &[p.re, p.im], &[general.place(&q).re, general.place(&q).im], 1e-12);
+            close("placed", &[p.re, p.im], &[general.end_effector(&q).re, general.end_effector(&q).im], 1e-12);
             close("b", &[own.project(&q).1], &[general.project(&q).1], 1e-12);
             close("angles", &ordered(&own.angles(&q)), &general.angles(&q), 1e-12);
             let rates = [&own, &general].map(|space| space.lift_rates(&space.angle_rates(&q), space.b(&q)));
             close("rates", &rates[0], &rates[1], 1e-12);
             // A pose is found at every b of its point, by both.
             let (b, at) = (b + noise.between(-0.6, 0.6), p);
-            let found = [&own, &general].map(|space| space.sheets(at, b));
+            let found = [&own, &general].map(|space| space.representative_poses(at, b));
             let sets = [&own, &general].map(|space| space.reach(at).expect("a pose is there"));
             let (inside, edge) = (
                 sets[0].contains(b),
@@ -153,21 +153,21 @@ fn poses_and_sets_agree() {
             let b = noise.between(-6.0, 6.0);
             let q = space.lift(&any_pose(&mut noise, &space), b);
             close("there and back", &[space.b(&q)], &[b], 1e-12);
-            let p = space.place(&q);
+            let p = space.end_effector(&q);
             let set = space.reach(p).expect("a pose is there");
             assert!(set.contains(b), "{n} drives at {p}: {b} in {set:?}");
         }
         if n > 4 {
             continue;
         }
-        let p = space.place(&space.lift(&any_pose(&mut noise, &space), 0.0));
+        let p = space.end_effector(&space.lift(&any_pose(&mut noise, &space), 0.0));
         for [low, high] in space.reach(p).expect("a pose is there").intervals {
             let b = 0.5 * (low + high);
             let poses = space.poses(p, b, &space.middle());
             assert!(!poses.is_empty(), "{n} drives at {p}: no pose at {b} of [{low}, {high}]");
             for q in poses {
                 close("b", &[space.b(&q)], &[b], 1e-9);
-                let miss = (space.place(&q) - p).norm();
+                let miss = (space.end_effector(&q) - p).norm();
                 assert!(miss < 2e-6 * space.farthest(), "{n} drives: {miss}");
                 for (joint, a) in space.joints().iter().zip(space.angles(&q).iter()) {
                     assert!(*a >= joint.limits()[0] - 1e-9 && *a <= joint.limits()[1] + 1e-9);
@@ -190,7 +190,7 @@ fn climbing_ends_where_the_set_does() {
         };
         let space = space(&machine);
         let start = space.lift(&any_pose(&mut noise, &space), 0.0);
-        let p = space.place(&start);
+        let p = space.end_effector(&start);
         let set = space.reach(p).expect("a pose is there");
         for up in [1.0, -1.0] {
             let (mut a, mut b) = (space.angles(&start), space.b(&start));
@@ -231,7 +231,7 @@ fn projected(space: &PoseSpace, p: Vector, from: &[f64], wanted: PerDrive) -> Op
     }
     let last = a.len() - 1;
     // The distance from B is met by one joint; the turn of all by b.
-    let distance = |a: &PerDrive| space.place(&space.lift(a, 0.0)).norm() - p.norm();
+    let distance = |a: &PerDrive| space.end_effector(&space.lift(a, 0.0)).norm() - p.norm();
     for joint in [last, 0] {
         let mut at = a;
         for _ in 0..30 {
@@ -250,7 +250,7 @@ fn projected(space: &PoseSpace, p: Vector, from: &[f64], wanted: PerDrive) -> Op
         }
         if distance(&at).abs() < 1e-11 && within(&at) {
             let unturned = space.lift(&at, 0.0);
-            let turn = (p * space.place(&unturned).conj()).arg();
+            let turn = (p * space.end_effector(&unturned).conj()).arg();
             let near = from[0] - unturned[0];
             let turn = turn + TAU * ((near - turn) / TAU).round();
             let b = turn * space.lambda().iter().sum::<f64>();
@@ -270,7 +270,7 @@ fn two_drives_have_a_curve() {
         let b = noise.between(-4.0, 4.0);
         let outline = space.outline(b);
         let [low, high] = space.joints()[0].limits();
-        let place = |a: f64| space.place(&space.lift(&[a], b));
+        let place = |a: f64| space.end_effector(&space.lift(&[a], b));
         let n = 20_000;
         let chords: f64 = (0..n)
             .map(|i| {
@@ -304,7 +304,7 @@ fn the_workspace_of_four_drives() {
     close("polygon", &[polygon], &[outline.area], 1e-4);
     let mut noise = Noise::of(9);
     for _ in 0..100 {
-        let p = space.place(&space.lift(&any_pose(&mut noise, &space), 2.4));
+        let p = space.end_effector(&space.lift(&any_pose(&mut noise, &space), 2.4));
         let windings: f64 = outline.loops.iter().map(|line| winding(line, p)).sum();
         let near = outline.loops.iter().flatten().any(|q| (Vector::new(q[0], q[1]) - p).norm() < 2e-3);
         assert!(near || (windings - 1.0).abs() < 1e-9, "{p}: {windings}");
@@ -404,7 +404,7 @@ fn one_arm_points_both_ways() {
         let space = space(&arm(direction));
         for i in 0..12 {
             let angle = 0.3 + TAU * f64::from(i) / 12.0;
-            let p = space.place(&space.lift(&[], angle));
+            let p = space.end_effector(&space.lift(&[], angle));
             let along = f64::from(direction) * Vector::from_polar(0.7, angle);
             assert!((p - along).norm() < 1e-12, "{direction}: {p} at {angle}");
             let set = space.reach(p).expect("within reach");
@@ -424,7 +424,8 @@ fn the_curve_of_two_drives_is_as_long_as_its_chords() {
         let b = noise.between(-3.0, 3.0);
         let [low, high] = space.joints()[0].limits();
         let sum = |count: u32| {
-            let at = |i: u32| space.place(&space.lift(&[low + (high - low) * f64::from(i) / f64::from(count)], b));
+            let at =
+                |i: u32| space.end_effector(&space.lift(&[low + (high - low) * f64::from(i) / f64::from(count)], b));
             (0..count).map(|i| (at(i + 1) - at(i)).norm()).sum::<f64>()
         };
         // What chords leave out falls with the square of their length.
@@ -447,8 +448,8 @@ fn an_angle_that_hardly_turns_leaves_the_others_to_be_centred() {
             let space = PoseSpace::general(&Machine::new(spec).expect("in range")).expect("it has a b");
             let b = noise.between(-3.0, 3.0);
             let from = space.clamped(&any_pose(&mut noise, &space));
-            let p = space.place(&space.lift(&from, b));
-            let nearest = space.centred(p, b, &from);
+            let p = space.end_effector(&space.lift(&from, b));
+            let nearest = space.midrange_pose(p, b, &from);
             let far = |a: &PerDrive| {
                 let share = |i: usize| {
                     let [low, high] = space.joints()[i].limits();
@@ -456,11 +457,11 @@ fn an_angle_that_hardly_turns_leaves_the_others_to_be_centred() {
                 };
                 (0..n - 1).map(|i| share(i).powi(2)).sum::<f64>()
             };
-            assert!((space.place(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
+            assert!((space.end_effector(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
             for _ in 0..20 {
                 let size = 10.0_f64.powf(noise.between(-3.0, -1.0));
                 let beside = PerDrive::from_fn(n - 1, |i| nearest[i] + size * noise.between(-1.0, 1.0));
-                let (back, missed) = space.toward(p, b, &space.clamped(&beside));
+                let (back, missed) = space.drag_to(p, b, &space.clamped(&beside));
                 if missed < 1e-10 * space.farthest() {
                     let (own, other) = (far(&nearest), far(&back));
                     assert!(other > own - 1e-4, "{n} drives: {other} below {own}, step {size}");
@@ -479,8 +480,8 @@ fn nothing_beside_the_nearest_pose_is_nearer() {
             let (_, space) = any_space(&mut noise, n);
             let b = noise.between(-3.0, 3.0);
             let from = any_pose(&mut noise, &space);
-            let p = space.place(&space.lift(&from, b));
-            let nearest = space.centred(p, b, &from);
+            let p = space.end_effector(&space.lift(&from, b));
+            let nearest = space.midrange_pose(p, b, &from);
             let far = |a: &PerDrive| {
                 let share = |i: usize| {
                     let [low, high] = space.joints()[i].limits();
@@ -488,14 +489,14 @@ fn nothing_beside_the_nearest_pose_is_nearer() {
                 };
                 (0..n - 1).map(|i| share(i).powi(2)).sum::<f64>()
             };
-            assert!((space.place(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
+            assert!((space.end_effector(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
             assert!(far(&nearest) <= far(&from) + 1e-9);
             // Others: a step at random, led back onto the point with b held.
             for _ in 0..20 {
                 let size = 10.0_f64.powf(noise.between(-5.0, -1.0));
                 let beside = PerDrive::from_fn(n - 1, |i| nearest[i] + size * noise.between(-1.0, 1.0));
                 let beside = space.clamped(&beside);
-                let (back, missed) = space.toward(p, b, &beside);
+                let (back, missed) = space.drag_to(p, b, &beside);
                 if missed < 1e-10 * space.farthest() {
                     let (own, other) = (far(&nearest), far(&back));
                     assert!(other > own - 1e-8, "{n} drives: {other} below {own}, step {size}");
@@ -529,13 +530,13 @@ fn small_machines_are_as_exact_as_large_ones() {
         for _ in 0..30 {
             let (a, from) = (any_pose(&mut noise, &space), any_pose(&mut noise, &space));
             let b = noise.between(-3.0, 3.0);
-            let p = space.place(&space.lift(&a, b));
+            let p = space.end_effector(&space.lift(&a, b));
             for q in space.poses(p, b, &from) {
-                worst = worst.max((space.place(&q) - p).norm() / space.farthest());
+                worst = worst.max((space.end_effector(&q) - p).norm() / space.farthest());
                 found += 1;
             }
-            let (led, missed) = space.toward(p, b, &from);
-            assert!(((space.place(&space.lift(&led, b)) - p).norm() - missed).abs() < 1e-12 * space.farthest());
+            let (led, missed) = space.drag_to(p, b, &from);
+            assert!(((space.end_effector(&space.lift(&led, b)) - p).norm() - missed).abs() < 1e-12 * space.farthest());
             if missed < 1e-6 * space.farthest() {
                 worst = worst.max(missed / space.farthest());
             }

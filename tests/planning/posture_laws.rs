@@ -29,7 +29,7 @@ fn a_case(noise: &mut Noise, n: usize) -> Case {
     loop {
         let (machine, space) = a_space(noise, n);
         let b = noise.between(0.0, space.period());
-        let from = space.place(&space.lift(&a_pose(noise, &space), b));
+        let from = space.end_effector(&space.lift(&a_pose(noise, &space), b));
         let far = noise.between(0.03, 0.4) * space.farthest();
         let to = from + far * unit(noise.between(-3.2, 3.2));
         if space.reaches(to, b) {
@@ -65,7 +65,8 @@ impl Case {
             let at = (i as f64 + 0.5) / SAMPLES as f64;
             let point = path.at(at);
             let now = motion.at(at);
-            let torques = inertia.motors().torques(&inverse(&inertia, &now.q.units(), &now.qd, &now.qdd, &around));
+            let torques =
+                inertia.motors().motor_torques(&inverse(&inertia, &now.q.units(), &now.qd, &now.qdd, &around));
             sums[0] += point.first.dot(&point.first) / SAMPLES as f64;
             sums[1] += torques.dot(&torques) / SAMPLES as f64;
             sums[2] += postures.off_middle(&point.q) / SAMPLES as f64;
@@ -85,7 +86,7 @@ impl Case {
                 (low - a).max(a - high)
             });
             let past = past.fold(0.0, f64::max);
-            let off = [(self.space.place(&q) - on).norm(), past, (self.space.b(&q) - self.b).abs()];
+            let off = [(self.space.end_effector(&q) - on).norm(), past, (self.space.b(&q) - self.b).abs()];
             (0..3).for_each(|j| most[j] = most[j].max(off[j]));
         }
         most
@@ -119,7 +120,7 @@ impl Case {
             let mut here: Vec<DriveAngles> = Vec::new();
             for k in 0..=grid {
                 let angle = low + k as f64 / grid as f64 * (high - low);
-                for q in self.space.facing(p, self.b, (3, angle), &self.space.middle()) {
+                for q in self.space.poses_with_drive_angle(p, self.b, 3, angle, &self.space.middle()) {
                     if (q[3] - angle).abs() < 1e-9 {
                         here.push(q);
                     }

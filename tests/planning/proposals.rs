@@ -16,7 +16,7 @@ fn number(text: &str, before: &str) -> Option<f64> {
 
 fn with(scenario: &Scenario, change: &str) -> Scenario {
     let change: TaskChange = toml::from_str(change).expect("keys");
-    Scenario { task: scenario.task.with(&change, &scenario.machine).expect("a task"), ..scenario.clone() }
+    Scenario { task: scenario.task.with_change(&change, &scenario.machine).expect("a task"), ..scenario.clone() }
 }
 
 /// The task as a refusal proposes it: its kind of proposal and every way to type it back; none if it proposes nothing.
@@ -78,7 +78,7 @@ fn refused_and_typed(base: &Scenario, shape: &str, [from, to]: [[f64; 2]; 2], b:
         }
     }
     // The window's button takes the exact one.
-    if let Some(b) = refusal.mending_b() {
+    if let Some(b) = refusal.feasible_b() {
         let exact = Run::new(&with(&task, &format!("b = {b:?}")));
         assert!(exact.is_ok(), "{shape} from {from:?} to {to:?}: {words}; {b:?}");
     }
@@ -104,7 +104,7 @@ fn typed_back_on(drives: &[usize], shape: &str, tasks: usize, seed: u64) -> [usi
         for _ in 0..tasks {
             let mut end = || {
                 let a = a_pose(&mut noise, &space);
-                let p = space.place(&space.lift(&a, noise.between(0.0, space.period())));
+                let p = space.end_effector(&space.lift(&a, noise.between(0.0, space.period())));
                 [p.re, p.im].map(|x| (1e3 * x).round() / 1e3)
             };
             let ends = [end(), end()];
@@ -189,7 +189,7 @@ fn a_widened_limit_has_the_name_of_its_angle() {
         let base = with(&base, "kind = 'reactionless'\nvia = []");
         let mut end = || {
             let a = a_pose(&mut noise, &space);
-            let p = space.place(&space.lift(&a, noise.between(0.0, space.period())));
+            let p = space.end_effector(&space.lift(&a, noise.between(0.0, space.period())));
             [p.re, p.im].map(|x| (1e3 * x).round() / 1e3)
         };
         let ends = format!("from = {:?}\nto = {:?}", end(), end());

@@ -547,7 +547,7 @@ proptest! {
         let map = nine_link();
         let [low, high] = map.range_of(k, b);
         let angle = low + share * (high - low);
-        let a = map.turned(k, angle, b, from);
+        let a = map.with_drive_at(k, angle, b, from);
         let limits = map.limits();
         prop_assert!((0..2).all(|i| limits[i].contains(a[i], 0.0)), "{a:?}");
         let of = |a: [f64; 2]| map.lift(PlanePoint { a, b });

@@ -15,7 +15,7 @@ fn scenario() -> Scenario {
 fn task(text: &str) -> Scenario {
     let base = scenario();
     let change: TaskChange = toml::from_str(text).expect("keys and values");
-    Scenario { task: base.task.with(&change, &base.machine).expect("a task"), ..base }
+    Scenario { task: base.task.with_change(&change, &base.machine).expect("a task"), ..base }
 }
 
 fn run(scenario: &Scenario) -> (Run, Vec<Frame>) {
@@ -126,8 +126,9 @@ fn the_least_move_mends() {
 #[test]
 fn waypoints_are_edited_as_lists() {
     let Scenario { task, machine, .. } = scenario();
-    let with =
-        |task: &Task, change: Option<TaskChange>| task.with(&change.expect("possible"), &machine).expect("a task");
+    let with = |task: &Task, change: Option<TaskChange>| {
+        task.with_change(&change.expect("possible"), &machine).expect("a task")
+    };
     let p = Vector::new(0.6, 0.7);
     let three = with(&task, task.adding(p));
     assert_eq!(three.points(), [Vector::new(0.5, 0.5), p, Vector::new(0.55, 0.9)]);
@@ -190,12 +191,12 @@ fn a_new_path_ends_following() {
     session.apply(Edit::DragTarget { x: 0.6, y: 0.7 }).expect("follows");
     session.end_gesture();
     session.tick(400);
-    assert!(session.is_led());
+    assert!(session.is_dragged());
     session.apply(Edit::set("task.shape", "line")).expect("feasible");
-    assert!(!session.is_led());
+    assert!(!session.is_dragged());
     assert_eq!(session.frames().len(), 1);
     session.undo().expect("taken back");
-    assert!(session.is_led());
+    assert!(session.is_dragged());
 }
 
 /// Slid while at rest, b turns all points of a path when no plane serves them any more.
@@ -224,7 +225,7 @@ fn what_is_drawn_is_followed() {
         assert!((drawn[0].at(s).p - frame.end_effector).norm() < 1e-6);
     }
     let end = run.plan().motion.at(run.planned_time()).q;
-    assert!((run.place(&end) - Vector::new(0.55, 0.9)).norm() < 1e-10);
+    assert!((run.end_effector_at(&end) - Vector::new(0.55, 0.9)).norm() < 1e-10);
 }
 
 /// However fast the pointer jumps about within folded limits, the machine stays on its plane, keeps its bounds and does
@@ -363,7 +364,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         let planned = [&["case-3", "circle", "drift", "pick-up", "friction"][..], &family].concat();
         assert_eq!(quiet, planned.contains(&name), "{name}: {}", forecast.moment);
         let end = stillbase::session::replay(&scenario, |_, _| {}).expect("it runs").frame();
-        let fault = end.fault();
+        let fault = end.first_violation();
         assert!(fault.is_none(), "{name}: {fault:?}");
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         let still = [&["case-3", "circle", "drift"][..], &family].concat();
@@ -424,7 +425,7 @@ fn rates_follow_splines_too() {
         let drawn = curves(&scenario.task, &scenario.task.points()).expect("a curve");
         let motion = &run.plan().motion;
         for i in 0..=500 {
-            let tip = run.place(&motion.path.at(f64::from(i) / 500.0).q);
+            let tip = run.end_effector_at(&motion.path.at(f64::from(i) / 500.0).q);
             let s = drawn[0].nearest(tip, 20_000);
             assert!((drawn[0].at(s).p - tip).norm() < 1e-8, "{kind} {i}");
         }
@@ -443,9 +444,9 @@ fn a_price_limit_spares_the_drives() {
     ] {
         let run = Run::new(&task(text)).unwrap_or_else(|e| panic!("{text}: {e}"));
         let forecast = &run.plan().forecast;
-        assert!(forecast.over.is_none(), "{text}: {:?}", forecast.over);
+        assert!(forecast.exceeded_limit.is_none(), "{text}: {:?}", forecast.exceeded_limit);
     }
     let hasty = Run::new(&task("time = 0.1")).expect("it can be planned");
-    let (limit, factor) = hasty.plan().forecast.over.expect("too fast");
+    let (limit, factor) = hasty.plan().forecast.exceeded_limit.expect("too fast");
     assert!(factor > 5.0 && limit.to_string().contains("torque"), "{limit} {factor}");
 }

@@ -268,18 +268,18 @@ fn a_straight_line_is_in_closed_form() {
     let third = DriveLimit { quantity: LimitedQuantity::Torque, drive: 2 };
     let found = fastest(&line(), &model, &around, &by_torque(), false).expect("limits");
     assert!((found.profile.duration() - best).abs() < 1e-14, "{found:?}");
-    assert_eq!((found.limiting, found.gap), (vec![(third, 1.0)], None));
+    assert_eq!((found.active_limits, found.gap), (vec![(third, 1.0)], None));
     // A speed limit cuts it: T = 1/v + v/a.
     let v = 2.0;
     let cut = limits([20.0, 5.0, 5.0], [f64::INFINITY, f64::INFINITY, v * step[2]], FREE, FREE);
     let found = fastest(&line(), &model, &around, &cut, false).expect("limits");
     assert!((found.profile.duration() - (1.0 / v + v / torque)).abs() < 1e-14);
-    assert_eq!(found.limiting.len(), 2);
+    assert_eq!(found.active_limits.len(), 2);
     // As does one on acceleration, below what the torque gives.
     let slow = limits([20.0, 5.0, 5.0], FREE, [f64::INFINITY, 3.0, f64::INFINITY], FREE);
     let found = fastest(&line(), &model, &around, &slow, false).expect("limits");
     assert!((found.profile.duration() - 2.0 / (3.0 / step[1]).sqrt()).abs() < 1e-14);
-    assert_eq!(found.limiting, vec![(DriveLimit { quantity: LimitedQuantity::Acceleration, drive: 1 }, 1.0)]);
+    assert_eq!(found.active_limits, vec![(DriveLimit { quantity: LimitedQuantity::Acceleration, drive: 1 }, 1.0)]);
     // Parameterisation by reachability finds the same.
     for limits in [by_torque(), cut, slow] {
         let want = fastest(&line(), &model, &around, &limits, false).expect("limits").profile.duration();
@@ -408,10 +408,10 @@ fn some_limit_is_active_and_none_is_passed() {
             let usage = usage(&path, &found, &machine, &limits, 10_000);
             assert!(usage.active > 0.98, "{name}: {usage:?}");
             let most = if name.starts_with("ends") { 5e-4 } else { 5e-5 };
-            assert!((usage.most - 1.0) < most, "{name}: {usage:?}");
+            assert!((usage.max_utilisation - 1.0) < most, "{name}: {usage:?}");
             // What the sweep says leads is what the dynamics finds.
-            for (limit, share) in &found.limiting {
-                let seen = usage.leading.iter().find(|l| l.0 == *limit).map_or(0.0, |l| l.1);
+            for (limit, share) in &found.active_limits {
+                let seen = usage.active_limits.iter().find(|l| l.0 == *limit).map_or(0.0, |l| l.1);
                 assert!((seen - share).abs() < 0.02, "{name}, {limit}: {share} and {seen}");
             }
         }
@@ -431,13 +431,13 @@ fn a_path_may_turn_back() {
         let found = timed(&path, machine, &by_torque(), n);
         assert!((found.profile.duration() / best - 1.0).abs() < 2e-3, "{} and {best}", found.profile.duration());
         let usage = usage(&path, &found, machine, &by_torque(), 10_000);
-        assert!(usage.active > 0.97 && (usage.most - 1.0) < 1e-3, "{usage:?}");
+        assert!(usage.active > 0.97 && (usage.max_utilisation - 1.0) < 1e-3, "{usage:?}");
     }
     let limits = DriveLimits { jerk: [3000.0; 3].into(), ..by_torque() };
     let smooth = fastest(&path, &model, &around, &limits, true).expect("limits");
     let motion = Motion { path, profile: smooth.profile };
     let usage = Usage::of(&motion, &model, &around, &limits, 10_000);
-    assert!((usage.most - 1.0) < 1e-4 && smooth.gap.expect("a bound") < 0.5, "{usage:?}");
+    assert!((usage.max_utilisation - 1.0) < 1e-4 && smooth.gap.expect("a bound") < 0.5, "{usage:?}");
 }
 
 /// The account itself: half and twice a limit, and what it names.
@@ -449,15 +449,15 @@ fn usage_tells_violations() {
     for (factor, most, active) in [(1.0, 1.0, 1.0), (2.0, 0.25, 0.0), (0.5, 4.0, 1.0)] {
         let motion = Motion { path: line(), profile: best.stretched(factor) };
         let usage = Usage::of(&motion, &model, &around, &limits, 1000);
-        assert!((usage.most - most).abs() < 1e-9 && (usage.active - active).abs() < 1e-9, "{usage:?}");
+        assert!((usage.max_utilisation - most).abs() < 1e-9 && (usage.active - active).abs() < 1e-9, "{usage:?}");
         assert_eq!(usage.limit, Some(DriveLimit { quantity: LimitedQuantity::Torque, drive: 2 }));
     }
     // A quintic of the same peak takes √(5.7735/4) of the time.
     let quintic = Profile::of(TimeLaw::Quintic, best.duration() * (10.0 / 3f64.sqrt() / 4.0).sqrt());
     let usage = Usage::of(&Motion { path: line(), profile: quintic }, &model, &around, &limits, 10_000);
-    assert!((usage.most - 1.0).abs() < 1e-6 && usage.active < 0.1, "{usage:?}");
+    assert!((usage.max_utilisation - 1.0).abs() < 1e-6 && usage.active < 0.1, "{usage:?}");
     let free = Usage::of(&Motion { path: line(), profile: best }, &model, &around, &DriveLimits::none(3), 100);
-    assert_eq!((free.active, free.most, free.limit), (0.0, 0.0, None));
+    assert_eq!((free.active, free.max_utilisation, free.limit), (0.0, 0.0, None));
     const { assert!(ACTIVE_SHARE < 1.0 && ACTIVE_SHARE >= 0.999) }
 }
 
@@ -533,8 +533,8 @@ fn a_straight_line_with_limits_on_jerk() {
     assert!((found.profile.duration() / without - 1.0 - gap).abs() < 1e-12 && gap > 0.01, "{gap}");
     let motion = Motion { path: line(), profile: found.profile };
     let usage = Usage::of(&motion, &model, &around, &limits, 4000);
-    assert!(usage.active > 0.999 && (usage.most - 1.0) < 1e-9, "{usage:?}");
-    assert!(found.limiting.iter().any(|(l, _)| l.quantity == LimitedQuantity::Jerk), "{:?}", found.limiting);
+    assert!(usage.active > 0.999 && (usage.max_utilisation - 1.0) < 1e-9, "{usage:?}");
+    assert!(found.active_limits.iter().any(|(l, _)| l.quantity == LimitedQuantity::Jerk), "{:?}", found.active_limits);
 }
 
 /// On curves every limit is kept, jerk found by differences of q̈ included, and the gap is the one stated.
@@ -595,7 +595,7 @@ fn jerk_alone_is_enough() {
         assert_eq!(found.gap, None);
         let motion = Motion { path, profile: found.profile };
         let usage = Usage::of(&motion, &model, &around, &only, 4000);
-        assert!(usage.most > 0.99 && (usage.most - 1.0) < 1e-5, "{usage:?}");
+        assert!(usage.max_utilisation > 0.99 && (usage.max_utilisation - 1.0) < 1e-5, "{usage:?}");
     }
 }
 
@@ -693,14 +693,14 @@ fn random_curve(
         }
     };
     let usage = usage(&path, &found, &machine, &limits, 4000);
-    prop_assert!((usage.most - 1.0) < 1e-6, "{:?}", usage);
+    prop_assert!((usage.max_utilisation - 1.0) < 1e-6, "{:?}", usage);
     // It is slowed down as a whole by what is passed at one place: no more than 0.5 % is lost to a converged grid.
     let best = fastest_at(&path, &model, &around, &limits, false, &converged(&path, 8)).expect("a motion");
     let ratio = found.profile.duration() / best.profile.duration();
     prop_assert!((0.998..1.005).contains(&ratio), "{}: {:?}", ratio, usage);
     let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
     prop_assert!((end.s - 1.0).abs() < 1e-6 && end.rate < 1e-3);
-    prop_assert!((found.limiting.iter().map(|l| l.1).sum::<f64>() - 1.0).abs() < 1e-9);
+    prop_assert!((found.active_limits.iter().map(|l| l.1).sum::<f64>() - 1.0).abs() < 1e-9);
     Ok(())
 }
 
@@ -785,7 +785,14 @@ fn judge(points: &[Vector], shape: usize, blend: f64, limits: &DriveLimits, smoo
         let found = fastest(path, &model, &around, limits, smooth).expect("a motion");
         let motion = Motion { path: path.clone(), profile: found.profile };
         let usage = Usage::of(&motion, &model, &around, asked, 20_000);
-        prop_assert!((usage.most - 1.0) < 1e-6, "{:?} of {:?}, shape {}, blend {}", usage, points, shape, blend);
+        prop_assert!(
+            (usage.max_utilisation - 1.0) < 1e-6,
+            "{:?} of {:?}, shape {}, blend {}",
+            usage,
+            points,
+            shape,
+            blend
+        );
         let end = motion.profile.at(motion.duration() * (1.0 - 1e-12));
         prop_assert!((end.s - 1.0).abs() < 1e-9, "{:?}", end);
         if !smooth {
@@ -854,7 +861,7 @@ fn through(points: &[Vector], blend: Option<f64>, law: &str) -> Option<Scenario>
     let words = [("shape", "line"), ("law", law), ("corners", if blend.is_some() { "blend" } else { "stop" })];
     change.extend(words.map(|(key, word)| (key.to_owned(), word.into())));
     change.extend(blend.map(|blend| ("blend".to_owned(), blend.into())));
-    scenario.task = scenario.task.with(&change, &scenario.machine).ok()?;
+    scenario.task = scenario.task.with_change(&change, &scenario.machine).ok()?;
     Some(scenario)
 }
 
@@ -942,7 +949,7 @@ fn closed_joint_lines_name_given_points() {
     let mut scenario = through(&points, Some(0.05), "quintic").expect("a task");
     let change =
         [("shape", "joint-line".into()), ("closed", true.into())].map(|(k, v): (&str, Value)| (k.to_owned(), v));
-    scenario.task = scenario.task.with(&change.into_iter().collect(), &scenario.machine).expect("a task");
+    scenario.task = scenario.task.with_change(&change.into_iter().collect(), &scenario.machine).expect("a task");
     let error = Run::new(&scenario).expect_err("no way from a point to itself").to_string();
     assert!(error.contains("points 3 and 1 are the same"), "{error}");
 }

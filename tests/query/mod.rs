@@ -81,7 +81,7 @@ impl Later {
 
 fn with_later() -> (Queries, Later) {
     let (queries, later) = (Queries::default(), Later::default());
-    queries.hire(Arc::new(later.clone()));
+    queries.set_workers(Arc::new(later.clone()));
     (queries, later)
 }
 
@@ -106,13 +106,13 @@ fn an_answer_is_made_once_for_each_input() {
 fn work_beside_shows_the_last_answer_meanwhile() {
     let ((queries, later), made) = (with_later(), counter());
     let woken = counter();
-    queries.wakes({
+    queries.on_finished({
         let woken = woken.clone();
         move || {
             woken.0.fetch_add(1, Ordering::Relaxed);
         }
     });
-    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    let ask = |n: u64| queries.ask_in_background::<Sum>(&(made.clone(), n));
     let first = ask(4);
     assert!(first.last.is_none() && matches!(first.state, QueryStatus::UnderWay(_)) && queries.is_busy());
     assert_eq!((later.work(), count(&woken)), (1, 1));
@@ -133,13 +133,13 @@ fn the_newest_asking_counts() {
     for n in 1..=20 {
         // Each is asked about several times, as by every repaint.
         for _ in 0..3 {
-            let _ = queries.ask_beside::<Sum>(&(made.clone(), n + 20));
+            let _ = queries.ask_in_background::<Sum>(&(made.clone(), n + 20));
         }
     }
     assert_eq!(later.work(), 20);
     // Those before had not begun: nothing is done for them.
     assert_eq!(count(&made), 41);
-    assert_eq!(known(&queries.ask_beside::<Sum>(&(made.clone(), 40))), Some(820));
+    assert_eq!(known(&queries.ask_in_background::<Sum>(&(made.clone(), 40))), Some(820));
 }
 
 /// A number after some waiting in many portions; tells how many of its kind work at the same time, at most.
@@ -184,9 +184,9 @@ impl Workers for OnThreads {
 #[test]
 fn work_begins_when_what_it_replaces_has_stopped() {
     let queries = Queries::default();
-    queries.hire(Arc::new(OnThreads));
+    queries.set_workers(Arc::new(OnThreads));
     let counts = ByIdentity(Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]));
-    let ask = |n: u64| queries.ask_beside::<Slow>(&(counts.clone(), n));
+    let ask = |n: u64| queries.ask_in_background::<Slow>(&(counts.clone(), n));
     for n in 0..40 {
         ask(n);
         // Some of them have begun by then, and others have not.
@@ -204,7 +204,7 @@ fn work_begins_when_what_it_replaces_has_stopped() {
 #[test]
 fn short_work_ends_while_the_input_changes_all_the_time() {
     let ((queries, later), made) = (with_later(), counter());
-    let ask = |x: i64| queries.ask_beside::<QuickWork<Square>>(&(made.clone(), x));
+    let ask = |x: i64| queries.ask_in_background::<QuickWork<Square>>(&(made.clone(), x));
     let mut seen = Vec::new();
     for x in 1..=6 {
         seen.push(ask(x).last.map(|answer| *answer));
@@ -220,7 +220,7 @@ fn short_work_ends_while_the_input_changes_all_the_time() {
 #[test]
 fn what_was_stopped_or_broke_off_is_not_begun_again() {
     let ((queries, later), made) = (with_later(), counter());
-    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    let ask = |n: u64| queries.ask_in_background::<Sum>(&(made.clone(), n));
     let _ = ask(6);
     queries.stop::<Sum>();
     later.work();
@@ -242,7 +242,7 @@ fn what_was_stopped_or_broke_off_is_not_begun_again() {
 fn without_threads_work_is_done_in_portions() {
     let (queries, made) = (Queries::default(), counter());
     queries.work_in_portions();
-    let ask = |n: u64| queries.ask_beside::<Sum>(&(made.clone(), n));
+    let ask = |n: u64| queries.ask_in_background::<Sum>(&(made.clone(), n));
     for i in 1..=4 {
         let asked = ask(4);
         assert_eq!((asked.state, count(&made)), (QueryStatus::UnderWay(f64::from(i) / 4.0), i as usize));
@@ -271,7 +271,7 @@ fn answers_build_on_others() {
     let queries = Queries::default();
     let same = ByIdentity(Arc::new(queries.clone()));
     assert_eq!(*queries.ask::<QuickWork<Twice>>(&(same.clone(), 5)), 50);
-    assert_eq!(known(&queries.ask_beside::<QuickWork<Twice>>(&(same.clone(), 6))), Some(72));
+    assert_eq!(known(&queries.ask_in_background::<QuickWork<Twice>>(&(same.clone(), 6))), Some(72));
     assert_eq!(answer_now::<QuickWork<Twice>>((same, 7)), 98);
 }
 
@@ -308,7 +308,7 @@ impl IncrementalQuery for Sums {
         }
     }
 
-    fn cut(&mut self, count: usize) {
+    fn truncate(&mut self, count: usize) {
         // It may go back further than is asked.
         self.sums.truncate(count / 3 * 3);
     }

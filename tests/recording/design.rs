@@ -152,7 +152,7 @@ fn every_state_of_a_session_is_a_row() {
                     values[line * each..(line + 1) * each].iter().sum::<f64>()
                 };
                 let sum: f64 = parts.iter().map(now).map(sum).sum();
-                let left = condition.left(&inertia).re;
+                let left = condition.residual(&inertia).re;
                 assert!((sum - left).abs() < 1e-12, "{kind} {line} after {at} changes: {sum} is not {left}");
             }
         }

@@ -170,7 +170,7 @@ fn the_window_and_a_recording_tell_the_same() {
     let watched: EventLog = answer_sequence(&of, session.frames());
     let mut all = gestures(&session.script().to_vec(), 0.001);
     let grown: Gestures = answer_sequence(&0.001, session.script());
-    assert!(grown.told().eq(all.iter().cloned()));
+    assert!(grown.events().eq(all.iter().cloned()));
     all.extend_from_slice(watched.events());
     all.extend(bookmarked(session.bookmarks(), 0.001));
     all.push(watched.peak());

@@ -14,7 +14,7 @@ use crate::support::random::{a_chain, a_pose, a_space};
 fn scenario(machine: &Machine, task: &str) -> Scenario {
     let base = Scenario::builtin("two-drive").expect("built in");
     let change: TaskChange = toml::from_str(task).expect("keys and values");
-    let task = base.task.with(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
+    let task = base.task.with_change(&change, machine).unwrap_or_else(|why| panic!("{why}: {task}"));
     Scenario { machine: machine.clone(), task, compare_b: None, duration: None, ..base }
 }
 
@@ -26,7 +26,7 @@ fn tasks(noise: &mut Noise, machine: &Machine, space: &PoseSpace) -> Vec<(&'stat
     let near: Vec<f64> = a.iter().map(|a| a + noise.between(-0.05, 0.05)).collect();
     let [q, r] = [space.lift(&a, b), space.lift(&space.clamped(&near), b)];
     let [from, to] = [&q, &r].map(|q| {
-        let p = space.place(q);
+        let p = space.end_effector(q);
         [p.re, p.im]
     });
     let ends = format!("from = {from:?}\nto = {to:?}\nb = {b:?}\ntime = 0.02\n");

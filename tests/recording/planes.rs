@@ -24,7 +24,7 @@ fn the_plan_is_drawn_from_point_to_point() {
     };
     let run = stillbase::session::Run::new(&scenario).expect("it runs");
     let motion = run.motion().expect("a plan");
-    let curve: Vec<_> = (0..=4096).map(|i| run.place(&motion.path.at(f64::from(i) / 4096.0).q)).collect();
+    let curve: Vec<_> = (0..=4096).map(|i| run.end_effector_at(&motion.path.at(f64::from(i) / 4096.0).q)).collect();
     let whole: f64 = curve.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let drawn: f64 = dashes.iter().map(|d| length(d)).sum();
     let n = dashes.len() as f64;

@@ -35,7 +35,7 @@ fn the_reaction_is_the_same_in_the_window() {
                 let (labels, colours) = (labels.value(i), colours.value(i));
                 let labels = labels.as_any().downcast_ref::<StringArray>().expect("words");
                 let colours = colours.as_any().downcast_ref::<UInt32Array>().expect("colours");
-                let options = ViewOptions { invites: false, ..ViewOptions::default() };
+                let options = ViewOptions { show_hints: false, ..ViewOptions::default() };
                 let scene = stage.scene(&frames[*step as usize], &options);
                 for k in 0..2 {
                     let seen = scene.labels.iter().find(|l| l.text.starts_with(["f_B", "n_B"][k])).expect("a label");
@@ -95,7 +95,7 @@ fn all_that_the_window_draws_is_recorded_in_its_colour() {
         let mut frames: Vec<Frame> = Vec::new();
         let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
         let views = Views::of(&run);
-        let options = ViewOptions { invites: false, ..ViewOptions::default() };
+        let options = ViewOptions { show_hints: false, ..ViewOptions::default() };
         let root = format!("/{}", scenario.name);
         let spaces = [
             (ViewKind::Flat, ""),

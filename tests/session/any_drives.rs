@@ -57,14 +57,14 @@ fn two_drives_go_along_their_curve() {
         let p = Vector::new(at[0], at[1]);
         let nearest = curve.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
         assert!((f.end_effector - p).norm() < nearest + 1e-5, "{} from {p}, {nearest} would do", f.end_effector);
-        let Reach::Outside { nearest, mending_b, shown_b, .. } = f.target.reach else {
+        let Reach::Outside { nearest, feasible_b, displayed_b, .. } = f.target.reach else {
             panic!("{p} is beside the curve")
         };
         assert!((nearest - f.end_effector).norm() < 1e-6);
         // The b that is named reaches it.
-        if let Some(mending) = mending_b {
+        if let Some(mending) = feasible_b {
             assert!(!space.poses(p, mending, &space.middle()).is_empty(), "{p} at {mending}");
-            let printed: f64 = shown_b.expect("it is printed").to_string().parse().expect("a number");
+            let printed: f64 = displayed_b.expect("it is printed").to_string().parse().expect("a number");
             assert!(!space.poses(p, printed, &space.middle()).is_empty(), "{p} at {printed} as printed");
         }
     }
@@ -85,7 +85,7 @@ fn a_joint_that_turns_freely_is_led_on() {
     let mut session = open(Scenario { machine, ..named });
     let (b, space) = (session.frame().b_reference, space(&session));
     for i in 1..=30 {
-        let on = space.place(&space.lift(&[session.frame().a[0] + 0.25], b));
+        let on = space.end_effector(&space.lift(&[session.frame().a[0] + 0.25], b));
         session.apply(drag(on.re, on.im)).expect("it follows");
         led(&mut session, 700);
         let off = (session.frame().end_effector - on).norm();
@@ -174,7 +174,7 @@ fn a_hand_leads_as_the_task_uses_its_freedoms() {
         let turned = |(from, to): &(DriveAngles, DriveAngles)| {
             let q = to.0.minus(&from.0);
             let h = PerDrive::from_fn(4, |k| (0..4).map(|l| inertia.constant(k, l) * q[l]).sum());
-            inertia.motors().torques(&h).iter().map(|x| x * x).sum::<f64>().sqrt()
+            inertia.motors().motor_torques(&h).iter().map(|x| x * x).sum::<f64>().sqrt()
         };
         let least = turned(&led_to(Posture::LeastTorque, at));
         let (_, centred) = led_to(Posture::MidRange, at);
@@ -186,7 +186,7 @@ fn a_hand_leads_as_the_task_uses_its_freedoms() {
         }
         // No pose beside it with the same point and b is nearer to the middle.
         let b = space.b(&centred);
-        let settled = space.lift(&space.centred(Vector::new(at[0], at[1]), b, &space.angles(&centred)), b);
+        let settled = space.lift(&space.midrange_pose(Vector::new(at[0], at[1]), b, &space.angles(&centred)), b);
         assert!((middle.off_middle(&settled) - middle.off_middle(&centred)).abs() < 1e-7);
     }
 }
@@ -232,7 +232,7 @@ fn a_link_is_pulled_while_the_tip_stays() {
                     let limits = &angle.limits;
                     assert!(*a > limits.start() - 1e-9 && *a < limits.end() + 1e-9, "{a} of {limits:?}");
                 }
-                sent = sent.max((space.place(&f.q_reference) - tip).norm());
+                sent = sent.max((space.end_effector(&f.q_reference) - tip).norm());
             });
             most
         };
@@ -260,7 +260,7 @@ fn the_b_that_is_named_reaches_the_target() {
         let mut session = open(scenario("four-drive"));
         session.apply(drag(at[0], at[1])).expect("it waits or goes");
         led(&mut session, 2000);
-        let Reach::Outside { shown_b: Some(b), .. } = session.frame().target.reach else { continue };
+        let Reach::Outside { displayed_b: Some(b), .. } = session.frame().target.reach else { continue };
         let b: f64 = b.to_string().parse().expect("a number");
         // A hair inside, where rounding does not matter.
         let inside = b + 1e-3 * (b - session.frame().b).signum();
@@ -319,19 +319,19 @@ proptest! {
         let at = |share: [f64; 3]| -> Vec<f64> {
             space.joints().iter().zip(share).map(|(joint, t)| joint.limits()[0] + t * (joint.limits()[1] - joint.limits()[0])).collect()
         };
-        let (from, there) = (at(from), space.place(&space.lift(&at(to), b)));
-        let (a, off) = space.toward(there, b, &from);
+        let (from, there) = (at(from), space.end_effector(&space.lift(&at(to), b)));
+        let (a, off) = space.drag_to(there, b, &from);
         let q = space.lift(&a, b);
         prop_assert!((space.b(&q) - b).abs() < 1e-12);
-        prop_assert!((space.place(&q) - there).norm() <= off + 1e-12);
+        prop_assert!((space.end_effector(&q) - there).norm() <= off + 1e-12);
         for (a, joint) in a.iter().zip(space.joints()) {
             prop_assert!(*a >= joint.limits()[0] && *a <= joint.limits()[1]);
         }
-        let start = (space.place(&space.lift(&from, b)) - there).norm();
+        let start = (space.end_effector(&space.lift(&from, b)) - there).norm();
         prop_assert!(off <= start);
         // From a neighbour of the pose that is on it, it is reached.
         let near: Vec<f64> = at(to).iter().map(|a| a + 0.02).collect();
-        let (_, off) = space.toward(there, b, &space.clamped(&near));
+        let (_, off) = space.drag_to(there, b, &space.clamped(&near));
         prop_assert!(off < 1e-9 * space.farthest(), "{off}");
     }
 }

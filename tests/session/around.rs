@@ -10,7 +10,7 @@ fn does_its_task(machine: &Machine) -> TaskKind {
     let scenario = gentle_motion(machine).expect("a scenario");
     assert_eq!((scenario.name.as_str(), &scenario.machine), (name, machine));
     let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{name}: {why}"));
-    assert_eq!(run.plan().forecast.over, None, "{name}");
+    assert_eq!(run.plan().forecast.exceeded_limit, None, "{name}");
     let mut worst: f64 = 0.0;
     let done = replay(&scenario, |_, frame| {
         for (angle, a) in machine.angles().iter().zip(frame.a.iter()) {

@@ -173,12 +173,12 @@ fn another_path_keeps_what_was_led_by_hand() {
         session.apply(task(keys)).expect("another path");
         session.apply(task(keys)).expect("the same gesture");
         session.end_gesture();
-        assert!(!session.is_led());
+        assert!(!session.is_dragged());
         let [fork] = &session.forks()[..] else { panic!("{keys}: {:?}", session.forks()) };
         assert!(fork.title.starts_with("drag target to 0.520, 0.620 m"), "{fork:?}");
         session.apply(task("time = 1.2")).expect("what is not led leaves nothing");
         session.end_gesture();
-        assert_eq!((session.branch_count(), session.partings()), (1, (1, None)));
+        assert_eq!((session.branch_count(), session.branch_events()), (1, (1, None)));
         session.undo().expect("the time");
         session.switch_branch_while(0, &mut |_| true).expect("it is made again");
         same(keys, session.frames(), &led);
@@ -220,7 +220,7 @@ fn the_oldest_branch_goes_and_equal_ones_are_one() {
         assert!(fork.title.starts_with("drag target to 0."), "{fork:?}");
         assert!(forks[..i].iter().all(|other| other.title != fork.title), "{forks:?}");
     }
-    let (left, gone) = session.partings();
+    let (left, gone) = session.branch_events();
     assert_eq!(left as usize, MAX_BRANCHES + 2, "each is counted");
     assert!(gone.is_some_and(|title| title.starts_with("drag target to 0.50")), "the one that went is named: {gone:?}");
     let known = session.branch_count();

@@ -16,7 +16,7 @@ fn is_balanced(machine: &Machine) -> bool {
 
 fn changed(machine: &Machine, edit: &Edit) -> Machine {
     match edit {
-        Edit::Set { change } => machine.with(change).expect("a machine"),
+        Edit::Set { change } => machine.with_settings(change).expect("a machine"),
         edit => panic!("{edit:?}"),
     }
 }

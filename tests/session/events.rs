@@ -40,7 +40,7 @@ fn the_base_begins_and_ceases_to_feel_the_arm() {
     let (begins, again) = (of("the base begins to feel the arm"), of("the base feels the arm again"));
     let quiet = of("the base feels nothing again");
     assert!(begins.len() == 1 && again.len() == 1 && quiet.len() == 2, "{events:?}");
-    let felt = |step: u64| !session.frames()[step as usize].base_feels_nothing();
+    let felt = |step: u64| !session.frames()[step as usize].is_base_unloaded();
     assert!(felt(begins[0]) && !felt(begins[0] - 1) && felt(again[0]) && !felt(again[0] - 1));
     assert!(quiet.iter().all(|step| !felt(*step) && felt(*step - 1)), "it is said of the first quiet step");
     assert!(begins[0] < quiet[0] && quiet[0] < again[0] && again[0] < quiet[1]);

@@ -26,7 +26,7 @@ fn a_drag_at_the_start_outlives_parameters() {
             session.end_gesture();
             session.tick(ticks);
             do_it(&mut session, parameter.clone());
-            assert!(session.is_led());
+            assert!(session.is_dragged());
             settle(&mut session);
             let f = session.frame();
             assert_eq!(f.target.at, Vector::new(0.6, 0.6), "{parameter:?} after {ticks} ticks");
@@ -173,7 +173,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     session.end_gesture();
     settle(&mut session);
     let f = *session.frame();
-    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, feasible_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert_eq!(f.target.at, target, "the handle stays under the pointer");
     assert!((f.end_effector - nearest).norm() < 1e-9, "the machine waits at the nearest point");
     let planes = session.run().planes().expect("three drives").clone();
@@ -183,7 +183,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     assert!((nearest - target).norm() <= off_boundary(&loops, target) + 1e-5);
     still(&session);
 
-    let b = mending_b.expect("some plane serves it");
+    let b = feasible_b.expect("some plane serves it");
     assert!((b - 2.4).abs() > 0.01);
     do_it(&mut session, slide(b));
     settle(&mut session);
@@ -280,7 +280,7 @@ fn settings_outlive_following() {
     session.end_gesture();
     session.tick(50);
     do_it(&mut session, Edit::set("task.shape", "line"));
-    assert!(!session.is_led());
+    assert!(!session.is_dragged());
     assert_eq!(session.scenario().plant.payload.mass, 0.3);
     one_path(&session);
 }

@@ -30,7 +30,7 @@ fn every_key_of_a_file_is_in_the_table() {
         ["task", "control", "plant", "base", "base.wheel", "plant.payload", "plant.friction", "plant.link.5", "design"]
     {
         let change = change::single_change(&format!("{path}.nonsense"), 1);
-        let message = case_3().with(&change).expect_err("there is no such key").to_string();
+        let message = case_3().with_settings(&change).expect_err("there is no such key").to_string();
         let mut known = expected(&message);
         known.retain(|key| key != "nonsense");
         let mut table = parts_below(&path.replace(".5", ".*"));
@@ -73,11 +73,12 @@ fn every_word_of_a_choice_is_in_the_table() {
 /// What a key is set to if its default is typed is what stands there if nothing is.
 #[test]
 fn every_default_is_as_it_is_said() {
-    let scenario = case_3().with(&"base = { wheel = {} }\nplant = { payload = { mass = 0.1 } }".parse().expect("TOML"));
+    let scenario =
+        case_3().with_settings(&"base = { wheel = {} }\nplant = { payload = { mass = 0.1 } }".parse().expect("TOML"));
     let scenario = scenario.expect("a wheel and a payload");
     for (path, key, _) in scenario.settings() {
         let parts: Vec<&str> = path.split('.').collect();
-        let without = scenario.with(&change::at(&parts, DEFAULT_WORD));
+        let without = scenario.with_settings(&change::at(&parts, DEFAULT_WORD));
         match key.default {
             Key::REQUIRED => assert!(without.is_err(), "{path} can be left out"),
             Key::NONE => {
@@ -86,7 +87,8 @@ fn every_default_is_as_it_is_said() {
             }
             default => {
                 let without = without.expect("it may be left out");
-                let typed = scenario.with(&change::at(&parts, change::value(default))).expect("its own default");
+                let typed =
+                    scenario.with_settings(&change::at(&parts, change::value(default))).expect("its own default");
                 assert_eq!(typed, without, "{path} = {default}");
             }
         }
@@ -115,7 +117,7 @@ fn every_range_is_as_it_is_said() {
                 _ => outside.into(),
             };
             let parts: Vec<&str> = path.split('.').collect();
-            let laid = scenario.with(&change::at(&parts, value)).map_err(|e| e.to_string());
+            let laid = scenario.with_settings(&change::at(&parts, value)).map_err(|e| e.to_string());
             let refused = laid.and_then(|laid| laid.check("--set").map_err(|e| e.to_string()));
             let message = refused.expect_err(&path);
             assert!(message.contains("want") || message.contains("instead"), "{path} = {outside}: {message}");
@@ -139,15 +141,15 @@ fn every_key_says_what_it_means() {
 #[test]
 fn what_has_no_effect_says_what_it_wants() {
     let scenario = case_3();
-    assert_eq!(scenario.idle_keys(), []);
+    assert_eq!(scenario.ineffective_keys(), []);
     for (path, _, _) in scenario.settings() {
-        if let Some(wants) = scenario.idle(&path) {
+        if let Some(wants) = scenario.condition_for_effect(&path) {
             assert!(!wants.is_empty(), "{path}");
         }
     }
-    assert!(scenario.idle("base.mass").is_some_and(|wants| wants.contains("base.kind")));
-    assert!(scenario.idle("task.blend").is_some_and(|wants| wants.contains("corners = blend")));
-    assert_eq!(scenario.idle("task.b"), None);
+    assert!(scenario.condition_for_effect("base.mass").is_some_and(|wants| wants.contains("base.kind")));
+    assert!(scenario.condition_for_effect("task.blend").is_some_and(|wants| wants.contains("corners = blend")));
+    assert_eq!(scenario.condition_for_effect("task.b"), None);
 }
 
 /// Sessions of earlier versions have an edit for each part.
@@ -193,7 +195,7 @@ fn older_sessions_still_open() {
 /// it is undone and brought back without the run being made again.
 #[test]
 fn what_changes_no_frame_says_so() {
-    let aside = |path: &str| key_of(path).map(|key| key.effect) == Some(Effect::Aside);
+    let aside = |path: &str| key_of(path).map(|key| key.effect) == Some(Effect::NoFrame);
     assert!(aside("design.clearance") && aside("design.hold.link.5.mass") && aside("tolerance.seed"));
     assert!(!aside("task.time") && !aside("plant.force") && !aside("link.5.mass"));
     let mut session = Session::open(case_3()).expect("it opens");
@@ -268,9 +270,9 @@ proptest! {
         for (path, value) in changes {
             let parts: Vec<&str> = path.split('.').collect();
             let change = change::at(&parts, value.clone());
-            let Ok(next) = now.with(&change) else { continue };
-            let back = now.only(&change).expect("every key is there");
-            prop_assert_eq!(&next.with(&back).expect("as it was"), &now, "{} = {}", path, value);
+            let Ok(next) = now.with_settings(&change) else { continue };
+            let back = now.present_values(&change).expect("every key is there");
+            prop_assert_eq!(&next.with_settings(&back).expect("as it was"), &now, "{} = {}", path, value);
             if next.check("it").is_ok() {
                 let again = Scenario::parse(&next.to_toml(), "again.toml", None).expect("its own file");
                 prop_assert_eq!(again.value(&path), next.value(&path));

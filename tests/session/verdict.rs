@@ -55,9 +55,9 @@ fn a_wheel_does_not_make_an_arm_reactionless() {
     let (verdict, frames) = run(&scenario);
     let peak = |of: fn(&Frame) -> f64| frames.iter().map(|f| of(f).abs()).fold(0.0, f64::max);
     assert_eq!(verdict.arm_moment, peak(Frame::base_moment));
-    assert_eq!(verdict.past_wheel, Some(peak(Frame::felt_moment)));
+    assert_eq!(verdict.past_wheel, Some(peak(Frame::net_base_moment)));
     assert!((verdict.arm_moment - 1.0891).abs() < 1e-3 && verdict.past_wheel.is_some_and(|n| n < 1e-9));
-    assert!(!verdict.reactionless && verdict.base_feels_nothing && verdict.is_good());
+    assert!(!verdict.reactionless && verdict.is_base_unloaded && verdict.spares_base());
     assert_eq!(
         (verdict.word(), verdict.answer().as_str()),
         ("reactionless past the wheel", "no, the wheel takes it up")
@@ -65,7 +65,7 @@ fn a_wheel_does_not_make_an_arm_reactionless() {
     // One that is too weak leaves the base something: no praise.
     scenario.base.wheel = Some(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     let (weak, _) = run(&scenario);
-    assert!(!weak.base_feels_nothing && weak.past_wheel.is_some_and(|n| (n - 0.5891).abs() < 1e-3), "{weak:?}");
+    assert!(!weak.is_base_unloaded && weak.past_wheel.is_some_and(|n| (n - 0.5891).abs() < 1e-3), "{weak:?}");
     assert_eq!((weak.word(), weak.answer().as_str()), ("not reactionless", "no"));
     assert!(weak.sentence().contains("peak |n_B| 1.0891 N m, past the wheel 0.5891 N m"), "{}", weak.sentence());
 }
@@ -98,7 +98,7 @@ fn a_miss_is_said_at_the_end() {
     let scenario = case("case-2", &[], "[base]\nkind = \"free\"");
     let (verdict, frames) = run(&scenario);
     let end = &frames[frames.len() - 1];
-    assert!(verdict.miss > 1e-3 && verdict.miss == (end.end_effector - end.target.at).norm());
+    assert!(verdict.target_distance > 1e-3 && verdict.target_distance == (end.end_effector - end.target.at).norm());
     assert_eq!(shorts(&verdict), ["off its target"]);
     let on_the_way = Verdict::of(&scenario, &frames[frames.len() / 2]);
     assert!(on_the_way.so_far().is_empty() && Verdict::of(&scenario, end).so_far().len() == 1);
@@ -134,7 +134,7 @@ fn a_failed_audit_leaves_no_answer() {
     end.audit.energy = 1.0;
     let verdict = Verdict::of(&scenario, &end);
     assert_eq!((verdict.word(), verdict.answer().as_str()), ("untrusted", "untrusted"));
-    assert!(!verdict.is_good() && !is_clean(&verdict) && verdict.sentence().contains("audit failed: energy"));
+    assert!(!verdict.spares_base() && !is_clean(&verdict) && verdict.sentence().contains("audit failed: energy"));
 }
 
 /// A session on its way says what it knows and no more.
@@ -142,7 +142,7 @@ fn a_failed_audit_leaves_no_answer() {
 fn a_session_has_a_verdict_at_any_time() {
     let session = Session::open(case("case-3", &[], "")).expect("begins");
     let verdict = Verdict::of(session.scenario(), session.frame());
-    assert!(verdict.is_good() && verdict.so_far().is_empty() && !verdict.moved);
+    assert!(verdict.spares_base() && verdict.so_far().is_empty() && !verdict.moved);
 }
 
 proptest! {

@@ -247,7 +247,7 @@ fn only_case_3_leaves_a_spacecraft_alone() {
     let moved = ["case-1", "case-2", "case-3"].map(|name| {
         let mut scenario = Scenario::builtin(name).expect("built in");
         scenario.base = Base { com: [0.15, -0.1], ..free() };
-        let end = replay(&scenario, |_, f| assert!(f.fault().is_none(), "{:?}", f.audit));
+        let end = replay(&scenario, |_, f| assert!(f.first_violation().is_none(), "{:?}", f.audit));
         let totals = end.expect("runs").frame().totals;
         (totals.shift, totals.base_angle)
     });
@@ -268,14 +268,14 @@ fn a_wheel_cancels_until_it_saturates() {
             if f.totals.saturated.is_none() {
                 wheel_momentum = wheel_momentum.max(off.abs());
             }
-            assert!(f.fault().is_none(), "{:?}", f.audit);
+            assert!(f.first_violation().is_none(), "{:?}", f.audit);
         });
         let f = run.expect("runs").frame();
         assert!(wheel_momentum < 1e-9, "{wheel_momentum}");
         f
     };
     let ample = with(Wheel { inertia: 0.002, ..Wheel::default() });
-    assert!(ample.peaks.base_feels_nothing() && !ample.peaks.is_reactionless() && ample.totals.saturated.is_none());
+    assert!(ample.peaks.is_base_unloaded() && !ample.peaks.is_reactionless() && ample.totals.saturated.is_none());
     assert!(ample.peaks.moment < 1e-9 && ample.totals.wheel_rate > 50.0, "{}", ample.totals.wheel_rate);
     let weak = with(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     assert!((weak.peaks.moment - (1.0891 - 0.5)).abs() < 1e-3, "{}", weak.peaks.moment);
@@ -333,7 +333,7 @@ proptest! {
             }
         });
         let end = run.expect("runs").frame();
-        let fault = end.fault();
+        let fault = end.first_violation();
         prop_assert!(fault.is_none(), "{fault:?}");
         prop_assert!(end.totals.wheel_rate <= top * (1.0 + 1e-13));
         // One that has reached it without a weak motor stays there for a while.

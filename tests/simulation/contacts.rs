@@ -354,7 +354,7 @@ fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
     if quick {
         scenario.task = scenario
             .task
-            .with(&"law = \"quintic\"\ntime = 0.6".parse().expect("TOML"), &scenario.machine)
+            .with_change(&"law = \"quintic\"\ntime = 0.6".parse().expect("TOML"), &scenario.machine)
             .expect("a task");
     }
     let (mut moments, each) = (Vec::new(), (1e-3 / step).round() as u64);
@@ -364,7 +364,7 @@ fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
         }
     });
     let end = run.expect("runs").frame();
-    assert!(end.fault().is_none(), "{:?}", end.audit);
+    assert!(end.first_violation().is_none(), "{:?}", end.audit);
     moments
 }
 
@@ -395,7 +395,7 @@ fn what_sticking_takes_is_an_error() {
         let (q, base) = (DriveAngles::from([1.7, 3.7, 2.2]), Base { kind, ..Base::default() });
         let body = MovingBody::of(machine, &friction, &base, &q).expect("valid");
         let state = body.state(&q, &PerDrive::from([0.1, 0.2, -0.3]), Default::default(), Default::default(), 0.0);
-        let stuck = body.stuck(state, &[0; stillbase::simulation::plant::MAX_CONTACTS]);
+        let stuck = body.with_stuck_stopped(state, &[0; stillbase::simulation::plant::MAX_CONTACTS]);
         assert!(
             body.rates(&stuck).first(3).iter().all(|qd| (qd - body.rates(&stuck).get(3).unwrap_or(&0.0)).abs() < 1e-12)
         );

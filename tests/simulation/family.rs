@@ -52,7 +52,7 @@ fn energy_and_momentum_are_kept() {
         let friction = if seed % 2 == 0 { friction } else { Friction::default() };
         let plant = PlantDifferences { friction, ..PlantDifferences::default() };
         let end = run(&machine, &plant, &base, &Control::default(), way(&mut noise, n, 0.3));
-        assert!(end.fault().is_none(), "machine {seed}: {:?}", end.fault());
+        assert!(end.first_violation().is_none(), "machine {seed}: {:?}", end.first_violation());
         in_joints += usize::from(machine.motors().in_joints());
     }
     assert!(in_joints > 15, "{in_joints}");

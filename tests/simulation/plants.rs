@@ -37,7 +37,7 @@ fn frames(scenario: &Scenario) -> Vec<Frame> {
 fn last(scenario: &Scenario) -> Frame {
     let frames = frames(scenario);
     let last = frames[frames.len() - 1];
-    assert!(last.fault().is_none(), "{:?} {:?}", last.audit, last.fault());
+    assert!(last.first_violation().is_none(), "{:?} {:?}", last.audit, last.first_violation());
     last
 }
 
@@ -244,7 +244,7 @@ fn an_edit_that_changes_nothing_leaves_no_trace() {
         assert!((a.base.angle - b.base.angle).abs() < 1e-11 && (a.wheel.rate - b.wheel.rate).abs() < 1e-9);
         assert!(a.torque.minus(&b.torque).max_abs() < 1e-8, "{} s: {:?} {:?}", a.time, a.torque, b.torque);
     }
-    let fault = edited[edited.len() - 1].fault();
+    let fault = edited[edited.len() - 1].first_violation();
     assert!(fault.is_none(), "{fault:?}");
 }
 
@@ -379,7 +379,7 @@ fn what_is_shown_does_not_depend_on_the_step() {
         scenario.step *= 0.1;
         let fine: Vec<Frame> = frames(&scenario).into_iter().step_by(10).collect();
         let end = shown[shown.len() - 1];
-        assert!(end.fault().is_none(), "{name} {text}: {:?}", end.audit);
+        assert!(end.first_violation().is_none(), "{name} {text}: {:?}", end.audit);
         let peaks = end.peaks;
         for (a, b) in shown.iter().zip(&fine) {
             let torque = a.torque.minus(&b.torque).max_abs();

@@ -70,7 +70,7 @@ fn the_wheel_says_when_it_saturates() {
     let ample = run(Alternative::Wheel, "case-3").summary;
     assert!(
         !ample.reactionless
-            && ample.verdict.base_feels_nothing
+            && ample.verdict.is_base_unloaded
             && ample.saturated_at.is_none()
             && ample.wheel_rate.is_some_and(|rate| rate > 5.0)
     );

@@ -119,7 +119,7 @@ fn what_is_left_of_balance_is_what_the_constants_have() {
         assert_eq!(both.len(), conditions.len());
         for (i, (line, condition)) in both.into_iter().zip(conditions).enumerate() {
             let size: f64 = line.left.iter().map(|term| term.value.abs()).sum();
-            let left = condition.left(&inertia).re;
+            let left = condition.residual(&inertia).re;
             assert!((line.off() - left).abs() <= 1e-13 * size.max(1e-3), "{condition:?}: {} and {left}", line.off());
             // (9) is the same in two heaps.
             let ninth = &lines(&all, "9")[i];

@@ -81,7 +81,7 @@ fn portions_come_to_the_same() {
     let queries = Queries::default();
     queries.work_in_portions();
     let found = (0..100).find_map(|_| {
-        let asked = queries.ask_beside::<ImportQuery>(&asked);
+        let asked = queries.ask_in_background::<ImportQuery>(&asked);
         (asked.state == QueryStatus::Known).then_some(asked.last).flatten()
     });
     let found: Arc<_> = found.expect("it ends");

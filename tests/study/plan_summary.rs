@@ -49,7 +49,7 @@ fn a_refusal_says_what_would_do() {
     let mut change = stillbase::session::scenario::TaskChange::new();
     change.insert("b".into(), 2.9.into());
     change.insert("shape".into(), "line".into());
-    let task = case.task.with(&change, &case.machine).expect("a task");
+    let task = case.task.with_change(&change, &case.machine).expect("a task");
     let blocked = Scenario { task, ..case };
     let found = summary(&blocked, None);
     let obstacle = found.obstacle.as_ref().expect("B is on other planes");

@@ -417,11 +417,11 @@ fn batches_are_parts_of_the_whole() {
     let all = sampler.outcomes(1).to_vec();
     let first = CHUNK as u64;
     let range = first + 2..first + 5;
-    let batch = Batch::of(&ensemble, &mut sampler, Mode::Tracking, (1, &range), true).expect("nothing is simulated");
+    let batch = Batch::of(&ensemble, &mut sampler, Mode::Tracking, 1, &range, true).expect("nothing is simulated");
     assert_eq!((&batch.samples, &batch.outcomes[..]), (&range, &all[2..5]));
     assert!(batch.tracking.is_empty() && batch.deviations.len() == 3);
     assert_eq!(batch.deviations[1], of_machine(&sampler, 3));
-    let simulated = Batch::of(&ensemble, &mut sampler, Mode::Simulated(&run), (1, &range), false).expect("they end");
+    let simulated = Batch::of(&ensemble, &mut sampler, Mode::Simulated(&run), 1, &range, false).expect("they end");
     assert!(simulated.tracking == batch.outcomes && simulated.deviations.is_empty());
     let plant = ensemble.machine_of(&batch.deviations[0]).expect("possible");
     assert_eq!(simulated.outcomes[0], simulate(&run, &plant).expect("it ends"));

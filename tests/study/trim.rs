@@ -139,7 +139,7 @@ fn without_noise_every_number_is_found() {
         let hidden = built(&machine, &mut noise, 0.05);
         let recording = measured(&hidden, &mut noise, EXACT, &vec![true; n]);
         let fit = fitted(&machine, &recording, false);
-        assert!(fit.told.iter().all(|told| *told), "{:?}", fit.confused);
+        assert!(fit.identifiable.iter().all(|told| *told), "{:?}", fit.confounded);
         let off = furthest(&fit, &hidden);
         assert!(off < 1e-9, "{n} drives: {off:e}");
         drives[n] += 1;
@@ -231,7 +231,7 @@ fn intervals_are_honest() {
             let mut noise = Noise::of(1000 + seed);
             let hidden = built(machine, &mut noise, 0.02);
             let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
-            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.told[*i]) {
+            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.identifiable[*i]) {
                 held += usize::from((fit.measured[i] - want).abs() <= fit.half_width(i));
                 all += 1;
                 wide = wide.max(fit.half_width(i));
@@ -296,12 +296,12 @@ fn what_data_cannot_tell_is_named() {
                 Unknown::Of(Condition::Coupling(0, 2), ComplexPart::Along | ComplexPart::Across) => false,
                 Unknown::Of(..) => continue,
             };
-            assert_eq!(!fit.told[i], lost, "{}: {:?}", fit.unknowns.at(i).name(machine), fit.confused);
+            assert_eq!(!fit.identifiable[i], lost, "{}: {:?}", fit.unknowns.at(i).name(machine), fit.confounded);
             assert!(!lost || fit.measured[i] == fit.nominal[i]);
         }
-        let alone: Vec<_> = fit.confused.iter().filter(|group| group.len() == 1).flatten().collect();
+        let alone: Vec<_> = fit.confounded.iter().filter(|group| group.len() == 1).flatten().collect();
         for (i, lost) in [(2, true), (3, true), (13, true), (0, false), (12, false)] {
-            assert_eq!(alone.contains(&&i), lost, "{i}: {:?}", fit.confused);
+            assert_eq!(alone.contains(&&i), lost, "{i}: {:?}", fit.confounded);
         }
     }
     // What is taken of the rest is what was measured, or the file's.
@@ -311,7 +311,7 @@ fn what_data_cannot_tell_is_named() {
     for i in 0..fit.unknowns.of_balance() {
         let near = [fit.measured[i], fit.nominal[i]].map(|of| (taken.values[i] - of).abs());
         assert!(near[0] <= 2.0 * fit.half_width(i) || near[1] == 0.0, "{i}: {near:?}");
-        assert!(fit.told[i] || near[1] == 0.0);
+        assert!(fit.identifiable[i] || near[1] == 0.0);
     }
     let none = measured(&hidden, &mut noise, exact, &[false; 3]);
     assert_eq!(Regressor::of(machine, &none, false).unwrap_err(), TrimError::Still);
@@ -337,7 +337,7 @@ fn what_turns_as_one_is_told_as_one() {
     }
     let fit = fitted(machine, &recording, false);
     // g₁ and g₂ in two parts each; C₁₂ in two parts, D₁ and D₂.
-    let mut groups = fit.confused.clone();
+    let mut groups = fit.confounded.clone();
     groups.iter_mut().for_each(|group| group.sort_unstable());
     groups.sort();
     assert_eq!(groups, [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
@@ -548,7 +548,7 @@ fn new_counterweights_mend_what_has_none() {
     assert!(misses.iter().all(|miss| miss.norm() < 1e-9), "{misses:?}");
     let (got, want) = (Inertia::of(&written), Inertia::of(&hidden));
     for condition in Condition::all(3) {
-        assert!((condition.left(&got) - condition.left(&want)).norm() < 1e-7, "{condition:?}");
+        assert!((condition.residual(&got) - condition.residual(&want)).norm() < 1e-7, "{condition:?}");
     }
     assert!((0..3).all(|k| (got.momentum(k) - want.momentum(k)).abs() < 1e-8), "{:?}", got.momenta());
 }
@@ -662,7 +662,7 @@ fn estimates_scatter_as_their_intervals_say() {
             let mut noise = Noise::of(3000 + seed);
             let hidden = built(machine, &mut noise, 0.02);
             let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
-            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.told[*i]) {
+            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.identifiable[*i]) {
                 sum += (1.96 * (fit.measured[i] - want) / fit.half_width(i)).powi(2);
                 all += 1.0;
             }

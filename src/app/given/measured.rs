@@ -84,7 +84,7 @@ fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
             right(ui, dim(head));
         }
         ui.end_row();
-        for Number { name, unit, nominal, measured, half_width, off, left, .. } in &report.numbers {
+        for Number { name, unit, nominal, measured, half_width, off, residual, .. } in &report.numbers {
             let tone = colour(if *off { p.reaction } else { p.ink });
             let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 5));
             let text = |x: Option<f64>| RichText::new(number(x)).font(plain(12.5));
@@ -93,7 +93,7 @@ fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
             right(ui, text(Some(*nominal)));
             right(ui, text(*measured).color(tone));
             right(ui, text(*half_width).color(colour(p.dim)));
-            right(ui, text(*left));
+            right(ui, text(*residual));
             ui.label(dim(unit));
             ui.end_row();
         }
@@ -115,10 +115,10 @@ fn change(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, found: &TrimResult, c
     ui.horizontal_wrapped(|ui| {
         if mended.is_ok() && !changes.is_empty() {
             let tip = "The machine of the session becomes the measured one with this change: one step to undo";
-            take(ui, ("Take the change", tip), shown, TableAction::Change, commands);
+            take(ui, "Take the change", tip, shown, TableAction::Change, commands);
         }
         let tip = "The machine of the session becomes the measured one as it stands: one step to undo";
-        take(ui, ("Take as measured", tip), shown, TableAction::Measured, commands);
+        take(ui, "Take as measured", tip, shown, TableAction::Measured, commands);
     });
     match mended {
         Err(why) => ink(ui, &why.to_string(), p.reaction),

@@ -38,7 +38,9 @@ pub(super) fn show(
     ui: &mut Ui,
     p: &Palette,
     shown: &TableView<'_>,
-    (motion, unwrapped, imported): (&GivenMotion, &[usize], &Result<ImportedMotion, MotionImportError>),
+    motion: &GivenMotion,
+    unwrapped: &[usize],
+    imported: &Result<ImportedMotion, MotionImportError>,
     commands: &mut Vec<Command>,
 ) {
     let imported = match imported {
@@ -159,10 +161,10 @@ fn takes(ui: &mut Ui, shown: &TableView<'_>, imported: &ImportedMotion, commands
     ui.horizontal_wrapped(|ui| {
         if imported.scenarios.is_some() {
             let tip = "Makes it the task of the session: one step to undo";
-            take(ui, ("Take the proposal", tip), shown, TableAction::Proposal, commands);
+            take(ui, "Take the proposal", tip, shown, TableAction::Proposal, commands);
         }
         let tip = "Makes the motion as it was given the task of the session, to see what it does to the base";
-        take(ui, ("Take as given", tip), shown, TableAction::AsGiven, commands);
+        take(ui, "Take as given", tip, shown, TableAction::AsGiven, commands);
         let tip = "Runs both, and adds them to the runs side by side";
         let proposal = imported.scenarios.as_ref().map(|[proposal, _]| proposal);
         if let Some(proposal) = proposal

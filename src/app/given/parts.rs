@@ -94,7 +94,8 @@ pub(super) fn worded(advice: &Advice) -> String {
 /// Draws a button that applies a result. It is disabled while the result does not belong to the present session.
 pub(super) fn take(
     ui: &mut Ui,
-    (words, tip): (&str, &str),
+    words: &str,
+    tip: &str,
     shown: &TableView<'_>,
     taking: TableAction,
     commands: &mut Vec<Command>,

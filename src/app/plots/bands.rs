@@ -6,16 +6,15 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
 use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use super::which_b::WhichB;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
-use crate::{Command, SessionCommand, ViewState, set_b};
+use crate::{Command, SessionCommand, set_b};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
-use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::pose_constant::CommonB;
 use stillbase_planning::pose_space::PoseSpace;
-use stillbase_query::{ByIdentity, Queries, QuickWork};
-use stillbase_session::Session;
+use stillbase_query::{ByIdentity, QuickWork};
 
 /// Maximum number of bars; with more points, only the first and the last have one.
 const MAX_BARS: usize = 8;
@@ -25,19 +24,18 @@ const MIN_BAR_RAD: f64 = 1e-3;
 /// Draws a bar of the feasible b for each point, with b on the horizontal axis; a click chooses b.
 pub fn bars(
     ui: &mut Ui,
-    p: &Palette,
-    (session, queries): (&Session, &Queries),
+    chart: WhichB<'_>,
     space: &Arc<PoseSpace>,
     mut points: Vec<(String, Vector)>,
-    (view_state, height): (&ViewState, f32),
     commands: &mut Vec<Command>,
 ) {
+    let WhichB { session, queries, view_state, palette: p, height } = chart;
     let now = session.frame();
     if points.len() > MAX_BARS {
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let serving = queries.ask_beside::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
+    let serving = queries.ask_in_background::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
     // While new intervals are computed, the last ones are shown, unless they belong to another number of points.
     let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");
@@ -55,7 +53,7 @@ pub fn bars(
             plot.set_plot_bounds_y(-count..=0.4);
             for (i, ((name, _), set)) in points.iter().zip(sets.into_iter().flatten()).enumerate() {
                 let y = -(i as f64) - 0.5;
-                let near = set.as_ref().map(|set| set.near(b_now).intervals).unwrap_or_default();
+                let near = set.as_ref().map(|set| set.shifted_near(b_now).intervals).unwrap_or_default();
                 for [low, high] in &near {
                     if high - low < MIN_BAR_RAD {
                         let dot = vec![[0.5 * (low + high), y]];

@@ -35,7 +35,8 @@ enum Hold {
 pub fn show(
     ui: &mut Ui,
     shown: &DisplayContext<'_>,
-    (plot, drawn): (&Plot<'_>, &PlotLines),
+    plot: &Plot<'_>,
+    drawn: &PlotLines,
     look: &PlotContext<'_>,
     height: f32,
     commands: &mut Vec<Command>,
@@ -64,7 +65,7 @@ pub fn show(
         }
     }
     // The axis numbers handle the value range; all else handles time.
-    let on_values = held(ui, &response).is_none() && values::hands(ui, (plot, drawn, &axes), &response, commands);
+    let on_values = held(ui, &response).is_none() && values::hands(ui, plot, drawn, &axes, &response, commands);
     if !on_values {
         if plot.against.is_none() {
             drag(ui, shown, &response, &axes, time_at, commands);
@@ -90,7 +91,7 @@ fn describe(response: &Response, plot: &Plot<'_>, look: &PlotContext<'_>) {
     let over = plot.against.map_or_else(|| "over time".into(), |signal| format!("over {}", signal.label));
     let label = format!("{} {over}, {}", plot.title, plot.unit());
     let value = |curve: &stillbase_picture::charts::choice::PlotCurve<'_>| {
-        format!("{} {}", curve.signal.symbol, at_step(curve.times * curve.signal.value(look.now), 1e-3))
+        format!("{} {}", curve.signal.symbol, at_step(curve.scale * curve.signal.value(look.now), 1e-3))
     };
     let values: Vec<String> = plot.shown().map(value).collect();
     let at = format!("at {} s: {}", at_step(look.now.time, 1e-3), values.join(", "));

@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for (i, curve) in plot.curves.iter().enumerate().rev() {
-                switch(ui, plot, (i, curve), words(plot, curve, drawn, look, fewer), look, commands);
+                switch(ui, plot, i, curve, words(plot, curve, drawn, look, fewer), look, commands);
             }
         });
     });
@@ -55,15 +55,15 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
 
 /// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor.
 fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotContext<'_>, fewer: usize) -> String {
-    let (signal, thousandths) = (curve.signal, curve.times != 1.0);
+    let (signal, thousandths) = (curve.signal, curve.scale != 1.0);
     // Values in thousandths get two decimals; their index B is omitted, since the plot names it.
     let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
     }
     let shown = |value: f64| match plot.own || curve.added {
-        true => at_step(curve.times * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
-        false => signed(curve.times * value, if thousandths { 2 } else { 3 } - fewer),
+        true => at_step(curve.scale * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
+        false => signed(curve.scale * value, if thousandths { 2 } else { 3 } - fewer),
     };
     match look.mark.map(|marked| SignalDifference::of(signal, marked, look.now)) {
         Some(d) => format!("Δ{symbol} {}", shown(d.by())),
@@ -75,7 +75,8 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
 fn switch(
     ui: &mut Ui,
     plot: &Plot<'_>,
-    (i, curve): (usize, &PlotCurve<'_>),
+    i: usize,
+    curve: &PlotCurve<'_>,
     text: String,
     look: &PlotContext<'_>,
     commands: &mut Vec<Command>,
@@ -88,7 +89,7 @@ fn switch(
     let button = ui.add(Button::new(label).frame(false).truncate());
     let name = format!("{text}: {} in {}", signal.label, plot.title);
     button.widget_info(|| WidgetInfo::selected(Role::Switch, true, curve.on, &name));
-    let at = |value: f64| signed(curve.times * value, 4);
+    let at = |value: f64| signed(curve.scale * value, 4);
     let differs = look.mark.map_or_else(String::new, |marked| {
         let d = SignalDifference::of(signal, marked, look.now);
         format!(": {} at the second cursor, {} now", at(d.from), at(d.to))

@@ -61,7 +61,7 @@ pub fn card(
         }
         for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
             let tone = colour(pen(plot, i, look).0);
-            let value = |frame: &Frame| curve.times * curve.signal.value(frame);
+            let value = |frame: &Frame| curve.scale * curve.signal.value(frame);
             ui.label(RichText::new(&curve.signal.symbol).font(bold(11.5)).color(tone));
             ui.label(RichText::new(number(value(frame))).font(plain(11.5)));
             ui.label(dim(curve.unit()));
@@ -77,7 +77,7 @@ pub fn card(
         let each = plot.shown().filter_map(|curve| {
             // Another machine may lack the drive.
             let has = curve.signal.drive.is_none_or(|k| k < run.machine().drives());
-            let value = curve.times * curve.signal.value(there);
+            let value = curve.scale * curve.signal.value(there);
             has.then(|| format!("{} {}", curve.signal.symbol, number(value)))
         });
         ui.label(dim(format!("run {}: {}", place + 1, each.collect::<Vec<_>>().join("  "))));

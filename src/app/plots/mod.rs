@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>)
                 let look =
                     PlotContext { palette: &p, peaks: &newest.peaks, now: session.frame(), mark: marked, hover: seen };
                 header::show(ui, plot, drawn, &look, commands);
-                let found = curve::show(ui, what, (plot, drawn), &look, height + BOTTOM_MARGIN, commands);
+                let found = curve::show(ui, what, plot, drawn, &look, height + BOTTOM_MARGIN, commands);
                 over = found.or(over);
                 if view_state.charts.statistics {
                     header::statistics(ui, plot, drawn, &look);
@@ -94,7 +94,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>)
                 ui.add_space(4.0);
             }
             hover::remember(ui, over);
-            which_b::show(ui, &p, (session, queries), view_state, height, commands);
+            which_b::show(ui, which_b::WhichB { session, queries, view_state, palette: &p, height }, commands);
         });
     });
     view_state.arrangement.now().plots.made(made.response.rect.width(), usual)

@@ -56,7 +56,7 @@ impl QuickQuery for PlotPreparation {
 /// Returns the time that the plots of a session can show.
 pub fn extent(session: &Session) -> TimeExtent {
     let (now, end) = (session.frame().time, session.frames().last().map_or(0.0, |f| f.time).max(session.length()));
-    match session.is_led() {
+    match session.is_dragged() {
         true => TimeExtent::open_ended(session.run().planned_time(), end, now),
         false => TimeExtent::of(end, now),
     }

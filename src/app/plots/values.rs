@@ -18,7 +18,9 @@ const TIP: &str = "Drag: along the values\nCtrl wheel, or Alt wheel on the plot:
 /// Handles the gestures; returns whether the pointer is on the numbers or drags them.
 pub fn hands(
     ui: &Ui,
-    (plot, drawn, axes): (&Plot<'_>, &PlotLines, &Axes),
+    plot: &Plot<'_>,
+    drawn: &PlotLines,
+    axes: &Axes,
     response: &Response,
     commands: &mut Vec<Command>,
 ) -> bool {

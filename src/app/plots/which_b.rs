@@ -32,48 +32,57 @@ impl QuickQuery for Branches {
     }
 }
 
+/// Context of the chart.
+#[derive(Clone, Copy)]
+pub struct WhichB<'a> {
+    /// The session whose b it shows.
+    pub session: &'a Session,
+    /// Queries about the session.
+    pub queries: &'a Queries,
+    /// The view state, with the b under the pointer.
+    pub view_state: &'a ViewState,
+    /// Colours.
+    pub palette: &'a Palette,
+    /// Height of the chart, points.
+    pub height: f32,
+}
+
 /// Draws the chart: with planes, q_1 against b of each point; otherwise a bar of its feasible b. A click chooses b.
-pub fn show(
-    ui: &mut Ui,
-    p: &Palette,
-    (session, queries): (&Session, &Queries),
-    view_state: &ViewState,
-    height: f32,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
+    let WhichB { session, height, .. } = chart;
     let Ok(space) = session.run().pose_space() else { return };
     let (task, at) = (&session.scenario().task, session.frame().target.at);
-    let points: Vec<(String, Vector)> = match session.is_led() {
+    let points: Vec<(String, Vector)> = match session.is_dragged() {
         true => vec![("target".to_owned(), at)],
         false => task.points().into_iter().enumerate().map(|(i, at)| (task.name_of(i), at)).collect(),
     };
     match space.planes() {
         Ok(planes) => {
             let height = height * 1.6 + BOTTOM_MARGIN;
-            lines(ui, p, (session, queries), (space, planes), &points, (view_state, height), commands);
+            lines(ui, WhichB { height, ..chart }, space, planes, &points, commands);
         }
         Err(_) if space.joints().is_empty() => {}
-        Err(_) => bars(ui, p, (session, queries), space, points, (view_state, height + BOTTOM_MARGIN), commands),
+        Err(_) => bars(ui, WhichB { height: height + BOTTOM_MARGIN, ..chart }, space, points, commands),
     }
 }
 
 /// Draws Fig. 3: q_1 against b for A and B, or for the target.
 fn lines(
     ui: &mut Ui,
-    p: &Palette,
-    (session, queries): (&Session, &Queries),
-    (space, planes): (&Arc<PoseSpace>, &Arc<Planes>),
+    chart: WhichB<'_>,
+    space: &Arc<PoseSpace>,
+    planes: &Arc<Planes>,
     points: &[(String, Vector)],
-    (view_state, height): (&ViewState, f32),
     commands: &mut Vec<Command>,
 ) {
+    let WhichB { session, queries, view_state, palette: p, height } = chart;
     let now = session.frame();
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
     let branches = queries.ask::<QuickWork<Branches>>(&(ByIdentity(planes.clone()), places.clone()));
     let serving = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
     which_b_title(ui, p, "q₁ against b, rad; click to choose");
     let map = planes.map();
-    let common = serving.all.as_ref().map(|common| common.near(now.b_reference));
+    let common = serving.all.as_ref().map(|common| common.shifted_near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()

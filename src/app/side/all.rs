@@ -45,7 +45,7 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
 
 /// Draws the list.
 pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, commands: &mut Vec<Command>) {
-    fold(ui, p, (TITLE, "by key"), None, commands, |ui, commands| {
+    fold(ui, p, TITLE, "by key", None, commands, |ui, commands| {
         let id = sought_id();
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
         let field = TextEdit::singleline(&mut sought).hint_text("search: friction, limit, link.5 …");

@@ -17,18 +17,19 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     let word = base.kind.words().file;
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
     let back = (*base != Base::default()).then(|| PanelSection::Base.all_back());
-    place::place_of_thing(ui, Handle::Base, p, |ui| section(ui, session, view_state, (&summary, back), commands));
+    place::place_of_thing(ui, Handle::Base, p, |ui| section(ui, session, view_state, &summary, back, commands));
 }
 
 fn section(
     ui: &mut Ui,
     session: &Session,
     view_state: &ViewState,
-    (summary, back): (&str, Option<Edit>),
+    summary: &str,
+    back: Option<Edit>,
     commands: &mut Vec<Command>,
 ) {
     let (base, p) = (&session.scenario().base, &view_state.palette());
-    fold(ui, p, ("Base", summary), back, commands, |ui, commands| {
+    fold(ui, p, "Base", summary, back, commands, |ui, commands| {
         let kinds: Vec<_> =
             BaseKind::ALL.iter().map(|kind| (*kind, kind.words().screen, kind.words().meaning)).collect();
         segments(ui, p, &kinds, base.kind, commands, |kind| PanelSection::Base.set(&["kind"], kind.words().file));

@@ -30,10 +30,10 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         summary += ", sampled";
     }
     let back = (*control != Control::default()).then(|| PanelSection::Control.all_back());
-    fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
+    fold(ui, p, "Control", &summary, back, commands, |ui, commands| {
         let laws: Vec<(ControlLaw, String)> =
             ControlLaw::ALL.iter().map(|law| (*law, law.words().screen.to_owned())).collect();
-        choose(ui, ("law", tip_of("control.law")), &laws, &control.law, commands, |law| {
+        choose(ui, "law", tip_of("control.law"), &laws, &control.law, commands, |law| {
             Some(PanelSection::Control.set(&["law"], law.words().file))
         });
         let kp = PerDriveField { label: "Kp", path: &["control", "kp"], decimals: 0, most: 2000.0, normal: 400.0 };
@@ -61,7 +61,7 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     let mut rates = vec![(0.0, "all the time".to_owned())];
     rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
     offered(&mut rates, control.rate, hertz(control.rate));
-    choose(ui, ("rate", tip_of("control.rate")), &rates, &control.rate, commands, |x| {
+    choose(ui, "rate", tip_of("control.rate"), &rates, &control.rate, commands, |x| {
         Some(PanelSection::Control.set(&["rate"], *x))
     });
     let delay = NumberRow::of("delay", "control.delay");
@@ -75,7 +75,7 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     let mut counts = vec![(0.0, "exact".to_owned())];
     counts.extend(COUNTS.map(|x| (x, words(x))));
     offered(&mut counts, control.encoder, words(control.encoder));
-    choose(ui, ("encoder", tip_of("control.encoder")), &counts, &control.encoder, commands, |x| {
+    choose(ui, "encoder", tip_of("control.encoder"), &counts, &control.encoder, commands, |x| {
         Some(PanelSection::Control.set(&["encoder"], *x))
     });
 }

@@ -48,7 +48,8 @@ impl PanelSection {
 pub fn fold(
     ui: &mut Ui,
     p: &Palette,
-    (title, summary): (&str, &str),
+    title: &str,
+    summary: &str,
     back: Option<Edit>,
     commands: &mut Vec<Command>,
     body: impl FnOnce(&mut Ui, &mut Vec<Command>),
@@ -153,7 +154,8 @@ pub fn segments<T: Copy + PartialEq>(
 /// Draws a label and a list to choose from.
 pub fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
-    (label, tip): (&str, &str),
+    label: &str,
+    tip: &str,
     choices: &[(T, String)],
     now: &T,
     commands: &mut Vec<Command>,

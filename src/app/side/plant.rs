@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         n => format!("{n} differences"),
     };
     let back = (*plant != PlantDifferences::default()).then(|| PanelSection::Plant.all_back());
-    fold(ui, p, ("Plant", &summary), back, commands, |ui, commands| {
+    fold(ui, p, "Plant", &summary, back, commands, |ui, commands| {
         place::place_of_thing(ui, Handle::Payload, p, |ui| payload(ui, plant, p, commands));
         friction(ui, plant, model, p, commands);
         limits(ui, plant, model, p, commands);
@@ -212,7 +212,8 @@ fn chosen(ui: &Ui, what: &str, first: Option<&String>, exists: impl Fn(&str) -> 
 
 fn pick(
     ui: &mut Ui,
-    (what, tip): (&str, &str),
+    what: &str,
+    tip: &str,
     names: impl Iterator<Item = (String, bool)>,
     now: &str,
     commands: &mut Vec<Command>,
@@ -222,7 +223,7 @@ fn pick(
         let words = if differs { format!("{name} *") } else { name.clone() };
         (name, words)
     }));
-    if let Some(name) = choose(ui, (what, tip), &choices, &now.to_owned(), commands, |_| None) {
+    if let Some(name) = choose(ui, what, tip, &choices, &now.to_owned(), commands, |_| None) {
         ui.data_mut(|d| d.insert_temp(place::chosen_id(what), name));
         ui.ctx().request_repaint();
     }
@@ -233,7 +234,7 @@ fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, com
     let known = |name: &str| model.links().iter().find(|link| link.name == name);
     let now = chosen(ui, WHAT, plant.link.keys().next(), |name| known(name).is_some());
     let names = model.links().iter().map(|link| (link.name.clone(), plant.link.contains_key(&link.name)));
-    pick(ui, (WHAT, "A link that is not as the model has it; * marks those that differ"), names, &now, commands);
+    pick(ui, WHAT, "A link that is not as the model has it; * marks those that differ", names, &now, commands);
     let Some(link) = known(&now) else { return };
     let differs = plant.link.get(&now).copied().unwrap_or_default();
     let number = model.links().iter().position(|other| other.name == link.name).unwrap_or_default();
@@ -273,7 +274,7 @@ fn length(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
     let now = chosen(ui, WHAT, plant.length.keys().next(), |name| lengths.contains_key(name));
     let names = lengths.keys().map(|name| (name.clone(), plant.length.contains_key(name)));
     let tip = "A length that is not as the model has it, in all bars that share it, so that parallelograms stay closed";
-    pick(ui, (WHAT, tip), names, &now, commands);
+    pick(ui, WHAT, tip, names, &now, commands);
     let Some(normal) = lengths.get(&now) else { return };
     let differs = plant.length.get(&now);
     let path = ["length", now.as_str()];

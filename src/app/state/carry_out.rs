@@ -18,7 +18,7 @@ impl AppState {
             Command::Session(command) if self.background.is_changing() => {
                 let edits = matches!(command, SessionCommand::Edit(_));
                 self.view_state.gesture.dragged |= self.view_state.gesture.grabbed.is_some() && edits;
-                self.background.after(command);
+                self.background.enqueue(command);
             }
             command => self.do_now(command),
         }
@@ -26,7 +26,7 @@ impl AppState {
 
     pub(super) fn do_now(&mut self, command: Command) {
         let done = self.attempt(command);
-        self.tell(done);
+        self.show_outcome(done);
         self.refresh();
     }
 
@@ -34,7 +34,7 @@ impl AppState {
     /// background.
     pub(super) fn catch_up(&mut self) {
         while self.background.change.is_none() {
-            let Some(command) = self.background.later.pop_front() else { return };
+            let Some(command) = self.background.waiting_commands.pop_front() else { return };
             self.do_now(command.into());
         }
     }
@@ -64,7 +64,7 @@ impl AppState {
     fn do_to_session(&mut self, command: SessionCommand) -> Result<Option<String>, String> {
         match command {
             SessionCommand::Edit(edit) => {
-                let edit = self.designed(edit)?;
+                let edit = self.with_balance(edit)?;
                 self.view_state.said.refused = None;
                 self.change(SessionChange::Edit(edit));
                 self.view_state.gesture.dragged |=
@@ -117,7 +117,7 @@ impl AppState {
             SessionCommand::GiveUp => {}
             SessionCommand::Redo => self.change(SessionChange::Redo),
             SessionCommand::GoTo(changes) => self.change(SessionChange::GoTo(changes)),
-            SessionCommand::BackToPath if self.session.is_led() => self.change(SessionChange::BackToPath),
+            SessionCommand::BackToPath if self.session.is_dragged() => self.change(SessionChange::BackToPath),
             SessionCommand::BackToPath => {}
             SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),

@@ -28,23 +28,24 @@ impl AppState {
             Some((next, done)) => {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
-                    self.parts(&change, (old.partings().0, old.frame().time, old.is_led()));
-                    self.background.let_go(old, &self.session);
+                    self.parts(&change, old.branch_events().0, old.frame().time, old.is_dragged());
+                    self.background.free(old, &self.session);
                 }
                 self.changed(&change, done);
             }
-            None => self.tell(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
+            None => self
+                .show_outcome(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
         }
     }
 
     /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
     /// branches left so far, the time on display, s, and whether the machine was dragged.
-    pub(super) fn parts(&mut self, change: &SessionChange, (partings, shown, led): (u64, f64, bool)) {
-        let (now, gone) = self.session.partings();
-        if !matches!(change, SessionChange::Edit(_)) || now == partings {
+    pub(super) fn parts(&mut self, change: &SessionChange, branch_events: u64, shown: f64, led: bool) {
+        let (now, gone) = self.session.branch_events();
+        if !matches!(change, SessionChange::Edit(_)) || now == branch_events {
             return;
         }
-        let kept = match led && !self.session.is_led() {
+        let kept = match led && !self.session.is_dragged() {
             true => "what you led by hand is kept as a branch".into(),
             false => format!("what came after {shown:.3} s is kept as a branch"),
         };
@@ -67,17 +68,17 @@ impl AppState {
                 SessionChange::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
                 SessionChange::Edit(_) => {
                     self.view_state.said.refused = None;
-                    self.foresee();
+                    self.run_ahead();
                 }
                 SessionChange::Undo
                 | SessionChange::Redo
                 | SessionChange::GoTo(_)
                 | SessionChange::Branch(_)
-                | SessionChange::BackToPath => self.foresee(),
+                | SessionChange::BackToPath => self.run_ahead(),
                 SessionChange::Seek(_) => {}
             }
         }
-        self.tell(done.map_err(|refusal| refusal.to_string()));
+        self.show_outcome(done.map_err(|refusal| refusal.to_string()));
         self.refresh();
     }
 }

@@ -16,7 +16,7 @@ use stillbase_study::lengths::{LengthSearch, LengthsQuery};
 impl AppState {
     /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if that is
     /// chosen.
-    pub(super) fn designed(&mut self, edit: Edit) -> Result<Edit, String> {
+    pub(super) fn with_balance(&mut self, edit: Edit) -> Result<Edit, String> {
         let Edit::Set { change } = &edit else { return Ok(edit) };
         if self.view_state.view != ViewKind::Design {
             return Ok(edit);
@@ -74,7 +74,7 @@ impl AppState {
         let Some(seeking) = self.seeking.take() else { return };
         self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
         match &self.seeking {
-            Some(seeking) => drop(self.queries().ask_beside::<LengthsQuery>(seeking)),
+            Some(seeking) => drop(self.queries().ask_in_background::<LengthsQuery>(seeking)),
             None => self.queries().forget::<LengthsQuery>(),
         }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::AppState;
-use super::beside::fault;
+use super::background::fault;
 use crate::change::SessionChange;
 use crate::given::assess::{AssessmentQuery, OpenedTable, TableAction, TableAssessment, TableOptions, TableText};
 use crate::{Activity, BottomPanel};
@@ -32,7 +32,7 @@ impl AppState {
         let given = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table));
         match given.and_then(|given| given.asked(self.session.scenario())) {
             None => self.queries().give_up::<AssessmentQuery>(),
-            Some(asked) => drop(self.queries().ask_beside::<AssessmentQuery>(&asked)),
+            Some(asked) => drop(self.queries().ask_in_background::<AssessmentQuery>(&asked)),
         }
     }
 

@@ -44,7 +44,7 @@ impl AppState {
                     self.saving.misses(file);
                 }
                 self.view_state.said.refused = refused;
-                self.tell(Err(why));
+                self.show_outcome(Err(why));
             }
         }
         self.refresh();
@@ -68,15 +68,15 @@ impl AppState {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
         self.view_state.framing.iter_mut().for_each(Framing::renew);
-        self.background.let_go(old, &self.session);
-        self.foresee();
+        self.background.free(old, &self.session);
+        self.run_ahead();
         if plays {
             self.session.play();
         }
         if closes {
             self.view_state.open.dialog = None;
         }
-        self.tell(Ok(news));
+        self.show_outcome(Ok(news));
     }
 
     /// Opens one of the paper's cases, with the machine chosen in the window; the message names that machine.

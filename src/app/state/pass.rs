@@ -35,7 +35,7 @@ impl AppState {
             ui.ctx().request_repaint();
         }
         self.catch_up();
-        self.background.count();
+        self.background.count_repaint();
         if let Some(tour) = &mut self.view_state.open.tour {
             tour.follow(&self.session);
         }
@@ -54,8 +54,8 @@ impl AppState {
         let presents = self.view_state.arrangement.layout == Layout::Present;
         let facts = ScenarioFacts::of(&queries, &self.session);
         if !presents {
-            let (known, line) = ((&facts, &self.saving.recent[..]), (&marks, self.pace.behind()));
-            top::show(ui, &self.session, known, line, &self.view_state, &mut commands);
+            let line = (&marks, self.pace.lagging_rate());
+            top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
             rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
@@ -93,7 +93,7 @@ impl AppState {
             let width = side::show(ui, &self.session, &facts, &self.view_state, &mut commands);
             self.view_state.arrangement.now_mut().side.width = width;
         }
-        self.view_state.pointed.lit = place::lit(ui.ctx());
+        self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
@@ -117,8 +117,8 @@ impl AppState {
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
-        let known = (&facts, &self.saving.recent[..]);
-        finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
+        let recent = &self.saving.recent;
+        finder::show(ui.ctx(), &self.session, &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {
@@ -153,7 +153,7 @@ impl AppState {
     }
 
     fn dress(&mut self, ctx: &egui::Context) {
-        self.background.wakes(ctx);
+        self.background.set_context(ctx);
         if !self.has_fonts {
             theme::install_fonts(ctx);
             ctx.add_plugin(order::EventQueue::default());

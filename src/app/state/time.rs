@@ -11,7 +11,7 @@ impl AppState {
         // While the session is being changed, time stands still: the new session must match the display.
         if self.background.is_changing() {
             self.due_s = 0.0;
-            self.pace.rest();
+            self.pace.restart();
             return;
         }
         if let Some(from) = self.starts_over(wall) {
@@ -20,7 +20,7 @@ impl AppState {
         }
         if !self.session.is_moving() {
             self.due_s = 0.0;
-            self.pace.rest();
+            self.pace.restart();
             return;
         }
         let dt = self.session.scenario().step;
@@ -32,21 +32,21 @@ impl AppState {
         let done = self.session.frame().step.abs_diff(before) as f64;
         // A run that has ended meanwhile is not slow.
         if self.session.is_moving() {
-            self.pace.count(wall, done * dt, done, self.view_state.speed);
+            self.pace.record_repaint(wall, done * dt, done, self.view_state.speed);
         } else {
-            self.pace.rest();
+            self.pace.restart();
         }
     }
 
     /// Reports the time that the last [`pass`](Self::pass) took, s, measured by the caller. Slow steps are spread over
     /// several repaints, so that the picture stays smooth.
-    pub fn took(&mut self, seconds: f64) {
-        self.pace.took(seconds);
+    pub fn record_cost(&mut self, seconds: f64) {
+        self.pace.record_cost(seconds);
     }
 
     /// Returns the playback rate, simulated seconds per second, if it lags behind the requested one.
-    pub fn behind(&self) -> Option<f64> {
-        self.pace.behind()
+    pub fn lagging_rate(&self) -> Option<f64> {
+        self.pace.lagging_rate()
     }
 
     /// Returns the time to start over from, s, if the run is to start over. In the introduction that is 0; in a loop it

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::AppState;
-use super::beside::fault;
+use super::background::fault;
 use crate::{Activity, PlotFile, plots};
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::form::Form;
@@ -27,7 +27,8 @@ impl AppState {
     fn write<W>(
         &mut self,
         path: &Path,
-        (activity, busy): (Activity, &str),
+        activity: Activity,
+        busy: &str,
         of: Option<(u64, PathBuf)>,
         work: impl FnOnce(&Self) -> Result<W, String>,
     ) -> Result<(), String>
@@ -46,7 +47,7 @@ impl AppState {
                 app_state.saving.saved = changes;
                 app_state.saving.uses(&file);
             }
-            app_state.tell(said.map(Some));
+            app_state.show_outcome(said.map(Some));
         });
         self.collect();
         let failed = matches!(self.view_state.said.message, Some((_, true)));
@@ -64,7 +65,7 @@ impl AppState {
         of: Option<(u64, PathBuf)>,
         content: impl FnOnce(&Self) -> Result<Content, String>,
     ) -> Result<(), String> {
-        self.write(path, (Activity::Saving, busy), of, |app_state| {
+        self.write(path, Activity::Saving, busy, of, |app_state| {
             let content = content(app_state)?;
             Ok(move |_: &Ticket, path: &Path, replaces: bool| {
                 stillbase_files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
@@ -110,7 +111,7 @@ impl AppState {
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
         let busy = "one recording is under way: want it to end first";
-        self.write(path, (Activity::Recording, busy), None, |app_state| {
+        self.write(path, Activity::Recording, busy, None, |app_state| {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {

@@ -33,7 +33,12 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
 
 /// Returns the index of the link that is dragged, under the pointer, or mentioned by a panel.
 pub(super) fn hot_link(view_state: &ViewState, session: &Session) -> Option<usize> {
-    let hot = view_state.gesture.grabbed.map(|pick| pick.handle).or(view_state.pointed.hot).or(view_state.pointed.lit);
+    let hot = view_state
+        .gesture
+        .grabbed
+        .map(|pick| pick.handle)
+        .or(view_state.pointed.object)
+        .or(view_state.pointed.panel_object);
     hot.and_then(|handle| link_of(handle, session))
 }
 

@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_stat
     let wanted = ui.scope(|ui| index(ui, p, &lesson.equations)).inner;
     ui.add_space(2.0);
     let machine = &session.scenario().machine;
-    let pen = TermPainter { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
+    let pen = TermPainter { p, machine, highlighted_link: hot_link(view_state, session), gutter: 0.0 };
     ScrollArea::vertical().id_salt("equations").auto_shrink(false).show(ui, |ui| {
         ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
         ui.spacing_mut().item_spacing.y = 2.0;
@@ -159,9 +159,9 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &TermPainter<'_>) {
         title.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(state).truncate()));
     });
-    symbols(ui, equation.says, (11.0, colour(p.dim)));
+    symbols(ui, equation.says, 11.0, colour(p.dim));
     if !equation.form.is_empty() {
-        symbols(ui, equation.form, (13.0, colour(p.ink)));
+        symbols(ui, equation.form, 13.0, colour(p.ink));
     }
     match &equation.lines {
         Ok(lines) => {
@@ -177,7 +177,7 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &TermPainter<'_>) {
         }
     }
     for words in &equation.notes {
-        symbols(ui, words, (10.5, colour(p.dim)));
+        symbols(ui, words, 10.5, colour(p.dim));
     }
 }
 
@@ -188,8 +188,8 @@ fn gutter(ui: &Ui, lines: &[Equality]) -> f32 {
 }
 
 /// Draws a symbol or a sentence with symbols as a row.
-fn symbols(ui: &mut Ui, text: &str, (size, tone): (f32, egui::Color32)) {
-    let galley = set(ui, text, (size, tone), ui.available_width());
+fn symbols(ui: &mut Ui, text: &str, size: f32, tone: egui::Color32) {
+    let galley = set(ui, text, size, tone, ui.available_width());
     let (rect, _) = ui.allocate_exact_size(galley.size(), Sense::hover());
     ui.painter().galley(rect.min, galley, tone);
 }

@@ -201,15 +201,15 @@ impl DesignFacts {
         facts.beside = (!others.is_empty()).then(|| {
             let machines = others.to_vec();
             let request = FrontsRequest { machines, count: FRONT_POINTS, motion: None, workspace: false };
-            queries.ask_beside::<Fronts>(&request)
+            queries.ask_in_background::<Fronts>(&request)
         });
         let Some(bare) = &facts.sums.bare else { return facts };
-        let front = queries.ask_beside::<FrontSearch>(&front_request(bare, &session.scenario().design));
+        let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits does not move.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
         facts.told = by.zip(points.clone()).and_then(|(by, points)| {
-            let told = queries.ask_beside::<MeasureQuery>(&(ByIdentity(points.clone()), by, motion)).last?;
+            let told = queries.ask_in_background::<MeasureQuery>(&(ByIdentity(points.clone()), by, motion)).last?;
             // Values of another front do not apply to this one.
             (told.by == by && told.values.len() == points.as_deref().map_or(0, <[FrontMachine]>::len)).then_some(told)
         });
@@ -227,9 +227,9 @@ impl DesignFacts {
         let (machine, run) = (&session.scenario().machine, session.run());
         let sums = queries.ask::<QuickWork<Sums>>(machine);
         let cost = |bare: &Machine| {
-            queries.ask_beside::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
+            queries.ask_in_background::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
         };
-        let over = |ends| queries.ask_beside::<QuickWork<OverPayloads>>(&(machine.clone(), ends)).last;
+        let over = |ends| queries.ask_in_background::<QuickWork<OverPayloads>>(&(machine.clone(), ends)).last;
         Self {
             terms: queries.ask::<QuickWork<Terms>>(machine),
             measures: sums.bare.as_ref().and_then(cost),
@@ -328,7 +328,7 @@ fn terms(machine: &Machine) -> Vec<BalanceBars> {
             Condition::Force(k) => (format!("g{}", subscript(k + 1)), "no force", "kg m"),
             Condition::Coupling(k, l) => (format!("C{}{}", subscript(k + 1), subscript(l + 1)), "no coupling", "kg m²"),
         };
-        let left = [term.left.re, term.left.im];
+        let left = [term.residual.re, term.residual.im];
         BalanceBars { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
     };
     let mut terms: Vec<BalanceBars> = breakdown.terms.iter().map(term).collect();

@@ -3,8 +3,8 @@
 use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
-use super::beside;
 use super::facts::{DesignFacts, FrontMachine};
+use super::other_fronts;
 use crate::plots::{base_plot, marks, small_axes, spaced};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{heading, name, note};
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
     // Counterweights in use are shown among the others.
     let shown = mass > MIN_ADDED_MASS_KG;
-    let everything: Vec<[f64; 2]> = all.iter().copied().chain(beside::places(facts)).collect();
+    let everything: Vec<[f64; 2]> = all.iter().copied().chain(other_fronts::places(facts)).collect();
     let of = |i: usize| everything.iter().map(move |at| at[i]);
     let ends = |i: usize, now: f64| {
         let (low, high) = of(i).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
@@ -76,7 +76,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
                 plot.hline(HLine::new("now D", inertia).color(tone).width(1.0).style(dashed).allow_hover(false));
                 plot.vline(VLine::new("now kg", mass).color(tone).width(1.0).style(dashed).allow_hover(false));
             }
-            beside::draw(plot, facts, p);
+            other_fronts::draw(plot, facts, p);
             let line = Line::new("front", PlotPoints::from(all.clone())).width(1.8).color(colour(p.zero));
             plot.line(line.allow_hover(false));
             for (i, at) in all.iter().enumerate() {
@@ -121,8 +121,8 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
         let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
-    summary(ui, points, (near, told.as_ref()), view_state, facts, commands);
-    beside::list(ui, facts, p, commands);
+    summary(ui, points, near, told.as_ref(), view_state, facts, commands);
+    other_fronts::list(ui, facts, p, commands);
 }
 
 /// Returns the number of decimals for the marks of an axis of this length.
@@ -209,7 +209,8 @@ fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Comman
 fn summary(
     ui: &mut Ui,
     points: &[FrontMachine],
-    (near, told): (Option<usize>, Option<&ColourScale<'_>>),
+    near: Option<usize>,
+    told: Option<&ColourScale<'_>>,
     view_state: &ViewState,
     facts: &DesignFacts,
     commands: &mut Vec<Command>,

@@ -2,7 +2,7 @@
 
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
-use super::asked::{bounded, optional};
+use super::brief::{bounded, optional};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, note, send, tip_of, unit};
 use crate::{Command, SessionCommand, WindowCommand};

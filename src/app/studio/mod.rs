@@ -1,15 +1,15 @@
 //! The panels of the design view: the table of links on the left; its balance, or the equations of the paper, on the
 //! right.
 
-mod asked;
 mod bars;
-mod beside;
+mod brief;
 mod equations;
 mod facts;
 mod front;
 mod lengths;
 mod lesson;
 mod measures;
+mod other_fronts;
 mod payload;
 mod table;
 mod tabs;
@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
-                asked::show(ui, session.scenario(), is_balanced, &p, commands);
+                brief::show(ui, session.scenario(), is_balanced, &p, commands);
                 lengths::show(ui, session.scenario(), facts.sought.as_ref(), &p, commands);
                 measures::show(ui, session, facts, &p);
             });

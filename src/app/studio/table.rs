@@ -45,15 +45,26 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 let path = |key: &str| format!("link.{}.{key}", link.name);
                 number(
                     ui,
-                    (&format!("mass of link {}", link.name), &path("mass"), 3),
-                    link.mass,
-                    (brief, p, &mut *commands),
+                    NumberCell {
+                        label: &format!("mass of link {}", link.name),
+                        path: &path("mass"),
+                        decimals: 3,
+                        value: link.mass,
+                    },
+                    brief,
+                    p,
+                    commands,
                     |x| Edit::at(&["link", &link.name, "mass"], x),
                 );
                 let label = format!("centre of mass of link {}", link.name);
-                number(ui, (&label, &path("com"), 4), link.com, (brief, p, &mut *commands), |x| {
-                    Edit::at(&["link", &link.name, "com"], x)
-                });
+                number(
+                    ui,
+                    NumberCell { label: &label, path: &path("com"), decimals: 4, value: link.com },
+                    brief,
+                    p,
+                    commands,
+                    |x| Edit::at(&["link", &link.name, "com"], x),
+                );
                 let Some((n, weight)) = weight.map(|n| (n, &spec.counterweights[n])) else {
                     for _ in 0..2 {
                         cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| head(ui, p, "–"));
@@ -63,16 +74,29 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 let place = (n + 1).to_string();
                 let path = |key: &str| format!("counterweight.{place}.{key}");
                 let label = format!("mass of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("mass"), 3), weight.mass, (brief, p, &mut *commands), |mass| {
-                    // A disc of the same thickness and density.
-                    let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
-                    let both = TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
-                    Edit::of("counterweight", TaskChange::from_iter([(place.clone(), Value::from(both))]))
-                });
+                number(
+                    ui,
+                    NumberCell { label: &label, path: &path("mass"), decimals: 3, value: weight.mass },
+                    brief,
+                    p,
+                    commands,
+                    |mass| {
+                        // A disc of the same thickness and density.
+                        let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
+                        let both =
+                            TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
+                        Edit::of("counterweight", TaskChange::from_iter([(place.clone(), Value::from(both))]))
+                    },
+                );
                 let label = format!("place of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("at"), 4), weight.at, (brief, p, &mut *commands), |x| {
-                    Edit::at(&["counterweight", &place, "at"], x)
-                });
+                number(
+                    ui,
+                    NumberCell { label: &label, path: &path("at"), decimals: 4, value: weight.at },
+                    brief,
+                    p,
+                    commands,
+                    |x| Edit::at(&["counterweight", &place, "at"], x),
+                );
                 fixed(ui, &link.name, brief, commands);
             });
         });
@@ -141,18 +165,31 @@ fn head(ui: &mut Ui, p: &Palette, words: &str) {
     ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
 }
 
+/// A number of the machine in a cell of the table.
+#[derive(Clone, Copy)]
+struct NumberCell<'a> {
+    label: &'a str,
+    /// Key of the setting.
+    path: &'a str,
+    /// Number of decimals shown.
+    decimals: usize,
+    /// Present value.
+    value: f64,
+}
+
 fn number(
     ui: &mut Ui,
-    (label, path, decimals): (&str, &str, usize),
-    now: f64,
-    (brief, p, commands): (&DesignBrief, &Palette, &mut Vec<Command>),
+    shown: NumberCell<'_>,
+    brief: &DesignBrief,
+    p: &Palette,
+    commands: &mut Vec<Command>,
     edit: impl Fn(f64) -> Edit,
 ) {
     cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| {
-        let mut value = now;
-        let row = NumberRow::of(label, path).with(decimals, 0.002);
+        let mut value = shown.value;
+        let row = NumberRow::of(shown.label, shown.path).with(shown.decimals, 0.002);
         let response = row.number(ui, &mut value);
-        holding(ui, &response, (label, path, decimals), (now, brief.hold.get(path).copied()), p, commands);
+        holding(ui, &response, shown, brief.hold.get(shown.path).copied(), p, commands);
         send(commands, &[response], || edit(value));
     });
 }
@@ -162,11 +199,12 @@ fn number(
 fn holding(
     ui: &Ui,
     response: &Response,
-    (label, path, decimals): (&str, &str, usize),
-    (now, hold): (f64, Option<ParameterBounds>),
+    shown: NumberCell<'_>,
+    hold: Option<ParameterBounds>,
     p: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    let NumberCell { label, path, decimals, value: now } = shown;
     let tone = match hold {
         None => None,
         Some(ParameterBounds::Fixed) => Some(p.ink),

@@ -31,7 +31,7 @@ pub struct TermPainter<'a> {
     pub p: &'a Palette,
     pub machine: &'a Machine,
     /// Index of the link that is dragged, under the pointer, or mentioned by a panel.
-    pub hot: Option<usize>,
+    pub highlighted_link: Option<usize>,
     /// Width for names of lines, points.
     pub gutter: f32,
 }
@@ -41,9 +41,9 @@ pub fn show(ui: &mut Ui, pen: &TermPainter<'_>, number: &str, line: &Equality) {
     let width = ui.available_width();
     let cells = cells(line, DECIMALS);
     let inner = width - pen.gutter;
-    let room = words(ui, WIDEST_NUMBER, (NUMBER_FONT_PT, colour(pen.p.ink)), f32::INFINITY).size().x;
-    let sizes: Vec<Vec2> = cells.iter().map(|cell| size(ui, pen.p, cell, (inner, room))).collect();
-    let unit = words(ui, line.unit, (SMALL_FONT_PT, colour(pen.p.dim)), f32::INFINITY);
+    let room = words(ui, WIDEST_NUMBER, NUMBER_FONT_PT, colour(pen.p.ink), f32::INFINITY).size().x;
+    let sizes: Vec<Vec2> = cells.iter().map(|cell| size(ui, pen.p, cell, inner, room)).collect();
+    let unit = words(ui, line.unit, SMALL_FONT_PT, colour(pen.p.dim), f32::INFINITY);
     let (places, height) = flow(&sizes, unit.size().x, inner);
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let said = format!("({number}) {}", aloud(line, &cells));
@@ -51,12 +51,12 @@ pub fn show(ui: &mut Ui, pen: &TermPainter<'_>, number: &str, line: &Equality) {
     let origin = rect.min + vec2(pen.gutter, 0.0);
     let mut end = origin;
     if !line.name.is_empty() {
-        let label = words(ui, &line.name, (SMALL_FONT_PT, colour(pen.p.dim)), pen.gutter - 4.0);
+        let label = words(ui, &line.name, SMALL_FONT_PT, colour(pen.p.dim), pen.gutter - 4.0);
         ui.painter().galley(rect.min + vec2(0.0, 3.0), label, colour(pen.p.dim));
     }
     for ((cell, size), at) in cells.iter().zip(&sizes).zip(&places) {
         let place = Rect::from_min_size(origin + *at, *size);
-        let behind = draw(ui, pen, cell, (place, room), line.unit);
+        let behind = draw(ui, pen, cell, place, room, line.unit);
         end = pos2(behind + 4.0, place.bottom() - NUMBER_HEIGHT_PT + 1.5);
     }
     ui.painter().galley(end, unit, colour(pen.p.dim));
@@ -64,17 +64,17 @@ pub fn show(ui: &mut Ui, pen: &TermPainter<'_>, number: &str, line: &Equality) {
 
 /// Returns the width of the name of a line, points.
 pub fn label(ui: &Ui, line: &Equality) -> f32 {
-    words(ui, &line.name, (SMALL_FONT_PT, egui::Color32::WHITE), f32::INFINITY).size().x
+    words(ui, &line.name, SMALL_FONT_PT, egui::Color32::WHITE, f32::INFINITY).size().x
 }
 
 /// Returns the size of a term.
-fn size(ui: &Ui, p: &Palette, cell: &EquationCell<'_>, (most, room): (f32, f32)) -> Vec2 {
+fn size(ui: &Ui, p: &Palette, cell: &EquationCell<'_>, most: f32, room: f32) -> Vec2 {
     if cell.symbol.is_empty() {
         return vec2(SIGN_WIDTH_PT + TERM_GAP_PT, SYMBOL_HEIGHT_PT + NUMBER_HEIGHT_PT);
     }
     let most = (most - SIGN_WIDTH_PT - TERM_GAP_PT).max(40.0);
-    let symbol = set(ui, cell.symbol, (SYMBOL_FONT_PT, colour(p.dim)), most).size();
-    let number = words(ui, &cell.number, (NUMBER_FONT_PT, colour(p.ink)), f32::INFINITY).size().x;
+    let symbol = set(ui, cell.symbol, SYMBOL_FONT_PT, colour(p.dim), most).size();
+    let number = words(ui, &cell.number, NUMBER_FONT_PT, colour(p.ink), f32::INFINITY).size().x;
     let wide = symbol.x.max(number).max(room);
     vec2(before(cell) + wide + TERM_GAP_PT, SYMBOL_HEIGHT_PT.max(symbol.y) + NUMBER_HEIGHT_PT)
 }
@@ -103,11 +103,11 @@ fn flow(sizes: &[Vec2], unit: f32, width: f32) -> (Vec<Vec2>, f32) {
 }
 
 /// Draws a term; returns the right end of its number.
-fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, (rect, room): (Rect, f32), unit: &str) -> f32 {
+fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, rect: Rect, room: f32, unit: &str) -> f32 {
     let p = pen.p;
     let (ink, dim) = (colour(p.ink), colour(p.dim));
     let is_under = cell.term.is_some() && ui.rect_contains_pointer(rect);
-    let is_lit = is_under || pen.hot.is_some_and(|hot| contributes(cell.term, hot));
+    let is_lit = is_under || pen.highlighted_link.is_some_and(|hot| contributes(cell.term, hot));
     let back = rect.expand2(vec2(1.0, 1.0)).translate(vec2(-1.0, 0.0));
     if is_lit {
         ui.painter().rect_filled(
@@ -120,13 +120,13 @@ fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, (rect, room): (
     let lower = rect.bottom() - NUMBER_HEIGHT_PT;
     let painter = ui.painter();
     let sign = |text: &str, y: f32, size: f32| {
-        painter.galley(pos2(rect.left() + 1.0, y), words(ui, text, (size, ink), f32::INFINITY), ink)
+        painter.galley(pos2(rect.left() + 1.0, y), words(ui, text, size, ink, f32::INFINITY), ink)
     };
     sign(cell.sign, rect.top(), SYMBOL_FONT_PT);
     sign(cell.number_sign, lower, NUMBER_FONT_PT);
-    let symbol = set(ui, cell.symbol, (SYMBOL_FONT_PT, dim), (rect.width() - SIGN_WIDTH_PT).max(40.0));
+    let symbol = set(ui, cell.symbol, SYMBOL_FONT_PT, dim, (rect.width() - SIGN_WIDTH_PT).max(40.0));
     painter.galley(pos2(rect.left() + shift, rect.top()), symbol, dim);
-    let number = words(ui, &cell.number, (NUMBER_FONT_PT, ink), f32::INFINITY);
+    let number = words(ui, &cell.number, NUMBER_FONT_PT, ink, f32::INFINITY);
     // Numbers are right-aligned.
     let wide = number.size().x;
     let left = rect.left() + shift + (room - wide).max(0.0);

@@ -12,7 +12,7 @@ use stillbase_study::equations::{Level, pieces};
 const INDEX_SCALE: f32 = 0.74;
 
 /// Lays out a symbol in a size and colour, wrapped at a width, points.
-pub fn set(ui: &Ui, symbol: &str, (size, tone): (f32, Color32), width: f32) -> Arc<Galley> {
+pub fn set(ui: &Ui, symbol: &str, size: f32, tone: Color32, width: f32) -> Arc<Galley> {
     let mut job = LayoutJob::default();
     for (text, level) in pieces(symbol) {
         let (size, valign) = match level {
@@ -28,6 +28,6 @@ pub fn set(ui: &Ui, symbol: &str, (size, tone): (f32, Color32), width: f32) -> A
 }
 
 /// Lays out plain text, wrapped at a width, points.
-pub fn words(ui: &Ui, text: &str, (size, tone): (f32, Color32), width: f32) -> Arc<Galley> {
+pub fn words(ui: &Ui, text: &str, size: f32, tone: Color32, width: f32) -> Arc<Galley> {
     ui.painter().layout(text.to_owned(), plain(size), tone, width)
 }

@@ -150,11 +150,12 @@ impl Screen {
     pub fn draw(
         &mut self,
         window: &Window,
-        (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
+        shapes: &[ClippedPrimitive],
+        pixels_per_point: f32,
         behind: egui::Color32,
     ) -> PaintOutcome {
         // A driver may panic in the middle of drawing when its device is lost.
-        let drawn = catch_unwind(AssertUnwindSafe(|| self.draw_on(window, (shapes, pixels_per_point), behind)));
+        let drawn = catch_unwind(AssertUnwindSafe(|| self.draw_on(window, shapes, pixels_per_point, behind)));
         drawn.unwrap_or_else(|panic| match self.is_lost() {
             true => PaintOutcome::Again,
             false => resume_unwind(panic),
@@ -164,7 +165,8 @@ impl Screen {
     fn draw_on(
         &mut self,
         window: &Window,
-        (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
+        shapes: &[ClippedPrimitive],
+        pixels_per_point: f32,
         behind: egui::Color32,
     ) -> PaintOutcome {
         use wgpu::CurrentSurfaceTexture::{Lost, Occluded, Outdated, Suboptimal, Success, Timeout, Validation};

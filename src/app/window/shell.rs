@@ -11,8 +11,8 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
+use super::app::App;
 use super::error::{WindowError, what_is_missing};
-use super::guest::App;
 use super::screen::{PaintOutcome, Screen};
 use stillbase_picture::paint::draw_drafts;
 use stillbase_picture::render::offscreen::NoAdapter;
@@ -212,7 +212,7 @@ impl Shell<'_> {
             // Presenting may wait for the screen: the work held back starts before.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
-            if screen.draw(window, (&shapes, pixels_per_point), behind) == PaintOutcome::Again {
+            if screen.draw(window, &shapes, pixels_per_point, behind) == PaintOutcome::Again {
                 window.request_redraw();
             }
         }

@@ -151,7 +151,7 @@ impl WeightArguments {
         };
         let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, RotorFreedom::Inertia(*ends)));
         let ratio = self.rotor_ratio.iter().map(|(name, ends)| (name, RotorFreedom::Ratio(*ends)));
-        inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
+        inertia.chain(ratio).map(|(name, parameter)| Ok(FreeRotor { drive: find(name)?, parameter })).collect()
     }
 
     /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are

@@ -194,7 +194,7 @@ impl ToleranceArguments {
         let section = self.section(&scenario);
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
-        let range = stillbase_study::tolerance::shard(samples, (i, n));
+        let range = stillbase_study::tolerance::shard(samples, i, n);
         if range.end - range.start > MAX_MACHINES {
             let why = format!("{} machines at once: want at most {MAX_MACHINES}, in shards", range.end - range.start);
             return Err(Failure::wrong_input(why));

@@ -39,7 +39,7 @@ pub fn evaluate<E: From<Refusal>>(
                     loop {
                         let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
                         let Some((chunk, batch)) = next else { break };
-                        *batch = Some(Batch::of(ensemble, sampler, mode, (chunk, &range), keep_deviations));
+                        *batch = Some(Batch::of(ensemble, sampler, mode, chunk, &range, keep_deviations));
                     }
                 });
             }

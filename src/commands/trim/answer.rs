@@ -34,10 +34,10 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
             fixed(number.nominal, 6),
             or(number.measured, "not told"),
             or(number.half_width, "–"),
-            if number.told { yes(number.off).into() } else { "–".into() },
+            if number.identifiable { yes(number.off).into() } else { "–".into() },
             fixed(number.taken, 6),
             if number.taken_half_width > 0.0 { shown(number.taken_half_width, 6) } else { "–".into() },
-            number.left.filter(|_| number.balance).map_or_else(|| "–".into(), |x| fixed(x, 6)),
+            number.residual.filter(|_| number.balance).map_or_else(|| "–".into(), |x| fixed(x, 6)),
             number.unit.into(),
         ]);
     }

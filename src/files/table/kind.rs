@@ -45,7 +45,7 @@ impl TableData {
         let want = head_wanted(machine);
         match feels(TableReader::new(text, file, &want)?.head()) {
             true => motions_or(text, file, machine, &want).map(Self::Measurement),
-            false => samples_or(text, file, machine, (None, gaps), &want).map(Self::Motion),
+            false => samples_or(text, file, machine, None, gaps, &want).map(Self::Motion),
         }
     }
 }

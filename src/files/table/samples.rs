@@ -39,7 +39,7 @@ pub fn samples(
     wanted: Option<Coordinates>,
     gaps: bool,
 ) -> Result<SampleTable, TableError> {
-    samples_or(text, file, machine, (wanted, gaps), &head_wanted(machine))
+    samples_or(text, file, machine, wanted, gaps, &head_wanted(machine))
 }
 
 /// As [`samples`]; errors describe the expected header by `want`.
@@ -50,7 +50,8 @@ pub(super) fn samples_or(
     text: &str,
     file: &str,
     machine: &Machine,
-    (wanted, gaps): (Option<Coordinates>, bool),
+    wanted: Option<Coordinates>,
+    gaps: bool,
     want: &str,
 ) -> Result<SampleTable, TableError> {
     let mut reader = TableReader::new(text, file, want)?;

@@ -30,7 +30,7 @@ pub struct BalanceTerm {
     /// The condition.
     pub condition: Condition,
     /// Its residual, computed from [`Inertia`]: kg m for (7), kg m² for (8).
-    pub left: Vector,
+    pub residual: Vector,
     /// Contribution of each source; their sum is the residual.
     pub parts: Vec<Vector>,
     /// Whether the residual is within the tolerance, that is, only rounding error.
@@ -60,10 +60,10 @@ impl Breakdown {
         let masses = masses(machine);
         let inertia = Inertia::of(machine);
         let terms = Condition::all(machine.drives()).map(|condition| {
-            let left = condition.left(&inertia);
-            let balanced = left.norm() <= condition.nothing(&inertia);
+            let residual = condition.residual(&inertia);
+            let balanced = residual.norm() <= condition.tolerance(&inertia);
             let parts = masses.iter().map(|(_, mass, a)| condition.of(*mass, a)).collect();
-            BalanceTerm { condition, left, parts, balanced }
+            BalanceTerm { condition, residual, parts, balanced }
         });
         Self { terms: terms.collect(), sources: masses.iter().map(|(source, ..)| *source).collect() }
     }

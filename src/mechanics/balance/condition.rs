@@ -52,7 +52,7 @@ impl Condition {
     }
 
     /// Returns the residual of the condition: g_k, kg m, or C_kl, kg m².
-    pub fn left(self, inertia: &Inertia) -> Vector {
+    pub fn residual(self, inertia: &Inertia) -> Vector {
         match self {
             Self::Force(k) => inertia.first_moment(k),
             Self::Coupling(k, l) => inertia.coupling(k, l),
@@ -60,10 +60,10 @@ impl Condition {
     }
 
     /// Returns the tolerance of the residual: up to this it is treated as zero.
-    pub fn nothing(self, inertia: &Inertia) -> f64 {
+    pub fn tolerance(self, inertia: &Inertia) -> f64 {
         match self {
-            Self::Force(_) => inertia.least_first_moment(),
-            Self::Coupling(..) => inertia.least_coupling(),
+            Self::Force(_) => inertia.first_moment_tolerance(),
+            Self::Coupling(..) => inertia.coupling_tolerance(),
         }
     }
 

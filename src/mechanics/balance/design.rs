@@ -77,14 +77,14 @@ pub enum DesignError {
     },
     /// The conditions contradict each other, or one that is not met does not depend on any l_c.
     #[error(
-        "no centres of mass along the links balance this machine: {left} remain at best in {condition}; \
+        "no centres of mass along the links balance this machine: {residual} remain at best in {condition}; \
              counterweights need a link that follows that drive and hangs on the base"
     )]
     Inconsistent {
         /// The condition with the largest residual.
         condition: String,
         /// Its residual, with unit.
-        left: String,
+        residual: String,
     },
     /// The result is not a valid machine.
     #[error(transparent)]
@@ -99,7 +99,7 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
     // The residual at the present l_c is A l_c − k.
     let inertia = Inertia::of(machine);
     let com = DVector::from_iterator(links.len(), links.iter().map(|l| l.com));
-    let k = &a * com - DVector::from_iterator(all.len(), all.iter().map(|condition| condition.left(&inertia).re));
+    let k = &a * com - DVector::from_iterator(all.len(), all.iter().map(|condition| condition.residual(&inertia).re));
     (a, k)
 }
 
@@ -122,7 +122,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
         right: k[row],
         tolerance: f64::INFINITY,
     };
-    let x = SolutionSpace::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).start;
+    let x = SolutionSpace::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).particular;
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
         let (body, com) = (&links[j], x[j] / penalty[j]);
@@ -138,7 +138,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
         return Ok(designed);
     }
     let (condition, left) = largest_residual(&designed);
-    Err(DesignError::Inconsistent { condition, left })
+    Err(DesignError::Inconsistent { condition, residual: left })
 }
 
 /// Returns the condition with the largest residual, and the residual with its unit: a condition of (7), unless all of
@@ -148,7 +148,7 @@ fn largest_residual(machine: &Machine) -> (String, String) {
     let force = !inertia.is_force_balanced();
     let of_kind =
         Condition::all(machine.drives()).filter(|condition| matches!(condition, Condition::Force(_)) == force);
-    let size = |condition: &Condition| condition.left(&inertia).norm();
+    let size = |condition: &Condition| condition.residual(&inertia).norm();
     let worst = of_kind.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(Condition::Force(0));
     (worst.name(machine), format!("{:.3e} {}", size(&worst), worst.unit()))
 }

@@ -17,14 +17,14 @@ pub(crate) struct LinearEquation {
     pub tolerance: f64,
 }
 
-/// The solutions y = start + free z of linear equations, for any z.
+/// The solutions y = particular + null_space z of linear equations, for any z.
 pub(crate) struct SolutionSpace {
     /// Particular solution nearest to 0.
-    pub start: DVector<f64>,
+    pub particular: DVector<f64>,
     /// Orthonormal basis of the null space, in columns.
-    pub free: DMatrix<f64>,
-    /// Residual of each equation at `start`.
-    pub missed: Vec<f64>,
+    pub null_space: DMatrix<f64>,
+    /// Residual of each equation at `particular`.
+    pub residuals: Vec<f64>,
     /// Whether all residuals are within their tolerances, so that there is a solution.
     pub exists: bool,
 }
@@ -33,9 +33,9 @@ impl SolutionSpace {
     /// Solves equations over `n` unknowns; the least squares solution if they contradict each other.
     pub fn of(equations: &[LinearEquation], n: usize) -> Self {
         if n == 0 {
-            let missed: Vec<f64> = equations.iter().map(|row| -row.right).collect();
+            let residuals: Vec<f64> = equations.iter().map(|row| -row.right).collect();
             let exists = equations.iter().all(|row| row.right.abs() <= row.tolerance);
-            return Self { start: DVector::zeros(0), free: DMatrix::zeros(0, 0), missed, exists };
+            return Self { particular: DVector::zeros(0), null_space: DMatrix::zeros(0, 0), residuals, exists };
         }
         // Rows are scaled to unit norm, so that kg m and kg m² count alike.
         let size = |row: &LinearEquation| row.a.iter().map(|a| a * a).sum::<f64>().sqrt();
@@ -50,30 +50,31 @@ impl SolutionSpace {
         let within = DMatrix::from_fn(rows.len(), rank, |i, j| rows[i].dot(&all[j]));
         let right = DVector::from_fn(rows.len(), |i, _| sized[i].0.right / sized[i].1);
         let by = least_squares(&within, &right).unwrap_or_else(|| DVector::zeros(rank));
-        let start = (0..rank).fold(DVector::zeros(n), |sum, j| sum + &all[j] * by[j]);
-        let missed = |row: &LinearEquation| row.a.iter().zip(start.iter()).map(|(a, y)| a * y).sum::<f64>() - row.right;
-        let missed: Vec<f64> = equations.iter().map(missed).collect();
-        let exists = equations.iter().zip(&missed).all(|(row, missed)| missed.abs() <= row.tolerance);
-        let free = DMatrix::from_fn(n, n - rank, |i, j| all[rank + j][i]);
-        Self { start, free, missed, exists }
+        let particular = (0..rank).fold(DVector::zeros(n), |sum, j| sum + &all[j] * by[j]);
+        let missed =
+            |row: &LinearEquation| row.a.iter().zip(particular.iter()).map(|(a, y)| a * y).sum::<f64>() - row.right;
+        let residuals: Vec<f64> = equations.iter().map(missed).collect();
+        let exists = equations.iter().zip(&residuals).all(|(row, missed)| missed.abs() <= row.tolerance);
+        let null_space = DMatrix::from_fn(n, n - rank, |i, j| all[rank + j][i]);
+        Self { particular, null_space, residuals, exists }
     }
 
-    /// Returns its point nearest to `start` with every a · y ≤ right.
+    /// Returns its point nearest to `particular` with every a · y ≤ right.
     ///
     /// # Errors
     /// If there is no such point; returns the weight of each bound in the certificate of infeasibility.
     pub fn nearest(&self, bounds: &[LinearRow]) -> Result<DVector<f64>, Vec<f64>> {
-        let (m, c) = self.cut(bounds);
-        Ok(&self.start + &self.free * nearest(&m, &c)?)
+        let (m, c) = self.reduced_bounds(bounds);
+        Ok(&self.particular + &self.null_space * nearest(&m, &c)?)
     }
 
     /// Returns the bounds as constraints on z: M z ≤ c.
-    pub fn cut(&self, bounds: &[LinearRow]) -> (DMatrix<f64>, DVector<f64>) {
+    pub fn reduced_bounds(&self, bounds: &[LinearRow]) -> (DMatrix<f64>, DVector<f64>) {
         let at =
             |row: &LinearRow, y: &dyn Fn(usize) -> f64| row.terms.iter().map(|&(j, value)| value * y(j)).sum::<f64>();
-        let k = self.free.ncols();
-        let m = DMatrix::from_fn(bounds.len(), k, |i, j| at(&bounds[i], &|l| self.free[(l, j)]));
-        let c = DVector::from_fn(bounds.len(), |i, _| bounds[i].right - at(&bounds[i], &|l| self.start[l]));
+        let k = self.null_space.ncols();
+        let m = DMatrix::from_fn(bounds.len(), k, |i, j| at(&bounds[i], &|l| self.null_space[(l, j)]));
+        let c = DVector::from_fn(bounds.len(), |i, _| bounds[i].right - at(&bounds[i], &|l| self.particular[l]));
         (m, c)
     }
 }

@@ -3,7 +3,7 @@
 //! If D_k is negative, more inertia reduces |D_k|, so s²/w and w² need upper bounds. For x from a to b,
 //! s²/w ≤ (a + b) s − a b w. For w from a to b, w² ≤ (a + b) w − a b. Both are equalities at a and at b.
 
-use super::asked::{CounterweightSpec, Sites};
+use super::spec::{CounterweightSpec, Sites};
 use stillbase_convex::{LinearRow, Program};
 
 /// Range of mass, kg, and of position, m.

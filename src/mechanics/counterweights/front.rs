@@ -1,8 +1,8 @@
 //! [`front`]: the Pareto front of added mass and inertia.
 
-use super::asked::{CounterweightSpec, Objective};
 use super::place::{Placed, place_weights};
 use super::refusal::CounterweightError;
+use super::spec::{CounterweightSpec, Objective};
 use crate::machine::{Inertia, Machine};
 use stillbase_query::{Portion, ProgressCallback, Query, answer_now};
 

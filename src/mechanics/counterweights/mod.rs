@@ -11,10 +11,9 @@
 //! | ρ, t | density and thickness of the discs | kg/m³, m |
 //! | D_k | momentum of a drive, (6) | kg m² |
 
-mod asked;
 mod cell;
+mod free_span;
 mod front;
-mod left;
 mod payload;
 mod place;
 mod problem;
@@ -22,18 +21,19 @@ mod program;
 mod question;
 mod refusal;
 mod relief;
-mod room;
+mod residual;
 mod search;
+mod search_node;
 mod solution;
+mod spec;
 mod tolerance;
 mod unknowns;
-mod way;
 
-pub use asked::{
-    CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom, Sites, THICKNESS_RANGE,
-};
 pub use front::{Front, FrontSearch, front};
 pub use payload::{Residual, over_payloads};
 pub use place::{Placed, place_weights, place_weights_with, unreachable_by_weights};
 pub use refusal::{Bound, BoundRelaxation, CounterweightError};
+pub use spec::{
+    CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom, Sites, THICKNESS_RANGE,
+};
 pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

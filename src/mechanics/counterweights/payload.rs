@@ -30,7 +30,7 @@ pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> 
         let greatest = |of_moments: bool| {
             let all = Condition::all(machine.drives());
             let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_moments);
-            alike.map(|condition| condition.left(&inertia).norm()).fold(0.0, f64::max)
+            alike.map(|condition| condition.residual(&inertia).norm()).fold(0.0, f64::max)
         };
         Ok(Residual { payload, force: greatest(true), coupling: greatest(false) })
     };

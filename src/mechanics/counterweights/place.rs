@@ -1,12 +1,12 @@
 //! [`place_weights`]: counterweights that balance a machine and minimise an objective.
 
-use super::asked::{CounterweightSpec, Objective, Sites};
 use super::problem::CounterweightProblem;
 use super::program::SOLVER_ROUNDING;
 use super::question::CounterweightTask;
 use super::refusal::CounterweightError;
 use super::relief::sufficient_reliefs;
-use super::way::BalanceGoal;
+use super::search_node::BalanceGoal;
+use super::spec::{CounterweightSpec, Objective, Sites};
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 use stillbase_convex::{NoOptimum, Optimum};
@@ -54,24 +54,24 @@ pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Pla
     place_weights_with(machine, asked, &[])
 }
 
-/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their order:
-/// the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
+/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their
+/// order: the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
 ///
 /// # Errors
 /// As [`place_weights`].
 pub fn place_weights_with(
     machine: &Machine,
-    asked: &CounterweightSpec,
+    spec: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Placed, CounterweightError> {
-    let problem = CounterweightProblem::new(machine, asked, beyond)?;
+    let problem = CounterweightProblem::new(machine, spec, beyond)?;
     problem.check()?;
-    if problem.needs_nothing(asked) {
+    if problem.needs_nothing(spec) {
         let inertia = Inertia::of(&problem.bare);
-        let value = asked.objective.of(0.0, &inertia);
+        let value = spec.objective.of(0.0, &inertia);
         return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
-    let one = CounterweightTask { problem: &problem, machine, asked, beyond };
+    let one = CounterweightTask { problem: &problem, machine, spec, beyond };
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
@@ -102,20 +102,20 @@ impl CounterweightTask<'_> {
                 Ok(Ok(self.simpler(self.least_inertia(best, &least))))
             }
             Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),
-            Err(NoOptimum::Contradiction(_)) if self.asked.payload.is_some() => self.nearest(),
+            Err(NoOptimum::Contradiction(_)) if self.spec.payload.is_some() => self.nearest(),
             Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
         }
     }
 
     /// Returns the solution of least inertia among those of the same mass, if mass alone is minimised.
     fn least_inertia(&self, best: Placed, least: &Optimum) -> Placed {
-        let CounterweightSpec { objective, most_inertia, .. } = self.asked;
-        if objective.turns() || objective.mass == 0.0 || most_inertia.is_some() {
+        let CounterweightSpec { objective, most_inertia, .. } = self.spec;
+        if objective.depends_on_inertia() || objective.mass == 0.0 || most_inertia.is_some() {
             return best;
         }
         let objective = Objective { inertia: TIE_BREAK_WEIGHT * objective.mass, ..objective.clone() };
-        let tied = CounterweightSpec { objective, ..self.asked.clone() };
-        let one = CounterweightTask { asked: &tied, ..*self };
+        let tied = CounterweightSpec { objective, ..self.spec.clone() };
+        let one = CounterweightTask { spec: &tied, ..*self };
         let found = one.least(BalanceGoal::Exact).ok().and_then(Result::ok);
         let found = found.and_then(|tied| one.placed(&tied, BalanceGoal::Exact).ok());
         found.and_then(|found| self.as_good(found, least.value - least.gap)).unwrap_or(best)
@@ -132,16 +132,16 @@ impl CounterweightTask<'_> {
             let link = &self.machine.links()[site.link].name;
             weights().any(|weight| weight.link == *link && !is_light(weight.mass))
         };
-        let sites: Vec<Sites> = self.asked.sites.iter().copied().filter(carries).collect();
-        let fewer = CounterweightSpec { sites, ..self.asked.clone() };
+        let sites: Vec<Sites> = self.spec.sites.iter().copied().filter(carries).collect();
+        let fewer = CounterweightSpec { sites, ..self.spec.clone() };
         self.exact(&fewer).and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
     }
 
     /// Returns the optimum of another request with exact balance, if there is one.
-    fn exact(&self, asked: &CounterweightSpec) -> Option<Placed> {
-        let problem = CounterweightProblem::new(self.machine, asked, self.beyond).ok()?;
+    fn exact(&self, spec: &CounterweightSpec) -> Option<Placed> {
+        let problem = CounterweightProblem::new(self.machine, spec, self.beyond).ok()?;
         problem.check().ok()?;
-        let one = CounterweightTask { problem: &problem, asked, ..*self };
+        let one = CounterweightTask { problem: &problem, spec, ..*self };
         let least = one.least(BalanceGoal::Exact).ok()?.ok()?;
         let best = one.placed(&least, BalanceGoal::Exact).ok()?;
         Some(one.least_inertia(best, &least))
@@ -149,7 +149,7 @@ impl CounterweightTask<'_> {
 
     /// Returns a solution with its gap to `bound`, a lower bound of the objective; `None` if the gap is too large.
     fn as_good(&self, found: Placed, bound: f64) -> Option<Placed> {
-        let value = self.asked.objective.of(found.added_mass, &Inertia::of(&found.machine));
+        let value = self.spec.objective.of(found.added_mass, &Inertia::of(&found.machine));
         let gap = (value - bound).max(found.gap);
         (gap < MAX_GAP).then_some(Placed { value, gap, ..found })
     }
@@ -180,8 +180,8 @@ impl CounterweightTask<'_> {
     }
 
     fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<Placed, CounterweightError> {
-        let (added_mass, machine) = self.problem.machine(self.machine, self.asked, &least.x, balance)?;
-        let value = self.asked.objective.of(added_mass, &Inertia::of(&machine));
+        let (added_mass, machine) = self.problem.machine(self.machine, self.spec, &least.x, balance)?;
+        let value = self.spec.objective.of(added_mass, &Inertia::of(&machine));
         // The gap is that of the finished machine: the dual value is a lower bound of the objective.
         Ok(Placed { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
     }
@@ -189,12 +189,12 @@ impl CounterweightTask<'_> {
     /// Returns the reason why there are no counterweights; `weights` as [`found`](Self::found) returns them.
     fn refusal(&self, weights: &[f64]) -> CounterweightError {
         let is_feasible =
-            |asked: &CounterweightSpec| CounterweightTask { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
+            |spec: &CounterweightSpec| CounterweightTask { spec, ..*self }.found().is_ok_and(|found| found.is_ok());
         let would = || sufficient_reliefs(self, &is_feasible);
-        match self.asked.clearance {
+        match self.spec.clearance {
             Some(asked) if weights.is_empty() => CounterweightError::Reaches { asked, would: would() },
             _ => {
-                let bounds = self.problem.conflict(self.machine, self.asked, self.balance(), weights);
+                let bounds = self.problem.conflict(self.machine, self.spec, self.balance(), weights);
                 match bounds.is_empty() {
                     true => CounterweightError::TooFew,
                     false => CounterweightError::Conflict { bounds, would: would() },

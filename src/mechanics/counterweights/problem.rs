@@ -1,8 +1,9 @@
-//! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that counterweights must meet.
+//! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that
+//! counterweights must meet.
 
-use super::asked::CounterweightSpec;
-use super::left::{ConditionResidual, conditions};
 use super::refusal::CounterweightError;
+use super::residual::{ConditionResidual, conditions};
+use super::spec::CounterweightSpec;
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
@@ -45,20 +46,20 @@ impl CounterweightProblem {
     /// # Errors
     /// If they cannot.
     pub fn check(&self) -> Result<(), CounterweightError> {
-        for ConditionResidual { of, left, .. } in &self.conditions {
-            if left.im.abs() > 1e-9 {
-                let left = format!("{:.3e} {}", left.im, of.unit());
-                return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), left });
+        for ConditionResidual { of, residual, .. } in &self.conditions {
+            if residual.im.abs() > 1e-9 {
+                let residual = format!("{:.3e} {}", residual.im, of.unit());
+                return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), residual });
             }
         }
         for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
-            if condition.left.re.abs() > 1e-9 {
-                let left = format!("{:.3e} {}", condition.left.re, condition.of.unit());
+            if condition.residual.re.abs() > 1e-9 {
+                let residual = format!("{:.3e} {}", condition.residual.re, condition.of.unit());
                 let parts = self.bare.links().iter().zip(self.bare.resolved_links());
                 let of = |part| condition.of.by_mass(part) != 0.0 || condition.of.by_moment(part) != 0.0;
                 let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
                 let want = format!("one of {}", would.join(", "));
-                return Err(CounterweightError::Untouched { condition: condition.of.name(&self.bare), left, want });
+                return Err(CounterweightError::Untouched { condition: condition.of.name(&self.bare), residual, want });
             }
         }
         Ok(())
@@ -69,12 +70,12 @@ impl CounterweightProblem {
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
         let equation = |condition: &ConditionResidual| LinearEquation {
             a: condition.changes.iter().flatten().copied().collect(),
-            right: -condition.left.re,
+            right: -condition.residual.re,
             tolerance: f64::INFINITY,
         };
         let equations: Vec<LinearEquation> = self.conditions.iter().map(equation).collect();
-        let along = SolutionSpace::of(&equations, 2 * sites).missed;
-        along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.left.im)).collect()
+        let along = SolutionSpace::of(&equations, 2 * sites).residuals;
+        along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.residual.im)).collect()
     }
 
     /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so none are then
@@ -83,7 +84,10 @@ impl CounterweightProblem {
         let total: f64 = self.inertia.total_momentum();
         asked.rotors.is_empty()
             && asked.objective.momentum == 0.0
-            && self.conditions.iter().all(|condition| condition.left.norm() <= condition.of.nothing(&self.inertia))
+            && self
+                .conditions
+                .iter()
+                .all(|condition| condition.residual.norm() <= condition.of.tolerance(&self.inertia))
             && asked.most_inertia.is_none_or(|most| total <= most)
     }
 

@@ -1,11 +1,11 @@
 //! The cone program of a [`CounterweightProblem`]: its rows, and its optimum.
 
-use super::asked::{CounterweightSpec, Objective, RotorFreedom};
-use super::left::ConditionResidual;
 use super::problem::CounterweightProblem;
 use super::refusal::{Bound, BoundKind};
+use super::residual::ConditionResidual;
+use super::search_node::{BalanceGoal, SearchNode};
+use super::spec::{CounterweightSpec, Objective, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
-use super::way::{BalanceGoal, SearchNode};
 use crate::balance::Condition;
 use crate::machine::Machine;
 use stillbase_convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
@@ -38,7 +38,7 @@ impl CounterweightProblem {
         balance: BalanceGoal,
         weights: &[f64],
     ) -> Vec<Bound> {
-        let (bounds, way) = (self.bounds(machine, asked), SearchNode::free(asked, balance));
+        let (bounds, way) = (self.bounds(machine, asked), SearchNode::unconstrained(asked, balance));
         let any = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
         let contradicts = |bounds: &[(Bound, LinearRow)]| {
             matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoOptimum::Contradiction(_)))
@@ -111,7 +111,9 @@ impl CounterweightProblem {
         };
         if balance == BalanceGoal::Exact {
             let touched = self.conditions.iter().filter(|condition| condition.is_touched());
-            program.equal.extend(touched.map(|condition| LinearRow::new(terms(condition, 1.0), -condition.left.re)));
+            program
+                .equal
+                .extend(touched.map(|condition| LinearRow::new(terms(condition, 1.0), -condition.residual.re)));
             return;
         }
         let worst = program.linear.len();
@@ -141,7 +143,7 @@ impl CounterweightProblem {
     ) {
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
-            let ends = match rotor.free {
+            let ends = match rotor.parameter {
                 RotorFreedom::Inertia(ends) => {
                     program.equal.push(LinearRow::new([(turned, 1.0)], 0.0));
                     ends

@@ -1,10 +1,10 @@
 //! [`CounterweightTask`]: one request for counterweights, with the problem derived from it.
 
-use super::asked::CounterweightSpec;
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::search::search;
-use super::way::{BalanceGoal, SearchNode};
+use super::search_node::{BalanceGoal, SearchNode};
+use super::spec::CounterweightSpec;
 use crate::machine::Machine;
 use crate::planar::Vector;
 use stillbase_convex::{NoOptimum, Optimum};
@@ -14,14 +14,14 @@ use stillbase_convex::{NoOptimum, Optimum};
 pub(super) struct CounterweightTask<'a> {
     pub problem: &'a CounterweightProblem,
     pub machine: &'a Machine,
-    pub asked: &'a CounterweightSpec,
+    pub spec: &'a CounterweightSpec,
     pub beyond: &'a [Vector],
 }
 
 impl CounterweightTask<'_> {
     /// Returns whether balance is to be exact, or as near as possible over a range of payloads.
     pub fn balance(&self) -> BalanceGoal {
-        match self.asked.payload {
+        match self.spec.payload {
             Some([low, high]) if low < high => BalanceGoal::Nearest,
             _ => BalanceGoal::Exact,
         }
@@ -29,20 +29,20 @@ impl CounterweightTask<'_> {
 
     /// Returns whether counterweights exist that meet the request; an error counts as no.
     pub fn is_possible(&self) -> bool {
-        matches!(self.on(&SearchNode::free(self.asked, self.balance())), Ok(Ok(_)))
+        matches!(self.on(&SearchNode::unconstrained(self.spec, self.balance())), Ok(Ok(_)))
     }
 
     /// Finds the optimum with a given form of the balance conditions.
     pub fn least(&self, balance: BalanceGoal) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
-        self.on(&SearchNode::free(self.asked, balance))
+        self.on(&SearchNode::unconstrained(self.spec, balance))
     }
 
     /// Finds the optimum of the subproblem at a node of the search.
     pub fn on(&self, way: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
-        let is_convex = self.asked.clearance.is_none() && self.asked.objective.momentum == 0.0;
+        let is_convex = self.spec.clearance.is_none() && self.spec.objective.momentum == 0.0;
         match is_convex {
-            true => Ok(self.problem.least(self.machine, self.asked, way)),
-            false => search(self.problem, self.machine, self.asked, way),
+            true => Ok(self.problem.least(self.machine, self.spec, way)),
+            false => search(self.problem, self.machine, self.spec, way),
         }
     }
 }

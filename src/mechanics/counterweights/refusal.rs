@@ -107,20 +107,20 @@ pub enum CounterweightError {
     #[error("drive {0} has no rotor whose ratio could be chosen: want drive.{0}.rotor.inertia above 0")]
     NoRotor(String),
     /// The masses of the links lie off their axes, where no counterweight on an axis balances them.
-    #[error("{condition}, has {left} that no counterweight on an axis takes away: want com_normal 0")]
+    #[error("{condition}, has {residual} that no counterweight on an axis takes away: want com_normal 0")]
     OffAxis {
         /// The condition.
         condition: String,
         /// Its residual, with unit.
-        left: String,
+        residual: String,
     },
     /// No counterweight on these links changes a condition that is not met.
-    #[error("{condition}, stays at {left}: want a counterweight on another link, too: {want}")]
+    #[error("{condition}, stays at {residual}: want a counterweight on another link, too: {want}")]
     Untouched {
         /// The condition.
         condition: String,
         /// Its residual, with unit.
-        left: String,
+        residual: String,
         /// Links on which a counterweight would change it.
         want: String,
     },

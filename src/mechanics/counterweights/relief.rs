@@ -1,9 +1,9 @@
 //! [`sufficient_reliefs`]: relaxed bounds with which there would be counterweights, all others unchanged.
 
-use super::asked::CounterweightSpec;
 use super::question::CounterweightTask;
 use super::refusal::{BoundKind, BoundRelaxation};
-use super::way::SearchNode;
+use super::search_node::SearchNode;
+use super::spec::CounterweightSpec;
 
 /// Factor by which the first of several bounds is relaxed beyond its minimum, so that the others need less relaxation.
 const FIRST_BOUND_FACTOR: f64 = 1.1;
@@ -25,7 +25,7 @@ pub(super) fn sufficient_reliefs(
     one: &CounterweightTask,
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
 ) -> Vec<Vec<BoundRelaxation>> {
-    let kinds = BoundKind::of(one.asked);
+    let kinds = BoundKind::of(one.spec);
     let some = |bits: usize| (0..kinds.len()).filter(move |i| bits >> i & 1 == 1).map(|i| kinds[i]).collect::<Vec<_>>();
     let of_size = |size: usize| {
         let sets = (1..1_usize << kinds.len()).map(some).filter(move |set| set.len() == size);
@@ -41,7 +41,7 @@ fn together(
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
 ) -> Option<Vec<BoundRelaxation>> {
     let (last, first) = kinds.split_last()?;
-    let (mut asked, mut reliefs) = (one.asked.clone(), Vec::new());
+    let (mut asked, mut reliefs) = (one.spec.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
         let relief = kind.rounded(FIRST_BOUND_FACTOR * least_bound(one, &asked, *kind, &kinds[i + 1..])?);
         relief.set(&mut asked);
@@ -70,9 +70,9 @@ fn least_bound(
     loose: &[BoundKind],
 ) -> Option<f64> {
     let without_clearance = CounterweightSpec { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
-    let asked = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { asked };
-    let one = CounterweightTask { asked, ..*one };
-    let way = SearchNode { loose: loose.to_vec(), least: Some(kind), ..SearchNode::free(asked, one.balance()) };
+    let spec = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { asked };
+    let one = CounterweightTask { spec, ..*one };
+    let way = SearchNode { loose: loose.to_vec(), least: Some(kind), ..SearchNode::unconstrained(spec, one.balance()) };
     one.on(&way).ok()?.ok().map(|least| least.value.max(0.0))
 }
 
@@ -80,7 +80,7 @@ fn least_bound(
 fn greatest_clearance(one: &CounterweightTask, asked: &CounterweightSpec) -> Option<f64> {
     let is_clear = |clearance: f64| {
         let asked = CounterweightSpec { clearance: Some(clearance), ..asked.clone() };
-        CounterweightTask { asked: &asked, ..*one }.is_possible()
+        CounterweightTask { spec: &asked, ..*one }.is_possible()
     };
     if !is_clear(0.0) {
         return None;

@@ -3,13 +3,13 @@
 //! in magnitude with more inertia. The subproblem with the lowest bound is split first, so the first solution whose
 //! relaxation is exact is the optimum.
 
-use super::asked::CounterweightSpec;
 use super::cell::SearchCell;
+use super::free_span::FreeSpan;
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
-use super::room::FreeSpan;
+use super::search_node::{BalanceGoal, SearchNode};
 use super::solution::MIN_MASS_KG;
-use super::way::{BalanceGoal, SearchNode};
+use super::spec::CounterweightSpec;
 use crate::machine::Machine;
 use stillbase_convex::{NoOptimum, Optimum};
 
@@ -123,7 +123,8 @@ impl Search<'_> {
         let missed = |j: usize| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
             let (radius, at) = (self.asked.disc.radius(w.max(0.0)), s / w);
-            let nearest = rooms[j].iter().map(|room| room.missed(clearance, radius, at)).fold(f64::INFINITY, f64::min);
+            let nearest =
+                rooms[j].iter().map(|room| room.violation(clearance, radius, at)).fold(f64::INFINITY, f64::min);
             if w > MIN_MASS_KG { nearest } else { 0.0 }
         };
         let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());

@@ -1,11 +1,11 @@
 //! Evaluates a solution of the cone program: its objective, and the machine with counterweights and rotors.
 
-use super::asked::{CounterweightSpec, RotorFreedom, Sites};
-use super::left::ConditionResidual;
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
+use super::residual::ConditionResidual;
+use super::search_node::{BalanceGoal, SearchNode};
+use super::spec::{CounterweightSpec, RotorFreedom, Sites};
 use super::unknowns::{AffineForm, UnknownIndices};
-use super::way::{BalanceGoal, SearchNode};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Counterweight, Machine, Rotor};
 
@@ -25,7 +25,7 @@ impl CounterweightProblem {
         let mut x = x.to_vec();
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
-            x[unknowns.turned(i)] = match rotor.free {
+            x[unknowns.turned(i)] = match rotor.parameter {
                 RotorFreedom::Inertia(_) => 0.0,
                 RotorFreedom::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
             };
@@ -62,7 +62,7 @@ impl CounterweightProblem {
 
     /// Returns the value of the objective.
     pub fn value(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> f64 {
-        let costs = self.program(machine, asked, &[], &SearchNode::free(asked, BalanceGoal::Exact)).linear;
+        let costs = self.program(machine, asked, &[], &SearchNode::unconstrained(asked, BalanceGoal::Exact)).linear;
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
@@ -111,7 +111,7 @@ impl CounterweightProblem {
         spec.counterweights.extend(found.iter().map(weight));
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
-            let found = match rotor.free {
+            let found = match rotor.parameter {
                 RotorFreedom::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
                 RotorFreedom::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
             };
@@ -133,7 +133,7 @@ impl CounterweightProblem {
                 let [by_w, by_s] = condition.changes[*j];
                 by_w * w + by_s * s
             });
-            condition.left.re + changed.sum::<f64>()
+            condition.residual.re + changed.sum::<f64>()
         });
         // Changes are measured relative to each mass, so that light counterweights keep their positions.
         let equation = |(condition, right): (&ConditionResidual, f64)| LinearEquation {
@@ -142,7 +142,7 @@ impl CounterweightProblem {
             tolerance: f64::INFINITY,
         };
         let equations: Vec<LinearEquation> = self.conditions.iter().zip(residual).map(equation).collect();
-        let change = SolutionSpace::of(&equations, 2 * sites.len()).start;
+        let change = SolutionSpace::of(&equations, 2 * sites.len()).particular;
         for (j, (_, [w, s])) in found.iter_mut().enumerate() {
             let by = *w;
             (*w, *s) = (*w - by * change[2 * j], *s - by * change[2 * j + 1]);

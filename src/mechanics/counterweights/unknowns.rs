@@ -1,7 +1,7 @@
 //! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
 
-use super::asked::{CounterweightSpec, RotorFreedom};
 use super::problem::CounterweightProblem;
+use super::spec::{CounterweightSpec, RotorFreedom};
 use crate::machine::Machine;
 
 /// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
@@ -20,7 +20,7 @@ pub(super) struct UnknownIndices {
 
 impl UnknownIndices {
     pub fn of(asked: &CounterweightSpec, drives: usize) -> Self {
-        let inertia = asked.objective.turns() || asked.most_inertia.is_some();
+        let inertia = asked.objective.depends_on_inertia() || asked.most_inertia.is_some();
         let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
         Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
     }
@@ -92,7 +92,7 @@ impl CounterweightProblem {
             let [plain, by_ratio] = self.rates(rotor.drive, k);
             let present = machine.spec().drives[rotor.drive].rotor.unwrap_or_default();
             let (x, turned, inertia) = (unknowns.rotor(i), unknowns.turned(i), present.inertia);
-            match rotor.free {
+            match rotor.parameter {
                 RotorFreedom::Inertia(_) => {
                     let rate = plain + by_ratio * present.ratio;
                     sums[0].terms.push((x, rate));

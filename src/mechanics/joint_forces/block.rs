@@ -10,7 +10,7 @@ pub(super) const MAX_BLOCK_CLOSURES: usize = MAX_PINS / 3;
 /// Forces of the cut closures of a block, N, in the order of the block.
 pub(super) type BlockForces = [Vector; MAX_BLOCK_CLOSURES];
 
-/// Returns the forces λ of the closures `open`, N, and whether the equations are regular: no pivot below [`FLAT`].
+/// Returns the forces λ of the closures `open`, N, and whether the equations are regular: no pivot below [`FLAT_SINE`].
 /// Solves the equations of the links `rows`, two for each closure, by Gaussian elimination with partial pivoting.
 pub(super) fn together(
     links: &[TreeLink],

@@ -31,9 +31,9 @@ pub struct Inertia {
     /// J_k and the contribution J r_k² of the rotors to H_kk, kg m².
     pub spin: [f64; MAX_DRIVES],
     /// Contribution J r_k r_l of the rotors to H_kl, k ≠ l, kg m².
-    pub gears: [[f64; MAX_DRIVES]; MAX_DRIVES],
+    pub rotor_coupling: [[f64; MAX_DRIVES]; MAX_DRIVES],
     /// D_k − Σ_l H_lk, kg m²: J r_k (1 − Σ_l r_l) of the rotors, from the reaction of gears on stators on the base.
-    pub taken_up: [f64; MAX_DRIVES],
+    pub stator_reaction: [f64; MAX_DRIVES],
     /// The rotors, one a drive.
     pub rotors: [RotorCoupling; MAX_DRIVES],
     /// Coefficients of the end-effector position, m.
@@ -52,7 +52,7 @@ pub struct RotorCoupling {
 impl Inertia {
     /// Computes the constants of a machine: sums over the links, the payload and the rotors.
     pub fn of(machine: &Machine) -> Self {
-        let mut sum = Self::nothing(machine.drives(), *machine.motors(), *machine.end_effector());
+        let mut sum = Self::massless(machine.drives(), *machine.motors(), *machine.end_effector());
         for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             sum.add(link.mass, link.inertia, part.drive, &machine.com_chain(j));
         }
@@ -68,7 +68,7 @@ impl Inertia {
     }
 
     /// Returns the constants of a machine without mass, to which bodies are added.
-    pub fn nothing(drives: usize, motors: Motors, end_effector: Chain) -> Self {
+    pub fn massless(drives: usize, motors: Motors, end_effector: Chain) -> Self {
         let zero = Vector::new(0.0, 0.0);
         Self {
             drives,
@@ -76,8 +76,8 @@ impl Inertia {
             g: [zero; MAX_DRIVES],
             c: [[zero; MAX_DRIVES]; MAX_DRIVES],
             spin: [0.0; MAX_DRIVES],
-            gears: [[0.0; MAX_DRIVES]; MAX_DRIVES],
-            taken_up: [0.0; MAX_DRIVES],
+            rotor_coupling: [[0.0; MAX_DRIVES]; MAX_DRIVES],
+            stator_reaction: [0.0; MAX_DRIVES],
             rotors: [RotorCoupling::default(); MAX_DRIVES],
             motors,
             end_effector,
@@ -95,14 +95,14 @@ impl Inertia {
         self.add_rotor_inertia(inertia, &rates, self.drives);
     }
 
-    /// Adds J r rᵀ to the mass matrix of the first `n` drives, and J r (1 − Σ r) to `taken_up`.
+    /// Adds J r rᵀ to the mass matrix of the first `n` drives, and J r (1 − Σ r) to `stator_reaction`.
     fn add_rotor_inertia(&mut self, inertia: f64, r: &[f64; MAX_DRIVES], n: usize) {
         let all: f64 = r[..n].iter().sum();
         for i in 0..n {
             self.spin[i] += inertia * r[i] * r[i];
-            self.taken_up[i] += inertia * r[i] * (1.0 - all);
+            self.stator_reaction[i] += inertia * r[i] * (1.0 - all);
             for j in (0..n).filter(|j| *j != i) {
-                self.gears[i][j] += inertia * r[i] * r[j];
+                self.rotor_coupling[i][j] += inertia * r[i] * r[j];
             }
         }
     }
@@ -111,7 +111,7 @@ impl Inertia {
     /// then sum to 1, so that the columns of the mass matrix sum to D.
     pub fn turn_base(&mut self) {
         let n = self.drives;
-        self.taken_up = [0.0; MAX_DRIVES];
+        self.stator_reaction = [0.0; MAX_DRIVES];
         for i in 0..n {
             let RotorCoupling { inertia, mut rates } = self.rotors[i];
             if inertia == 0.0 || n >= MAX_DRIVES {
@@ -120,8 +120,8 @@ impl Inertia {
             rates[n] = 1.0 - rates[..n].iter().sum::<f64>();
             self.spin[n] += inertia * rates[n] * rates[n];
             for k in 0..n {
-                self.gears[n][k] += inertia * rates[n] * rates[k];
-                self.gears[k][n] += inertia * rates[n] * rates[k];
+                self.rotor_coupling[n][k] += inertia * rates[n] * rates[k];
+                self.rotor_coupling[k][n] += inertia * rates[n] * rates[k];
             }
             self.rotors[i].rates = rates;
         }
@@ -167,7 +167,7 @@ impl Inertia {
 
     /// H_kl where all C_kl, k ≠ l, vanish, kg m².
     pub fn constant(&self, k: usize, l: usize) -> f64 {
-        if k == l { self.diagonal(k) } else { self.gears[k][l] }
+        if k == l { self.diagonal(k) } else { self.rotor_coupling[k][l] }
     }
 
     /// Every H_kk; where all C_kl vanish and there are no rotors these are D_k, (11).
@@ -178,8 +178,8 @@ impl Inertia {
     /// Returns D_k where all C_kl vanish, kg m²: the coefficient of q̇_k in the angular momentum about B. A rotor adds
     /// J r_k² to H_kk but J r_k to D_k, so a rotor that turns the other way reduces D_k.
     pub fn momentum(&self, k: usize) -> f64 {
-        let gears: f64 = (0..self.drives).map(|l| self.gears[k][l]).sum();
-        let own = self.diagonal(k) + gears + self.taken_up[k];
+        let gears: f64 = (0..self.drives).map(|l| self.rotor_coupling[k][l]).sum();
+        let own = self.diagonal(k) + gears + self.stator_reaction[k];
         // Where gears cancel, only rounding error remains.
         if own.abs() <= BALANCE_TOLERANCE * self.diagonal(k) { 0.0 } else { own }
     }
@@ -214,13 +214,13 @@ impl Inertia {
             let turn = t.rates[..self.drives].iter().sum::<f64>();
             t.inertia * (1.0 - turn * turn)
         };
-        let all: f64 = (0..self.drives).map(|k| (0..self.drives).map(|l| self.gears[k][l]).sum::<f64>()).sum();
+        let all: f64 = (0..self.drives).map(|k| (0..self.drives).map(|l| self.rotor_coupling[k][l]).sum::<f64>()).sum();
         self.diagonals().iter().sum::<f64>() + all + self.rotors.iter().map(gears).sum::<f64>()
     }
 
     /// Returns the angular momentum of the rotors, kg m²/s, less the part in the mass matrix of the drives alone. `qd`
     /// holds the rates of the drives and, after these, of a base that turns.
-    pub fn of_base(&self, qd: &[f64]) -> f64 {
+    pub fn excess_rotor_momentum(&self, qd: &[f64]) -> f64 {
         let of = |t: &RotorCoupling| {
             let turn = |n: usize| t.rates.iter().zip(&qd[..n]).map(|(r, qd)| r * qd).sum::<f64>();
             let own: f64 = t.rates[..self.drives].iter().sum();
@@ -236,7 +236,7 @@ impl Inertia {
 
     /// Returns the inertia that motor k turns if it turns alone, kg m², where all C_kl vanish: that of its drive and of
     /// all drives which this carries.
-    pub fn carried(&self, k: usize) -> f64 {
+    pub fn inertia_at_motor(&self, k: usize) -> f64 {
         if !self.motors.in_joints() {
             return self.diagonal(k);
         }
@@ -246,7 +246,7 @@ impl Inertia {
 
     /// Returns whether H is diagonal where all C_kl vanish, and all motors sit on the base: τ_k = H_kk q̈_k.
     pub fn is_decoupled(&self) -> bool {
-        !self.motors.in_joints() && self.gears.iter().flatten().all(|g| *g == 0.0)
+        !self.motors.in_joints() && self.rotor_coupling.iter().flatten().all(|g| *g == 0.0)
     }
 
     /// Returns the pairs k < l, counted from 0, in the order (1,2), (1,3) … (2,3) … of the paper.
@@ -270,14 +270,16 @@ impl Inertia {
         self.invariance_residual() / self.diagonals().iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// Returns whether motion exerts no force on the base: every |g_k| is at most [`BALANCE_TOLERANCE`] M √(Σ H_kk / M).
+    /// Returns whether motion exerts no force on the base: every |g_k| is at most [`BALANCE_TOLERANCE`] M √(Σ H_kk /
+    /// M).
     pub fn is_force_balanced(&self) -> bool {
-        self.force_residual() <= self.least_first_moment()
+        self.force_residual() <= self.first_moment_tolerance()
     }
 
-    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`] Σ H_kk.
+    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`]
+    /// Σ H_kk.
     pub fn is_invariant(&self) -> bool {
-        self.invariance_residual() <= self.least_coupling()
+        self.invariance_residual() <= self.coupling_tolerance()
     }
 
     /// Returns whether the machine is force balanced and its mass matrix invariant, (7) and (8).
@@ -286,16 +288,15 @@ impl Inertia {
     }
 
     /// Tolerance of |g_k|, kg m: up to this it is treated as zero.
-    pub(crate) fn least_first_moment(&self) -> f64 {
+    pub(crate) fn first_moment_tolerance(&self) -> f64 {
         BALANCE_TOLERANCE * self.mass * self.size()
     }
 
     /// Tolerance of |C_kl|, kg m²: up to this it is treated as zero.
-    pub(crate) fn least_coupling(&self) -> f64 {
+    pub(crate) fn coupling_tolerance(&self) -> f64 {
         BALANCE_TOLERANCE * self.mass * self.size().powi(2)
     }
 
-    /// Length scale √(Σ H_kk / M), m.
     /// Length scale √(Σ H_kk / M), m.
     fn size(&self) -> f64 {
         (0..self.drives).map(|k| self.diagonal(k)).sum::<f64>().max(0.0).sqrt() / self.mass.sqrt()

@@ -51,7 +51,7 @@ impl Motors {
 
     /// Returns the drives whose stators sit on links, each with the drive that carries it, carriers first.
     #[inline(always)]
-    fn carried(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> {
+    fn carried_stators(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> {
         let drives = if self.in_joints { self.drives } else { 0 };
         self.order[..drives].iter().filter_map(|&k| Some((k, self.on(k)?)))
     }
@@ -59,24 +59,24 @@ impl Motors {
     /// Returns A x: angles, rates or accelerations of the motors from those of the drives.
     #[inline]
     #[must_use]
-    pub fn turns(&self, x: &PerDrive) -> PerDrive {
+    pub fn to_motors(&self, x: &PerDrive) -> PerDrive {
         let mut turns = *x;
-        self.turn(&mut turns);
+        self.transform_to_motors(&mut turns);
         turns
     }
 
     /// Replaces x by A x; elements beyond the drives stay unchanged.
     #[inline(always)]
-    pub fn turn(&self, x: &mut [f64]) {
-        for (k, on) in self.carried().rev() {
+    pub fn transform_to_motors(&self, x: &mut [f64]) {
+        for (k, on) in self.carried_stators().rev() {
             x[k] -= x[on];
         }
     }
 
     /// Replaces x by A⁻¹ x: angles, rates or accelerations of the drives from those of the motors.
     #[inline(always)]
-    pub fn drive(&self, x: &mut [f64]) {
-        for (k, on) in self.carried() {
+    pub fn transform_to_drives(&self, x: &mut [f64]) {
+        for (k, on) in self.carried_stators() {
             x[k] += x[on];
         }
     }
@@ -84,16 +84,16 @@ impl Motors {
     /// Returns A⁻ᵀ τ, N m: torques of the motors from generalised ones.
     #[inline]
     #[must_use]
-    pub fn torques(&self, generalised: &PerDrive) -> PerDrive {
+    pub fn motor_torques(&self, generalised: &PerDrive) -> PerDrive {
         let mut torques = *generalised;
-        self.give(&mut torques);
+        self.transform_to_motor_torques(&mut torques);
         torques
     }
 
     /// Replaces τ by A⁻ᵀ τ.
     #[inline(always)]
-    pub fn give(&self, torque: &mut [f64]) {
-        for (k, on) in self.carried().rev() {
+    pub fn transform_to_motor_torques(&self, torque: &mut [f64]) {
+        for (k, on) in self.carried_stators().rev() {
             torque[on] += torque[k];
         }
     }
@@ -101,9 +101,9 @@ impl Motors {
     /// Returns Aᵀ m, N m: generalised torques from those of the motors, without their reactions on the base.
     #[inline]
     #[must_use]
-    pub fn generalised(&self, torques: &PerDrive) -> PerDrive {
+    pub fn generalised_torques(&self, torques: &PerDrive) -> PerDrive {
         let mut generalised = *torques;
-        for (k, on) in self.carried() {
+        for (k, on) in self.carried_stators() {
             generalised[on] -= torques[k];
         }
         generalised

@@ -52,7 +52,7 @@ impl Machine {
     ///
     /// # Errors
     /// As [`set`](Self::set).
-    pub fn with(&self, change: &Table) -> Result<Self, MachineError> {
+    pub fn with_settings(&self, change: &Table) -> Result<Self, MachineError> {
         let mut spec = self.spec().clone();
         for (key, value) in change::leaves(change) {
             assign(&mut spec, &key, value)?;
@@ -66,7 +66,7 @@ impl Machine {
     }
 
     /// Returns the settings that differ from their default but have no effect.
-    pub fn idle_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
+    pub fn ineffective_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
         let is_given = |row: &KeyRow| !change::same_value(&row.value(self, 0), &change::value(row.key.default));
         let idle = move |row: &&KeyRow| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
         MACHINE_KEYS.iter().filter(idle).map(|row| row.key.path)

@@ -131,7 +131,7 @@ impl PlotChoice {
         let open = table.filter(|chart| !of(chart.title).closed);
         let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), signals));
         let own = self.own.iter().map(|name| {
-            let chart = Chart { centred: false, least: 0.0, ..EMPTY_CHART };
+            let chart = Chart { centred: false, min_range: 0.0, ..EMPTY_CHART };
             Plot::of(name, chart, true, of(name), signals)
         });
         // An added plot is omitted if the machine has none of its signals.
@@ -173,13 +173,13 @@ pub struct PlotCurve<'a> {
     /// Whether the user added the curve.
     pub added: bool,
     /// Factor from SI values to displayed values.
-    pub times: f64,
+    pub scale: f64,
 }
 
 impl PlotCurve<'_> {
     /// Returns the unit of the displayed values; empty if dimensionless.
     pub fn unit(&self) -> String {
-        match (self.times == 1.0, self.signal.unit) {
+        match (self.scale == 1.0, self.signal.unit) {
             (_, "1") => String::new(),
             (true, unit) => unit.into(),
             (false, unit) => format!("m{unit}"),
@@ -198,7 +198,7 @@ impl<'a> Plot<'a> {
                 signal,
                 on: !changes.off.contains(&signal.path),
                 added,
-                times: if !added || matches!(signal.unit, "m" | "rad") { chart.times } else { 1.0 },
+                scale: if !added || matches!(signal.unit, "m" | "rad") { chart.scale } else { 1.0 },
             })
             .collect();
         let against = changes.against.as_ref().and_then(find);

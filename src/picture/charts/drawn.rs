@@ -51,7 +51,7 @@ impl PlotLines {
         let mut across = [f64::INFINITY, f64::NEG_INFINITY];
         for (run, samples) in runs {
             for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
-                let (path, times) = (&curve.signal.path, curve.times);
+                let (path, times) = (&curve.signal.path, curve.scale);
                 if let Some(bounds) = samples.bounds(path, shown) {
                     widen(&mut drawn.y, bounds.map(|y| times * y));
                 }
@@ -78,7 +78,7 @@ impl PlotLines {
                 ..s
             };
             let curves = plot.curves.iter();
-            drawn.statistics = curves.map(|c| of(&c.signal.path).map(|s| scaled(s, c.times))).collect();
+            drawn.statistics = curves.map(|c| of(&c.signal.path).map(|s| scaled(s, c.scale))).collect();
         }
         drawn.all = rounded_bounds(plot, drawn.y);
         drawn.y = plot.values.unwrap_or(drawn.all);
@@ -104,10 +104,10 @@ fn widen(bounds: &mut [f64; 2], [low, high]: [f64; 2]) {
 /// Returns rounded bounds of values, with a margin.
 fn rounded_bounds(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     let mut chart = plot.chart;
-    if chart.least == 0.0 {
+    if chart.min_range == 0.0 {
         // A plot that the user added has no minimum range; 0.1 % of its largest value takes its place.
         let most = low.abs().max(high.abs());
-        chart.least = if most.is_finite() && most > 0.0 { 1e-3 * most } else { 1.0 };
+        chart.min_range = if most.is_finite() && most > 0.0 { 1e-3 * most } else { 1.0 };
     }
     let [low, high] = chart.range(low, high);
     let margin = 0.06 * (high - low);

@@ -218,7 +218,7 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureIt
                 items.push(FigureItem::Line { points, width: 1.0, colour: tone, dash, inside: true });
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
-                let at = [against.value(frame), curve.times * curve.signal.value(frame)];
+                let at = [against.value(frame), curve.scale * curve.signal.value(frame)];
                 // No dot for values outside the vertical axis.
                 let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
                 seen.then(|| FigureItem::Dot { at: axes.place(at), radius: 3.5, colour: tone })

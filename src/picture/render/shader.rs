@@ -13,7 +13,7 @@ pub struct SharedLayout {
     pub fields: &'static [(&'static str, usize)],
 }
 
-/// Defines a struct that is copied to the GPU byte by byte, with its [`Twin`].
+/// Defines a struct that is copied to the GPU byte by byte, with its [`SharedLayout`].
 macro_rules! twin {
     ($(#[$doc:meta])* struct $name:ident { $($field:ident: $type:ty,)* }) => {
         $(#[$doc])*

@@ -20,7 +20,7 @@ pub fn waypoints(run: &Run) -> Vec<(usize, String, Vector)> {
     let task = &run.scenario().task;
     if task.samples.is_some() {
         // The motion may have been rotated since the file was written.
-        return [(0, 0.0), (1, 1.0)].map(|(i, share)| (i, task.name_of(i), run.on_path(share))).to_vec();
+        return [(0, 0.0), (1, 1.0)].map(|(i, share)| (i, task.name_of(i), run.end_effector_on_path(share))).to_vec();
     }
     let named = |(i, p)| (i, task.name_of(i), p);
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();

@@ -84,7 +84,7 @@ impl DesignDrawing {
     fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, frame: &Frame, options: &ViewOptions) {
         let palette = palette(options.theme);
         let e = frame.q.units();
-        let hot = options.hot.and_then(|handle| self.link_of(handle));
+        let hot = options.highlighted.and_then(|handle| self.link_of(handle));
         let is_lit = |i: usize| hot == Some(i) || options.links.contains(&i);
         let mut solids = linkage.solids(&e, frame.base, false, &palette);
         for (i, bar) in linkage.bars().iter().enumerate() {
@@ -96,11 +96,11 @@ impl DesignDrawing {
         for handle in self.handles() {
             let Some(at) = self.place(handle, linkage, frame) else { continue };
             let arm = (CROSS_HALF_SIZE * linkage.reach()) as f32;
-            draw_handle(scene, &palette, (handle, self.kilograms(handle)), (at, arm), options.hot == Some(handle));
+            draw_handle(scene, &palette, handle, self.kilograms(handle), at, arm, options.highlighted == Some(handle));
         }
         self.draw_choice(scene, linkage, &palette, frame, &options.weights);
         if let Some(i) = hot {
-            self.draw_length(scene, linkage, &palette, (i, &e), frame);
+            self.draw_length(scene, linkage, &palette, i, &e, frame);
         }
     }
 
@@ -140,7 +140,8 @@ impl DesignDrawing {
         scene: &mut Scene,
         linkage: &LinkageModel,
         palette: &Palette,
-        (i, e): (usize, &UnitVectors),
+        i: usize,
+        e: &UnitVectors,
         frame: &Frame,
     ) {
         let link = &self.links[i];
@@ -217,8 +218,10 @@ const MIN_LENGTH_M: f64 = 1e-3;
 fn draw_handle(
     scene: &mut Scene,
     palette: &Palette,
-    (handle, kilograms): (Handle, f64),
-    (at, arm): ([f64; 3], f32),
+    handle: Handle,
+    kilograms: f64,
+    at: [f64; 3],
+    arm: f32,
     hot: bool,
 ) {
     let at = at.map(|x| x as f32);

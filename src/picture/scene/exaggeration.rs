@@ -45,7 +45,7 @@ impl Default for Exaggeration {
 
 impl Exaggeration {
     /// Factor by which the motion of the base is exaggerated.
-    pub fn times(self) -> f64 {
+    pub fn factor(self) -> f64 {
         match self {
             Self::Times(times) => times,
             Self::Mount(_) => 1.0,

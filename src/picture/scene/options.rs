@@ -18,13 +18,13 @@ pub struct ViewOptions {
     /// Measure of dexterity that colours the workspace.
     pub dexterity: Option<Measure>,
     /// Whether labels say what can be dragged.
-    pub invites: bool,
+    pub show_hints: bool,
     /// Whether the workspace of a second b is shown for comparison.
     pub compares: bool,
     /// Handle that is under the pointer or dragged.
-    pub hot: Option<Handle>,
+    pub highlighted: Option<Handle>,
     /// Position of the pointer during a drag, m.
-    pub held: Option<[f64; 2]>,
+    pub drag_position: Option<[f64; 2]>,
     /// Pose constant for which the poses at A, or at the target, are previewed, rad.
     pub preview_b: Option<f64>,
     /// Curve that the pointer has drawn so far, m.
@@ -44,7 +44,7 @@ pub struct ViewOptions {
     /// Exaggeration of the motion of the base.
     pub exaggeration: Exaggeration,
     /// External force at the end effector, N.
-    pub push: Option<[f64; 2]>,
+    pub external_force: Option<[f64; 2]>,
     /// Counterweights to choose from, in the design view.
     pub weights: Vec<WeightOption>,
     /// Indices of highlighted links, in the design view.
@@ -58,10 +58,10 @@ impl Default for ViewOptions {
         Self {
             theme: Theme::Dark,
             dexterity: None,
-            invites: true,
+            show_hints: true,
             compares: true,
-            hot: None,
-            held: None,
+            highlighted: None,
+            drag_position: None,
             preview_b: None,
             stroke: Vec::new(),
             refused: None,
@@ -71,7 +71,7 @@ impl Default for ViewOptions {
             limits: false,
             shadows: false,
             exaggeration: Exaggeration::default(),
-            push: None,
+            external_force: None,
             weights: Vec::new(),
             links: Vec::new(),
             scale: None,

@@ -46,50 +46,50 @@ pub struct ReactionGlyph {
     /// Part of the moment n_B that reaches the base, N m.
     pub moment: f64,
     /// |f_B| due to weight and pushes, N.
-    pub rest: f64,
+    pub static_force: f64,
     /// Whether the force exceeds rounding errors, relative to the inertial forces of the run so far.
-    pub pulls: bool,
+    pub has_force: bool,
     /// Whether the moment exceeds rounding errors, relative to the torques of the run so far.
-    pub turns: bool,
+    pub has_moment: bool,
 }
 
 impl ReactionGlyph {
     /// Returns the reaction of a frame.
     pub fn of(frame: &Frame) -> Self {
-        let (force, moment) = (frame.wrench.dynamic.force, frame.felt_moment());
+        let (force, moment) = (frame.wrench.dynamic.force, frame.net_base_moment());
         Self {
             force,
             moment,
-            rest: frame.wrench.statical.force.norm(),
-            pulls: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
-            turns: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
+            static_force: frame.wrench.statical.force.norm(),
+            has_force: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
+            has_moment: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
         }
     }
 
     /// Returns the arrow as a fraction of the reach; `newtons` is the force of a full arrow. `None` if it is too small.
     pub fn arrow(&self, newtons: f64) -> Option<Vector> {
         let arrow = self.force * (FULL_ARROW / newtons);
-        (self.pulls && arrow.norm() > MIN_ARROW).then_some(arrow)
+        (self.has_force && arrow.norm() > MIN_ARROW).then_some(arrow)
     }
 
     /// Returns the angle of the arc, rad; `newton_metres` is the moment of a full arc. `None` if it is too small.
     pub fn sweep(&self, newton_metres: f64) -> Option<f64> {
         let sweep = self.moment / newton_metres * FULL_ARC;
-        (self.turns && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
+        (self.has_moment && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
     }
 
     /// Returns the texts of f_B and n_B with their colours.
     pub fn readings(&self, palette: &Palette) -> [(String, Rgba); 2] {
         let tone = |real: bool| if real { palette.reaction } else { palette.zero };
         [
-            (format!("f_B {} N", reading(self.force.norm(), self.pulls)), tone(self.pulls)),
-            (format!("n_B {} N m", reading(self.moment, self.turns)), tone(self.turns)),
+            (format!("f_B {} N", reading(self.force.norm(), self.has_force)), tone(self.has_force)),
+            (format!("n_B {} N m", reading(self.moment, self.has_moment)), tone(self.has_moment)),
         ]
     }
 
     /// Returns the text of the constant force under the given name, if there is one.
     pub fn beside(&self, name: &str) -> Option<String> {
-        (self.rest > 0.0).then(|| format!("and {name}, {:.1} N", self.rest))
+        (self.static_force > 0.0).then(|| format!("and {name}, {:.1} N", self.static_force))
     }
 }
 

@@ -343,7 +343,7 @@ impl Stage {
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         self.bodies(&mut scene, &palette, shown, options);
         self.grid.draw(&mut scene, &palette);
-        self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.times());
+        self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());
         self.base.draw(&mut scene, linkage, &palette, shown);
         if let Some(workspace) = self.outlined() {
             workspace.draw(&mut scene, (linkage, self.fill), &palette, shown, (options, self.compared));
@@ -363,7 +363,7 @@ impl Stage {
             self.pins.draw(&mut scene, linkage, &palette, shown);
         }
         if options.limits {
-            self.limits.draw(&mut scene, linkage, &palette, shown, options.hot);
+            self.limits.draw(&mut scene, linkage, &palette, shown, options.highlighted);
         }
         target::draw(&mut scene, &palette, shown, options, z);
         self.base.load(&mut scene, linkage, &palette, shown, options);
@@ -387,7 +387,7 @@ impl Stage {
         let seen = |[x, y, z]: [f64; 3]| point(shown.base.at + Vector::new(x, y), z);
         scene.bars.extend(self.linkage.bars().iter().map(|bar| bar.ends(&units).map(seen)));
         let mut solids = self.linkage.solids(&units, shown.base, self.base.moves(), palette);
-        under::light(&mut solids, &self.linkage, options.hot, palette);
+        under::light(&mut solids, &self.linkage, options.highlighted, palette);
         scene.solids.extend(solids);
         if options.shadows {
             scene.shadows.extend(self.linkage.shadows(&units, shown.base.at));

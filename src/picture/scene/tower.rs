@@ -81,8 +81,8 @@ pub struct TowerPost {
 }
 
 impl Tower {
-    /// Prepares a run for drawing, over an interval of b of length [`TOWER_SPAN`]; to be repeated when its machine or plan
-    /// changes.
+    /// Prepares a run for drawing, over an interval of b of length [`TOWER_SPAN`]; to be repeated when its machine or
+    /// plan changes.
     pub fn of(run: &Run, reached: &Workspace) -> Option<Self> {
         Self::rising(run, reached.shape(), TOWER_SPAN, None)
     }
@@ -243,7 +243,7 @@ impl Tower {
         let b = frame.b_reference;
         let [low, high] = self.window(b);
         let z = |b: f64| (b - low) * self.rise();
-        let hot = options.hot == Some(Handle::Plane);
+        let hot = options.highlighted == Some(Handle::Plane);
         let turned = |b: f64| posed(Vector::default(), unit(self.space.turn(b)), z(b));
         let stands = if self.fixed.is_some() { ItemChanges::Nothing } else { ItemChanges::Shape };
         let solid = |name: &'static str, mesh, b, colour, changes| Solid {
@@ -356,14 +356,14 @@ impl Tower {
 
     fn target(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
         let outside = matches!(frame.target.reach, Reach::Outside { .. });
-        let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
+        let held = options.drag_position.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
         let at = held.unwrap_or_else(|| target_handle(frame));
         let tip = point(frame.in_base(frame.end_effector), z);
         if outside {
             let gap = Polyline::new("target/gap", [vec![tip, point(at, z)]], 1.4, palette.dim);
             scene.lines.push(gap.dashed(4.0, 4.0).on_top());
         }
-        let hot = options.hot == Some(Handle::Target);
+        let hot = options.highlighted == Some(Handle::Target);
         let inside = faded(palette.ink, if hot && !outside { 0.12 } else { 0.0 });
         scene.markers.push(Marker::disc("end_effector", tip, 4.0, palette.ink));
         let ring = Marker::disc("target", point(at, z), if hot { 12.0 } else { 10.0 }, inside);

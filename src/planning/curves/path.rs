@@ -332,7 +332,7 @@ fn least_rate_nodes(
     let max_drift = MAX_DRIFT * tip.iter().map(|c| c.abs()).sum::<f64>();
     let n = start.len();
     let rates = |q: &DriveAngles, v: Vector, vd: Vector, share: f64| match held {
-        Some((row, rate)) => minimum_norm_with(tip, (row, share * rate), |_| PerDrive::zeros(n), &q.units(), v, vd),
+        Some((row, rate)) => minimum_norm_with(tip, row, share * rate, |_| PerDrive::zeros(n), &q.units(), v, vd),
         None => minimum_norm(tip, &q.units(), n, v, vd),
     };
     let slope = |q: &DriveAngles, s: f64| {

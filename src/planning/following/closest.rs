@@ -76,7 +76,7 @@ pub(super) fn same_tip(
     let mut pull = [0.0; 3];
     for i in 0..samples.count() {
         let given = PerDrive::from_fn(space.drives(), |k| samples.values(i)[k]);
-        let (time, at) = (samples.time(i), space.place(&given));
+        let (time, at) = (samples.time(i), space.end_effector(&given));
         let q = closest(space, model, &given, b, given.plus(1.0, &off), &mut pull);
         let q = q.ok_or(NoClosestMotion::Pose { time, b, at })?;
         for (joint, a) in space.joints().iter().zip(space.angles(&q).iter()) {
@@ -107,7 +107,7 @@ pub(super) fn nearest_b(
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;
     let reached = samples.thinned(REACH_SAMPLES);
     let sets: Option<Vec<BSet>> =
-        (0..reached.count()).map(|i| space.reach(space.place(reached.values(i))).ok()).collect();
+        (0..reached.count()).map(|i| space.reach(space.end_effector(reached.values(i))).ok()).collect();
     least(&BSet::overlap(&sets?), mean, [TRIES, SECTIONS], far, goes_on)
 }
 
@@ -121,7 +121,7 @@ fn closest(
     from: PerDrive,
     pull: &mut [f64; 3],
 ) -> Option<DriveAngles> {
-    let (n, reach, p) = (space.drives(), space.farthest(), space.place(given));
+    let (n, reach, p) = (space.drives(), space.farthest(), space.end_effector(given));
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
     let weight = |k: usize| (model.diagonal(k) / whole).max(1e-6);
     let row = reach / space.lambda().max_abs();
@@ -129,9 +129,9 @@ fn closest(
     for _ in 0..MAX_ITERATIONS {
         let mut square = DMatrix::<f64>::zeros(n + 3, n + 3);
         let mut side = DVector::<f64>::zeros(n + 3);
-        let off = (p - space.place(&q)) / reach;
+        let off = (p - space.end_effector(&q)) / reach;
         for k in 0..n {
-            let arm = unit(q[k]) * (space.tip()[k] / reach);
+            let arm = unit(q[k]) * (space.arms()[k] / reach);
             let rows = [-arm.im, arm.re, row * space.lambda()[k] / reach];
             for (i, x) in rows.into_iter().enumerate() {
                 (square[(n + i, k)], square[(k, n + i)]) = (x, x);
@@ -151,10 +151,10 @@ fn closest(
         q = PerDrive::from_fn(n, |k| q[k] + short * step[k]);
         *pull = [step[n], step[n + 1], step[n + 2]];
         if size < STEP_TOLERANCE_RAD {
-            let off = (p - space.place(&q)).norm() / reach;
+            let off = (p - space.end_effector(&q)).norm() / reach;
             return (off < 1e-10 && (b - space.b(&q)).abs() < 1e-10).then_some(DriveAngles(q));
         }
     }
-    let (off, b_error) = ((p - space.place(&q)).norm() / reach, (b - space.b(&q)).abs());
+    let (off, b_error) = ((p - space.end_effector(&q)).norm() / reach, (b - space.b(&q)).abs());
     (off < 1e-10 && b_error < 1e-10).then_some(DriveAngles(q))
 }

@@ -13,7 +13,7 @@ use stillbase_query::ProgressCallback;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// Greatest distance of the end effectors, m.
-    pub tip: f64,
+    pub end_effector: f64,
     /// Greatest |Δq_k|, rad.
     pub joints: PerDrive,
     /// ‖Δq‖, rad.
@@ -24,13 +24,13 @@ impl Deviation {
     /// Returns the deviation between motions of equal duration, from `instants` + 1 even instants.
     pub fn between(tip: &Chain, model: &Inertia, one: &Motion, other: &Motion, instants: usize) -> Self {
         let n = model.drives();
-        let mut worst = Self { tip: 0.0, joints: PerDrive::zeros(n), rms: 0.0 };
+        let mut worst = Self { end_effector: 0.0, joints: PerDrive::zeros(n), rms: 0.0 };
         let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
         for i in 0..=instants {
             let share = i as f64 / instants as f64;
             let [a, b] = [one, other].map(|motion| motion.path.at(motion.profile.at(share * motion.duration()).s).q);
             let gap = end_effector(tip, &a.units()) - end_effector(tip, &b.units());
-            worst.tip = worst.tip.max(gap.norm());
+            worst.end_effector = worst.end_effector.max(gap.norm());
             let off = a.0.minus(&b.0);
             worst.joints.iter_mut().zip(off.iter()).for_each(|(worst, off)| *worst = worst.max(off.abs()));
             let square: f64 = off.iter().enumerate().map(|(k, off)| model.diagonal(k) * off * off).sum();
@@ -66,7 +66,7 @@ pub(super) fn least(
     goes_on: ProgressCallback<'_>,
 ) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64, [f64; 2])> = None;
-    let intervals = set.near(mean).intervals;
+    let intervals = set.shifted_near(mean).intervals;
     let all = intervals.len() * (tries + 1) + sections + 1;
     let (mut done, mut stopped) = (0, false);
     // After cancellation every further distance is infinite.

@@ -278,7 +278,7 @@ impl Follower {
             Reach::Carried => self.target.at = self.aim_point(),
             // Starts from the aim, so that the result does not depend on the lag of the reference.
             Reach::Outside { .. } => {
-                let (aim, reach) = self.map.pose_beside(self.target.at, self.b.x, &self.aim, self.target.reach);
+                let (aim, reach) = self.map.target_pose_nearby(self.target.at, self.b.x, &self.aim, self.target.reach);
                 (self.aim, self.target.reach) = (self.as_far_as_open(aim), reach);
             }
         }
@@ -311,7 +311,7 @@ impl Follower {
     /// Sets the aim to the pose of the target at the present b and on the present sheet, or to the nearest pose.
     fn aim_at_target(&mut self) {
         // Starts from the present pose, not from the aim, so that the aim can be reached on a straight line.
-        (self.aim, self.target.reach) = self.map.pose_for(self.target.at, self.b.x, &self.a.x);
+        (self.aim, self.target.reach) = self.map.target_pose(self.target.at, self.b.x, &self.a.x);
     }
 
     /// Returns the accelerations nearest to the wanted ones after which each angle can still stop before its limit.

@@ -87,7 +87,7 @@ impl HeldReference {
     /// Holds the end effector at its position in a pose at rest, and starts the drag. `bound` is that of |ä|, rad/s²;
     /// `step` is the time between calls of [`advance`](Self::advance), s.
     pub fn new(space: Arc<PoseSpace>, a: PerDrive, b: f64, (bound, step): (f64, f64), pull: Pull) -> Self {
-        let (point, still) = (space.place(&space.lift(&a, b)), PerDrive::zeros(a.len()));
+        let (point, still) = (space.end_effector(&space.lift(&a, b)), PerDrive::zeros(a.len()));
         let mut held = Self { space, pull, point, b, bound, step, a, v: still, acc: still };
         held.steer();
         held
@@ -137,8 +137,8 @@ impl HeldReference {
         columns
     }
 
-    fn tip(&self, a: &PerDrive) -> Columns {
-        self.columns(self.space.tip(), a)
+    fn jacobian(&self, a: &PerDrive) -> Columns {
+        self.columns(self.space.arms(), a)
     }
 
     /// Returns the component of x in the null space of J; `None` if J Jᵀ is singular.
@@ -148,16 +148,16 @@ impl HeldReference {
     }
 
     /// Finds the pose near a + w that has the held end effector position, by Newton's method; `None` if there is none.
-    fn beside(&self, j0: &Columns, w: &PerDrive) -> Option<PerDrive> {
+    fn pose_near(&self, j0: &Columns, w: &PerDrive) -> Option<PerDrive> {
         let n = w.len();
         let mut a = self.a.plus(1.0, w);
-        let gap = |a: &PerDrive| self.point - self.space.place(&self.space.lift(a, self.b));
+        let gap = |a: &PerDrive| self.point - self.space.end_effector(&self.space.lift(a, self.b));
         let mut off = gap(&a);
         for _ in 0..12 {
             if off.norm() <= POSITION_TOLERANCE * self.space.farthest() {
                 break;
             }
-            let next = a.plus(1.0, &across(j0, solved(&self.tip(&a), j0, n, off)?, n));
+            let next = a.plus(1.0, &across(j0, solved(&self.jacobian(&a), j0, n, off)?, n));
             let next_off = gap(&next);
             // The residual no longer falls: it is at rounding level.
             if next_off.norm() >= off.norm() {
@@ -172,7 +172,7 @@ impl HeldReference {
     /// tangential acceleration.
     fn turning(&self, j: &Columns, j0: &Columns, a: &PerDrive, v: &PerDrive, along_it: Vector) -> Option<PerDrive> {
         let (q, qd) = (self.space.lift(a, self.b), self.space.lift_rates(v, 0.0));
-        let inwards: Vector = (0..q.len()).map(|k| unit(q[k]) * (self.space.tip()[k] * qd[k] * qd[k])).sum();
+        let inwards: Vector = (0..q.len()).map(|k| unit(q[k]) * (self.space.arms()[k] * qd[k] * qd[k])).sum();
         Some(across(j0, solved(j, j0, a.len(), inwards - along_it)?, a.len()))
     }
 
@@ -183,9 +183,9 @@ impl HeldReference {
         if self.is_still(acc) {
             return Some(State { a: self.a, v: self.v, acc: *acc });
         }
-        let j0 = self.tip(&self.a);
-        let a = self.beside(&j0, &self.v.scaled(dt).plus(0.5 * dt * dt, acc))?;
-        let (j, w) = (self.tip(&a), self.v.plus(dt, acc));
+        let j0 = self.jacobian(&self.a);
+        let a = self.pose_near(&j0, &self.v.scaled(dt).plus(0.5 * dt * dt, acc))?;
+        let (j, w) = (self.jacobian(&a), self.v.plus(dt, acc));
         let v = w.minus(&across(&j0, solved(&j, &j0, n, along(&j, &w))?, n));
         let turning = self.turning(&j, &j0, &a, &v, along(&j, acc))?;
         Some(State { a, v, acc: acc.plus(1.0, &turning) })
@@ -217,11 +217,11 @@ impl HeldReference {
         let rest = speed - whole * brake * self.step;
         let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
         let there = Self { a: next.a, v: next.v, ..self.clone() };
-        let j0 = there.tip(&next.a);
+        let j0 = there.jacobian(&next.a);
         let fits = |share: f64| {
             let way = next.v.scaled(share * far / speed);
-            let Some(a) = there.beside(&j0, &way) else { return false };
-            let (j, v) = (there.tip(&a), next.v.scaled((1.0 - share).sqrt()));
+            let Some(a) = there.pose_near(&j0, &way) else { return false };
+            let (j, v) = (there.jacobian(&a), next.v.scaled((1.0 - share).sqrt()));
             let Some(v) = there.tangent(&j, &v) else { return false };
             let turning = there.turning(&j, &j, &a, &v, Vector::default());
             self.is_within(&a) && turning.is_some_and(|turning| norm(&turning) <= ACROSS_SHARE * self.bound)
@@ -276,7 +276,7 @@ impl HeldReference {
         let (n, brake) = (self.a.len(), ALONG_SHARE * self.bound);
         let speed = norm(&self.v);
         let braking = self.v.scaled(if speed > 0.0 { -brake.min(speed / self.step) / speed } else { 0.0 });
-        let j = self.tip(&self.a);
+        let j = self.jacobian(&self.a);
         let wish = || {
             let wanted = self.wanted(&j)?;
             if norm(&wanted) < STILL_BELOW_RAD_S && speed < STILL_BELOW_RAD_S {

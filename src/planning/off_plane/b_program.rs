@@ -32,8 +32,8 @@ const SMOOTHING_COST: f64 = 1e-7;
 type Walls = Vec<[f64; 2]>;
 
 /// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
-/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease` times
-/// [`MARGIN_COST`]. Fails with the reason in words.
+/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease`
+/// times [`MARGIN_COST`]. Fails with the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -87,7 +87,7 @@ fn kept_within(
 /// rad.
 fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     let stations = corridor.stations();
-    let at = stations.iter().chain(corridor.between()).map(|s| {
+    let at = stations.iter().chain(corridor.extra_stations()).map(|s| {
         let b = course.at(s.u)[0];
         (s.low - b).max(b - s.high)
     });
@@ -203,7 +203,7 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
             .push(LinearRow::new([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0));
     }
     let even = corridor.stations().len();
-    let besides = corridor.between().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
+    let besides = corridor.extra_stations().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
     let stations = walls[..even].iter().enumerate().skip(every).step_by(every).map(|(k, wall)| (k as f64, wall));
     for (k, [low, high]) in stations.chain(besides) {
         let place = k / PIECE_STATIONS as f64;
@@ -242,5 +242,5 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
         let bulges = [0, 1].map(|side| bulge(corridor, k, side).unwrap_or(0.0));
         wall(station, bulges)
     });
-    even.chain(corridor.between().iter().map(|station| wall(station, [0.0; 2]))).collect()
+    even.chain(corridor.extra_stations().iter().map(|station| wall(station, [0.0; 2]))).collect()
 }

@@ -7,7 +7,7 @@
 use thiserror::Error;
 
 use crate::curves::curve::CurvePoint;
-use crate::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, between, metres};
+use crate::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, describe_interval, metres};
 use stillbase_mechanics::planar::Vector;
 
 /// Number of samples of a self-motion with which its parts are told apart.
@@ -54,7 +54,7 @@ pub struct Corridor {
     start: PlanePoint,
     stations: Vec<Station>,
     /// Additional stations between the even ones, where a bound of the corridor jumps.
-    between: Vec<Station>,
+    extra_stations: Vec<Station>,
 }
 
 /// Why a corridor does not exist.
@@ -70,7 +70,7 @@ pub enum CorridorError {
     #[error("the motion's first point is no point, or too far away to count: want finite coordinates")]
     Nowhere,
     /// The start pose is beyond a joint limit.
-    #[error("the start pose has a_{number} = {angle:.3} rad: want it {}", between(*.min, *.max))]
+    #[error("the start pose has a_{number} = {angle:.3} rad: want it {}", describe_interval(*.min, *.max))]
     Limit {
         /// Number of the relative angle, 1 or 2.
         number: usize,
@@ -205,8 +205,9 @@ impl Corridor {
             at = station.pose(map, b).ok_or(CorridorError::Ends { u })?;
             stations.push(station);
         }
-        let mut corridor = Self { map: *map, start, stations, between: Vec::new() };
-        corridor.between = corridor.jumps().into_iter().flat_map(|jump| corridor.beside(&curve, jump)).collect();
+        let mut corridor = Self { map: *map, start, stations, extra_stations: Vec::new() };
+        corridor.extra_stations =
+            corridor.jumps().into_iter().flat_map(|jump| corridor.stations_near_jump(&curve, jump)).collect();
         Ok(corridor)
     }
 
@@ -225,7 +226,7 @@ impl Corridor {
 
     /// Returns stations on the narrower side of a jump, at distances that halve towards it. They resolve the corner of
     /// the corridor that the even stations miss.
-    fn beside(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
+    fn stations_near_jump(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
         let [before, after] = [&self.stations[k], &self.stations[k + 1]];
         let ends = [before.end(side), after.end(side)];
         let (mut low, mut high) = (before.u, after.u);
@@ -261,13 +262,13 @@ impl Corridor {
     }
 
     /// Adds a station between the even ones.
-    pub(super) fn keep(&mut self, station: Station) {
-        self.between.push(station);
+    pub(super) fn add_station(&mut self, station: Station) {
+        self.extra_stations.push(station);
     }
 
     /// Returns the stations between the even ones, unordered.
-    pub(super) fn between(&self) -> &[Station] {
-        &self.between
+    pub(super) fn extra_stations(&self) -> &[Station] {
+        &self.extra_stations
     }
 
     /// Returns the even stations, from u = 0 to 1.
@@ -286,9 +287,9 @@ impl Corridor {
     }
 
     /// Returns the first station at which a b, rad, is outside the corridor; `None` if b can stay constant throughout.
-    pub fn leaves(&self, b: f64) -> Option<&Station> {
+    pub fn first_station_outside(&self, b: f64) -> Option<&Station> {
         let outside = |s: &&Station| !(s.low - LIMIT_SLACK <= b && b <= s.high + LIMIT_SLACK);
-        let all = self.stations.iter().chain(&self.between);
+        let all = self.stations.iter().chain(&self.extra_stations);
         all.filter(outside).min_by(|x, y| x.u.total_cmp(&y.u))
     }
 }
@@ -302,7 +303,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     }
     let mut best: Option<(f64, Station)> = None;
     for branch in map.self_motion(p, SAMPLES) {
-        for mut line in sheets(map, branch) {
+        for mut line in monotone_parts(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
             // Folds bound a part, so that det has one sign inside it. If a sheet has shrunk to a point, the sign is
             // arbitrary.
@@ -340,7 +341,7 @@ fn inside(line: &[PlanePoint]) -> [f64; 2] {
 }
 
 /// Divides a branch of a self-motion where b reverses; in each part b rises.
-fn sheets(map: &PlaneMap, branch: Vec<PlanePoint>) -> Vec<Vec<PlanePoint>> {
+fn monotone_parts(map: &PlaneMap, branch: Vec<PlanePoint>) -> Vec<Vec<PlanePoint>> {
     let closes = match (branch.first(), branch.last()) {
         (Some(x), Some(y)) if branch.len() > 2 => {
             (x.a[0] - y.a[0]).abs() < 1e-9 && (x.a[1] - y.a[1]).abs() < 1e-9 && off(x.b, y.b, map) < 1e-9

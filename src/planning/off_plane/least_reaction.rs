@@ -24,7 +24,7 @@ use crate::off_plane::b_program::{PIECE_STATIONS, least_course};
 use crate::off_plane::corridor::{Corridor, CorridorError};
 use crate::off_plane::inverse::pose_along;
 use crate::off_plane::price::{Price, PriceError};
-use crate::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint, between};
+use crate::reactionless::{LIMIT_SLACK, PlaneMap, PlanePoint, describe_interval};
 use stillbase_mechanics::machine::{Chain, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 
@@ -80,7 +80,7 @@ pub enum LeastReactionError {
         u: f64,
     },
     /// The wanted b at the end is outside its corridor.
-    #[error("b = {b:.3} rad at the end is outside of its corridor there: want b {} rad", between(*.low, *.high))]
+    #[error("b = {b:.3} rad at the end is outside of its corridor there: want b {} rad", describe_interval(*.low, *.high))]
     EndOutside {
         /// The wanted b, rad.
         b: f64,
@@ -148,7 +148,7 @@ impl LeastReaction {
                 return Err(LeastReactionError::EndOutside { b, low: station.low, high: station.high });
             }
         }
-        let stays = end.is_none_or(|end| end == start.b) && corridor.leaves(start.b).is_none();
+        let stays = end.is_none_or(|end| end == start.b) && corridor.first_station_outside(start.b).is_none();
         if stays {
             let course = BCourse::constant(start.b);
             if let Ok(path) = followed(&corridor, &curve, &course) {
@@ -172,7 +172,7 @@ impl LeastReaction {
                 };
                 refused = Some(why);
                 match place.filter(|s| !(s.low..=s.high).contains(&course.at(s.u)[0])) {
-                    Some(station) => corridor.keep(station),
+                    Some(station) => corridor.add_station(station),
                     None => break,
                 }
             }
@@ -204,7 +204,7 @@ impl LeastReaction {
     /// `curve` are those of the plan.
     pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
         let start = self.corridor.start();
-        let fixed = match self.corridor.leaves(start.b) {
+        let fixed = match self.corridor.first_station_outside(start.b) {
             None => FixedB::Serves,
             Some(station) => FixedB::Leaves { u: station.u, low: station.low, high: station.high },
         };

@@ -191,7 +191,7 @@ pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: 
         return minimum_norm(&model.end_effector, &e, model.drives(), v, vd);
     }
     let d = momentum_row(model, &e);
-    minimum_norm_with(&model.end_effector, (&d, h), |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
+    minimum_norm_with(&model.end_effector, &d, h, |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
 }
 
 /// Returns [J; D/scale] of three drives and the scale, kg m, at which D is as long as the arm. Returns `None` for other

@@ -213,7 +213,7 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     }
     let mut best: Option<[f64; 2]> = None;
     let cost = |pair: &[f64; 2]| ((pair[1] - pair[0]).abs(), (pair[0] - near).abs());
-    for start in &from.near(near).intervals {
+    for start in &from.shifted_near(near).intervals {
         // Either bound of an interval may be the nearest start.
         for b in start {
             let Some(end) = to.nearest(*b) else { continue };

@@ -80,14 +80,14 @@ impl PoseSpace {
         let mut lambda = *self.lambda.padded();
         let mut place = Vector::default();
         for (k, arm) in arm.iter_mut().enumerate().take(self.drives()) {
-            *arm = self.tip[k] * unit(q[k]);
+            *arm = self.arms[k] * unit(q[k]);
             place += *arm;
         }
         let mut columns = [Vector::default(); MAX_DRIVES];
         // From the outermost joint inwards: a joint turns all drives beyond it, and all together turn back to keep b.
         for (column, joint) in columns.iter_mut().zip(&*self.joints).rev() {
             let [near, far] = joint.ends;
-            *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.sum));
+            *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.lambda_sum));
             arm[near] += arm[far];
             lambda[near] += lambda[far];
         }
@@ -103,7 +103,7 @@ impl PoseSpace {
         from: &PerDrive,
         windows: &[[f64; 2]; MAX_DRIVES],
     ) -> Option<PerDrive> {
-        self.solved_by(p, b, from, (windows, usize::MAX))
+        self.solved_by(p, b, from, windows, usize::MAX)
     }
 
     /// Does the same with at most `max_rejected` rejected steps.
@@ -112,7 +112,8 @@ impl PoseSpace {
         p: Vector,
         b: f64,
         from: &PerDrive,
-        (windows, max_rejected): (&[[f64; 2]; MAX_DRIVES], usize),
+        windows: &[[f64; 2]; MAX_DRIVES],
+        max_rejected: usize,
     ) -> Option<PerDrive> {
         let (n, reach) = (self.joints.len(), self.farthest());
         let mut rejected = 0;
@@ -152,9 +153,11 @@ impl PoseSpace {
     pub(super) fn continued(
         &self,
         p: Vector,
-        (from, mut b): (&PerDrive, f64),
+        from: &PerDrive,
+        mut b: f64,
         to: f64,
-        (windows, effort): (&[[f64; 2]; MAX_DRIVES], ContinuationLimits),
+        windows: &[[f64; 2]; MAX_DRIVES],
+        effort: ContinuationLimits,
     ) -> Option<PerDrive> {
         let mut a = *from;
         let mut step = to - b;
@@ -162,7 +165,7 @@ impl PoseSpace {
         for _ in 0..effort.max_steps {
             let last = step.abs() >= (to - b).abs();
             let next = if last { to } else { b + step };
-            match self.solved_by(p, next, &a, (windows, effort.max_rejected)) {
+            match self.solved_by(p, next, &a, windows, effort.max_rejected) {
                 Some(there) if last => return Some(there),
                 Some(there) => {
                     (a, b) = (there, next);
@@ -212,8 +215,10 @@ impl PoseSpace {
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: ContinuationLimits) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
         self.climbed_strictly(p, climb, effort).or_else(|| {
-            let there =
-                || (self.place(&self.lift(&from.a, from.b + rise)) - p).norm() <= CRITICAL_RESIDUAL * self.farthest();
+            let there = || {
+                (self.end_effector(&self.lift(&from.a, from.b + rise)) - p).norm()
+                    <= CRITICAL_RESIDUAL * self.farthest()
+            };
             (rise.abs() <= CRITICAL_B_TOLERANCE_RAD && there()).then_some(from.a)
         })
     }
@@ -230,7 +235,7 @@ impl PoseSpace {
         let windows = &self.windows();
         let leave = self.leaving(a, b, rise.signum());
         if leave.gains
-            && let Some(there) = self.continued(p, (a, b), to, (windows, effort))
+            && let Some(there) = self.continued(p, a, b, to, windows, effort)
         {
             return Some(there);
         }
@@ -241,8 +246,8 @@ impl PoseSpace {
                 let by = side * (2.0 * rise / bend).sqrt();
                 let beside = PerDrive::from_fn(a.len(), |i| (a[i] + by * way[i]).clamp(windows[i][0], windows[i][1]));
                 let level = b + rise.copysign(to - b);
-                if let Some(there) = self.solved_by(p, level, &beside, (windows, effort.max_rejected)) {
-                    if let Some(there) = self.continued(p, (&there, level), to, (windows, effort)) {
+                if let Some(there) = self.solved_by(p, level, &beside, windows, effort.max_rejected) {
+                    if let Some(there) = self.continued(p, &there, level, to, windows, effort) {
                         return Some(there);
                     }
                     break;
@@ -269,7 +274,7 @@ impl PoseSpace {
         };
         let along = columns[most] / columns[most].norm();
         let mu = Vector::new(-along.im, along.re);
-        let by_b = dot(mu, Vector::new(0.0, 1.0) * place) / self.sum;
+        let by_b = dot(mu, Vector::new(0.0, 1.0) * place) / self.lambda_sum;
         if by_b.abs() <= GAIN_TOLERANCE * self.farthest() || !by_b.is_finite() {
             return none;
         }
@@ -277,7 +282,9 @@ impl PoseSpace {
         let can_gain = |i: usize| {
             let [low, high] = limits(i);
             let gain = gain(i);
-            low < high && gain.abs() > GAIN_TOLERANCE * self.sum && if gain > 0.0 { a[i] <= low } else { a[i] >= high }
+            low < high
+                && gain.abs() > GAIN_TOLERANCE * self.lambda_sum
+                && if gain > 0.0 { a[i] <= low } else { a[i] >= high }
         };
         let gains = (0..n).filter(|i| !is_free(i)).any(can_gain);
         // The second derivative of b along v is Σ (μ·c_k e_k) (∂q_k/∂v)² / (μ·∂p/∂b).
@@ -285,7 +292,7 @@ impl PoseSpace {
             .iter()
             .map(|i| self.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(*i == j))), 0.0))
             .collect();
-        let bends: Vec<f64> = (0..self.drives()).map(|k| sign * dot(mu, self.tip[k] * unit(q[k])) / by_b).collect();
+        let bends: Vec<f64> = (0..self.drives()).map(|k| sign * dot(mu, self.arms[k] * unit(q[k])) / by_b).collect();
         let across: Vec<f64> = free.iter().map(|i| dot(along, columns[*i])).collect();
         let size: f64 = across.iter().map(|x| x * x).sum();
         let f = free.len();

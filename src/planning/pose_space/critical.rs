@@ -141,11 +141,11 @@ impl PoseSpace {
             let name = (i as u64) << 44;
             let curve = CriticalCurve::of(i, 0);
             if pattern.count == 2 {
-                regular &= self.triangle(pattern, (name, curve), distance, &mut found);
+                regular &= self.triangle(pattern, name, curve, distance, &mut found);
             } else {
                 for signs in &pattern.signs {
                     let curve = CriticalCurve::of(i, signs.bits);
-                    regular &= self.stationary(pattern, signs, (name, curve), distance, &mut found);
+                    regular &= self.stationary(pattern, signs, name, curve, distance, &mut found);
                 }
             }
         }
@@ -184,7 +184,7 @@ impl PoseSpace {
                 return None;
             }
         }
-        Some((distance, turn(c.of[0]) * self.sum + self.b(&self.unturned(&a))))
+        Some((distance, turn(c.of[0]) * self.lambda_sum + self.b(&self.unturned(&a))))
     }
 
     /// Two compounds: the point leaves no freedom, and each pose has a single b. Returns false if a pose is in a corner
@@ -192,7 +192,8 @@ impl PoseSpace {
     fn triangle(
         &self,
         c: &Pattern,
-        (name, curve): (u64, CriticalCurve),
+        name: u64,
+        curve: CriticalCurve,
         r: f64,
         found: &mut impl FnMut(CriticalPose),
     ) -> bool {
@@ -214,7 +215,7 @@ impl PoseSpace {
                 regular &= !self.in_corner(c, &critical.a, r);
                 found(critical);
             };
-            let decided = self.poses_of(c, (name, spot), turn, &mut noted, || {
+            let decided = self.poses_of(c, name, spot, turn, &mut noted, || {
                 // μ such that Λ = Re(μ̄ i L e^{iψ}) for both.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
@@ -244,7 +245,7 @@ impl PoseSpace {
             let mut corner = *a;
             corner[i] = limit;
             let q = self.unturned(&corner);
-            let p: Vector = self.tip.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
+            let p: Vector = self.arms.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
             (p.norm() - r).abs() < CORNER_TOLERANCE * self.farthest()
         })
     }
@@ -255,7 +256,8 @@ impl PoseSpace {
         &self,
         c: &Pattern,
         signs: &Signs,
-        (name, curve): (u64, CriticalCurve),
+        name: u64,
+        curve: CriticalCurve,
         r: f64,
         found: &mut impl FnMut(CriticalPose),
     ) -> bool {
@@ -274,7 +276,7 @@ impl PoseSpace {
                 let turn = |i: usize| side * (alpha[i] - chi) - c.lean[i];
                 let name = name | u64::from(signs.bits) << 36 | (turns as u64) << 29 | u64::from(side < 0.0) << 28;
                 let spot = CriticalPoint { curve: curve.mirrored(side < 0.0), t };
-                regular &= self.poses_of(c, (name, spot), turn, found, || {
+                regular &= self.poses_of(c, name, spot, turn, found, || {
                     let [up, down] = *ways_up.get_or_insert_with(|| ways(n, nu, &cos, &c.lambda));
                     let mu = unit(PI - side * chi) / (side * nu);
                     (Some(mu), if side > 0.0 { [up, down] } else { [down, up] })
@@ -290,7 +292,8 @@ impl PoseSpace {
     fn poses_of(
         &self,
         c: &Pattern,
-        (name, mut spot): (u64, CriticalPoint),
+        name: u64,
+        mut spot: CriticalPoint,
         turn: impl Fn(usize) -> f64,
         found: &mut impl FnMut(CriticalPose),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
@@ -322,7 +325,7 @@ impl PoseSpace {
             // drives that it turns.
             let mut gain = PerDrive::from_fn(self.drives(), |k| {
                 let q = turn(c.of[k]) + c.delta[k];
-                self.lambda[k] - self.tip[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
+                self.lambda[k] - self.arms[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
             });
             let scale = self.lambda.max_abs();
             for (joint, at) in self.joints.iter().zip(c.at).rev() {
@@ -345,7 +348,7 @@ impl PoseSpace {
             }
         }
         // The first term is that of drive 1; the windings change b.
-        let first = turn(c.of[0]) * self.sum;
+        let first = turn(c.of[0]) * self.lambda_sum;
         self.each_winding(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
             let mut spot = spot;

@@ -16,9 +16,16 @@ impl PoseSpace {
     /// Returns poses of four and more drives within the limits that put the end effector on `p`, m, at `b`, rad. One
     /// drive is at a given angle, rad, modulo whole turns. The poses nearest to the given relative angles come first.
     /// Returns no poses if other drives are joined to the given one beyond it.
-    pub fn facing(&self, p: Vector, b: f64, (drive, angle): (usize, f64), near: &[f64]) -> Vec<DriveAngles> {
+    pub fn poses_with_drive_angle(
+        &self,
+        p: Vector,
+        b: f64,
+        drive: usize,
+        angle: f64,
+        near: &[f64],
+    ) -> Vec<DriveAngles> {
         let Some((rest, joint)) = self.without(drive) else { return Vec::new() };
-        let rest_target = p - self.tip[drive] * unit(angle);
+        let rest_target = p - self.arms[drive] * unit(angle);
         let about = ((self.lift(&self.middle(), b)[drive] - angle) / TAU).round();
         let mut found: Vec<(f64, DriveAngles)> = Vec::new();
         for turn in -MAX_TURNS..=MAX_TURNS {
@@ -45,7 +52,7 @@ impl PoseSpace {
     fn without(&self, drive: usize) -> Option<(Self, usize)> {
         let mut own = self.joints.iter().enumerate().filter(|(_, joint)| joint.ends.contains(&drive));
         let (joint, _) = own.next().filter(|(_, joint)| joint.ends[1] == drive)?;
-        let sum = self.sum - self.lambda[drive];
+        let sum = self.lambda_sum - self.lambda[drive];
         if own.next().is_some() || sum <= 1e-9 || self.drives() < 4 {
             return None;
         }
@@ -54,7 +61,8 @@ impl PoseSpace {
         let kept = self.joints.iter().enumerate().filter(|(i, _)| *i != joint);
         let joints = kept.map(|(_, joint)| RelativeJoint { ends: joint.ends.map(place), ..*joint }).collect();
         let mut rest = self.clone();
-        (rest.tip, rest.lambda, rest.sum, rest.joints) = (others(&self.tip), others(&self.lambda), sum, joints);
+        (rest.arms, rest.lambda, rest.lambda_sum, rest.joints) =
+            (others(&self.arms), others(&self.lambda), sum, joints);
         rest.patterns = Patterns::default();
         Some((rest, joint))
     }

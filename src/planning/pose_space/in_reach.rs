@@ -13,9 +13,9 @@ pub enum Reach {
         /// The nearest feasible point, m.
         nearest: Vector,
         /// The b nearest to the present one at which the target can be reached, rad; `None` if there is none.
-        mending_b: Option<f64>,
+        feasible_b: Option<f64>,
         /// That b as displayed: rounded to a value that is still feasible.
-        shown_b: Option<Decimal>,
+        displayed_b: Option<Decimal>,
         /// Whether a pose at this b reaches it, but beyond a fold, or beyond a change point that is to be kept off.
         other_sheet: bool,
     },

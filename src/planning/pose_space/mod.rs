@@ -22,18 +22,19 @@
 //! ΣΛ)² = |p|². All such critical values of b are found by solving these equations. First and second derivatives tell
 //! whether b can rise or fall from each. Poses at a b are continued from the critical poses above and below it.
 
+mod b_coverage;
 mod boxed;
 mod continuation;
-mod covered;
 mod critical;
+mod drag_step;
+mod dragging;
 mod facing;
-mod hand;
+mod gap_search;
 mod in_reach;
 mod joint;
-mod lacking;
-mod looks;
 mod loops;
 mod nearest;
+mod no_pose_space;
 mod outline;
 mod pattern;
 mod planes;
@@ -41,12 +42,11 @@ mod poses;
 mod reach;
 mod rings;
 mod space;
-mod toward;
 
 pub use in_reach::Reach;
 pub use joint::RelativeJoint;
-pub use lacking::{NoPoseSpace, NotFollowable};
-pub use lacking::{constant_inertia, is_reactionless};
+pub use no_pose_space::{NoPoseSpace, NotFollowable};
+pub use no_pose_space::{constant_inertia, is_reactionless};
 pub use outline::Outline;
 pub use planes::{PlaneError, Planes, plane_area, plane_map};
 pub use space::{GuidanceMode, PoseSpace};

@@ -42,7 +42,7 @@ const KKT: usize = 2 * MAX_DRIVES + 2;
 impl PoseSpace {
     /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², starting from such a pose.
     /// x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
-    pub fn centred(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
+    pub fn midrange_pose(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
         let half = |i: usize| match self.joints[i].free {
             true => f64::INFINITY,
             false => 0.5 * (self.joints[i].limits[1] - self.joints[i].limits[0]).max(1e-6),
@@ -62,14 +62,15 @@ impl PoseSpace {
                 (start, bounds) = (solved, held);
             }
         }
-        self.drawn((p, b), &start, &PreferredAngles { angles: middle, weight }, &bounds)
+        self.nearest_to_wish(p, b, &start, &PreferredAngles { angles: middle, weight }, &bounds)
     }
 
     /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another
     /// pose there.
-    pub(super) fn drawn(
+    pub(super) fn nearest_to_wish(
         &self,
-        (p, b): (Vector, f64),
+        p: Vector,
+        b: f64,
         from: &PerDrive,
         wish: &PreferredAngles,
         windows: &[[f64; 2]; MAX_DRIVES],
@@ -131,7 +132,7 @@ impl PoseSpace {
             false => PerDrive::zeros(0),
         });
         // Sign convention: the Lagrangian is ½ Σ w (a − y)² − ν·p, and ∂²p is −Σ c_k e_k.
-        let bends = PerDrive::from_fn(self.drives(), |k| dot(nu, self.tip[k] * unit(q[k])));
+        let bends = PerDrive::from_fn(self.drives(), |k| dot(nu, self.arms[k] * unit(q[k])));
         let mut square = SMatrix::<f64, KKT, KKT>::identity();
         let mut side = SVector::<f64, KKT>::zeros();
         for i in 0..n {

@@ -79,7 +79,7 @@ impl PoseSpace {
         }
         Some(match self.drives() {
             1 => {
-                let place = self.place(&self.lift(&[], b));
+                let place = self.end_effector(&self.lift(&[], b));
                 let at = [place.re, place.im];
                 Outline { curve: vec![at], extent: [at[0], at[0], at[1], at[1]], ..Outline::default() }
             }
@@ -91,11 +91,11 @@ impl PoseSpace {
     /// Two drives: the curve of the end effector as the relative angle runs between its limits.
     fn curve(&self, b: f64) -> Outline {
         let [low, high] = self.joints[0].limits;
-        let place = |a: f64| self.place(&self.lift(&[a], b));
+        let place = |a: f64| self.end_effector(&self.lift(&[a], b));
         let speed = |a: f64| {
             let q = self.lift(&[a], b);
             let rate = self.lift(&[a + 1.0], b).0.minus(&q.0);
-            (0..2).map(|k| self.tip[k] * rate[k] * unit(q[k])).sum::<Vector>().norm()
+            (0..2).map(|k| self.arms[k] * rate[k] * unit(q[k])).sum::<Vector>().norm()
         };
         // Number of chords from the curvature: |p″| is at most Σ |c|.
         let turns = (high - low) * (self.farthest() / (8.0 * CURVE_CHORD_TOLERANCE * self.farthest().max(1e-3))).sqrt();

@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::in_reach::Reach;
-use super::lacking::{NoPoseSpace, constant_inertia, is_reactionless};
+use super::no_pose_space::{NoPoseSpace, constant_inertia, is_reactionless};
 use crate::reactionless::{AngleDefinition, AngleLimit, Boundary, NotAPlaneMap, PlaneMap};
 use stillbase_mechanics::machine::{Machine, RelativeAngle};
 use stillbase_mechanics::planar::Vector;
@@ -127,16 +127,16 @@ impl Planes {
         }
         let other_sheet = !poses.is_empty();
         let set = self.map.reach(p).ok().filter(|_| !other_sheet);
-        let mending_b = set.as_ref().and_then(|set| set.nearest(b));
-        let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
+        let feasible_b = set.as_ref().and_then(|set| set.nearest(b));
+        let displayed_b = set.zip(feasible_b).and_then(|(set, b)| set.decimal(b, 3));
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
         let edge = self.map.clamp(nearest.a);
         if !other_sheet && self.is_open_way(from, edge) {
-            return (edge, Reach::Outside { nearest: nearest.at, mending_b, shown_b, other_sheet });
+            return (edge, Reach::Outside { nearest: nearest.at, feasible_b, displayed_b, other_sheet });
         }
         // Something blocks the straight line to it: as near as possible.
         let a = self.towards(p, b, from);
-        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, shown_b, other_sheet })
+        (a, Reach::Outside { nearest: self.map.forward(a, b), feasible_b, displayed_b, other_sheet })
     }
 
     /// Returns the last pose that continues `from` on the plane b while the end effector moves straight to p.

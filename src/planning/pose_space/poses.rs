@@ -25,7 +25,7 @@ impl PoseSpace {
     pub fn poses(&self, p: Vector, b: f64, near: &[f64]) -> Vec<DriveAngles> {
         let far = |a: &PerDrive| a.iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum::<f64>();
         let mut poses: Vec<(f64, PerDrive)> = match self.drives() {
-            ..4 => self.sheets(p, b).into_iter().map(|a| (far(&a), a)).collect(),
+            ..4 => self.representative_poses(p, b).into_iter().map(|a| (far(&a), a)).collect(),
             _ => self.nearest_pose(p, b, near).into_iter().map(|a| (0.0, a)).collect(),
         };
         poses.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -34,7 +34,7 @@ impl PoseSpace {
 
     /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of at
     /// least one pose in each connected component, and of further samples, in no order.
-    pub fn sheets(&self, p: Vector, b: f64) -> Vec<PerDrive> {
+    pub fn representative_poses(&self, p: Vector, b: f64) -> Vec<PerDrive> {
         if let Some(map) = self.map() {
             return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();
         }
@@ -79,7 +79,7 @@ impl PoseSpace {
         if !serves(false) && !serves(true) {
             return;
         }
-        let (p, b) = (Vector::new(p.norm(), 0.0), b - p.arg() * self.sum);
+        let (p, b) = (Vector::new(p.norm(), 0.0), b - p.arg() * self.lambda_sum);
         let starts = self.starts(p.re);
         let mut any = false;
         for (i, climb) in self.climbs(&starts, b).iter().enumerate() {
@@ -99,7 +99,7 @@ impl PoseSpace {
     /// Visits the poses found from samples of all ranges until `take` returns false.
     pub(super) fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let windows = self.windows();
-        for a in (0..START_SAMPLES).map(|i| self.spread(i)) {
+        for a in (0..START_SAMPLES).map(|i| self.sample(i)) {
             if self.solved(p, b, &a, &windows).is_some_and(|a| !take(&a)) {
                 return;
             }
@@ -107,7 +107,7 @@ impl PoseSpace {
     }
 
     /// Returns relative angles of an infinite sequence of samples that fills all ranges evenly.
-    pub(crate) fn spread(&self, i: usize) -> PerDrive {
+    pub(crate) fn sample(&self, i: usize) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |j| {
             let [low, high] = self.joints[j].limits;
             // Fractional parts of multiples of square roots of primes.
@@ -124,10 +124,10 @@ impl PoseSpace {
         let wish = PreferredAngles { angles: near, weight: PerDrive::from_fn(n, |_| 1.0) };
         let far = |a: &PerDrive| a.minus(&near).dot(&a.minus(&near));
         let own = PerDrive::from_fn(n, |i| near[i].clamp(windows[i][0], windows[i][1]));
-        let mut starts = self.sheets(p, b);
+        let mut starts = self.representative_poses(p, b);
         starts.extend(self.solved(p, b, &own, &windows));
         starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
-        let drawn = starts.iter().take(MAX_DESCENTS).map(|a| self.drawn((p, b), a, &wish, &windows));
+        let drawn = starts.iter().take(MAX_DESCENTS).map(|a| self.nearest_to_wish(p, b, a, &wish, &windows));
         drawn.min_by(|x, y| far(x).total_cmp(&far(y)))
     }
 
@@ -135,7 +135,7 @@ impl PoseSpace {
     pub(super) fn each_pose(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         match self.drives() {
             1 => {
-                let place = self.place(&self.lift(&[], b));
+                let place = self.end_effector(&self.lift(&[], b));
                 if (place - p).norm() <= 1e-6 * self.farthest() {
                     take(&PerDrive::zeros(0));
                 }
@@ -154,7 +154,7 @@ impl PoseSpace {
 
     /// Visits the poses of two drives until `take` returns false: a point has two elbows, each with its own b.
     fn elbows(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
-        let [l, m] = [self.tip[0], self.tip[1]];
+        let [l, m] = [self.arms[0], self.arms[1]];
         let cos = (p.norm_sqr() - l * l - m * m) / (2.0 * l * m);
         if cos.is_nan() || cos.abs() > 1.0 + 1e-12 {
             return;
@@ -171,7 +171,7 @@ impl PoseSpace {
             while angle <= high + 1e-9 {
                 let a = PerDrive::from([angle.clamp(low, high)]);
                 // The point belongs to this b if the pose with this angle and b reaches it.
-                let miss = (self.place(&self.lift(&a, b)) - p).norm();
+                let miss = (self.end_effector(&self.lift(&a, b)) - p).norm();
                 if miss <= B_TOLERANCE * self.farthest() && !take(&a) {
                     return;
                 }

@@ -1,8 +1,8 @@
 //! The b at which a point can be reached.
 
-use super::covered::BCoverage;
+use super::b_coverage::BCoverage;
 use super::critical::CriticalPose;
-use super::looks::{CriticalInterval, ReachGrid};
+use super::gap_search::{CriticalInterval, ReachGrid};
 use super::space::{BASE_RADIUS, PoseSpace};
 use crate::reactionless::{BSet, NoReach};
 use stillbase_mechanics::planar::{DriveAngles, Vector};
@@ -42,7 +42,7 @@ impl PoseSpace {
             return Err(NoReach::Limits);
         }
         // Turning a point about B by an angle adds Σλ times that angle to b.
-        let turn = p.arg() * self.sum;
+        let turn = p.arg() * self.lambda_sum;
         let turned = set.intervals.iter().map(|[low, high]| [low + turn, high + turn]);
         Ok(BSet::union(turned.collect(), self.period()))
     }
@@ -58,14 +58,15 @@ impl PoseSpace {
     /// Returns the tolerance within which two single values of b are equal, rad. With one and two drives, points have
     /// single values of b that agree within rounding only.
     pub(crate) fn b_slack(&self) -> f64 {
-        if self.drives() < 3 { SINGLE_B_TOLERANCE * self.sum } else { 0.0 }
+        if self.drives() < 3 { SINGLE_B_TOLERANCE * self.lambda_sum } else { 0.0 }
     }
 
     /// Returns a pose of a point, m, at the feasible b nearest to the given one; `None` if there is none.
-    pub fn near(&self, p: Vector, b: f64) -> Option<DriveAngles> {
+    pub fn pose_at_nearest_b(&self, p: Vector, b: f64) -> Option<DriveAngles> {
         let set = self.reach(p).ok()?;
         let nearest = set.nearest(b)?;
-        let tries = [nearest, set.inwards(nearest, 1e-9), set.inwards(nearest, 1e-3), set.inwards(nearest, 0.5)];
+        let tries =
+            [nearest, set.moved_inside(nearest, 1e-9), set.moved_inside(nearest, 1e-3), set.moved_inside(nearest, 0.5)];
         tries.iter().find_map(|b| self.poses(p, *b, &self.middle()).first().copied())
     }
 
@@ -75,7 +76,7 @@ impl PoseSpace {
         if self.drives() == 1 {
             // A single arm only reaches its circle.
             let on = (distance - self.farthest()).abs() <= 1e-9 * self.farthest();
-            let b = if self.tip[0] < 0.0 { 0.5 * period } else { 0.0 };
+            let b = if self.arms[0] < 0.0 { 0.5 * period } else { 0.0 };
             return BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period };
         }
         let mut work = ReachBuffers::default();

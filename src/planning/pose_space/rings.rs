@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::covered::BCoverage;
+use super::b_coverage::BCoverage;
 use super::critical::CriticalPoint;
 use super::reach::ReachBuffers;
 use super::space::PoseSpace;
@@ -229,7 +229,7 @@ impl Sweep<'_> {
     }
 
     fn angle(&self, b: f64) -> f64 {
-        ((self.b - b) / self.space.sum).rem_euclid(TAU)
+        ((self.b - b) / self.space.lambda_sum).rem_euclid(TAU)
     }
 
     /// Adds a circle and the step to the next one, with further circles between them if the boundary changes.

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::joint::RelativeJoint;
-use super::lacking::{NoPoseSpace, NotFollowable, constant_inertia, is_reactionless};
+use super::no_pose_space::{NoPoseSpace, NotFollowable, constant_inertia, is_reactionless};
 use super::pattern::{Pattern, Patterns};
 use super::planes::{PlaneError, Planes, plane_map};
 use crate::reactionless::{MAX_LIMIT_RANGE, PlaneMap, PlanePoint};
@@ -21,9 +21,9 @@ pub(super) const BASE_RADIUS: f64 = 1e-12;
 /// The set of poses of a machine in coordinates (a, b): relative angles and pose constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseSpace {
-    pub(super) tip: PerDrive,
+    pub(super) arms: PerDrive,
     pub(super) lambda: PerDrive,
-    pub(super) sum: f64,
+    pub(super) lambda_sum: f64,
     /// Ordered as a tree: each comes after the joint that leads to its nearer drive.
     pub(super) joints: Box<[RelativeJoint]>,
     pub(super) lead: GuidanceMode,
@@ -88,23 +88,23 @@ impl PoseSpace {
         inertia: f64,
         planes: Result<Arc<Planes>, PlaneError>,
     ) -> Result<Self, NoPoseSpace> {
-        let sum: f64 = lambda.iter().sum();
-        let tip = PerDrive::from_fn(machine.drives(), |k| machine.end_effector()[k]);
-        let reach: f64 = tip.iter().map(|c| c.abs()).sum();
+        let lambda_sum: f64 = lambda.iter().sum();
+        let arms = PerDrive::from_fn(machine.drives(), |k| machine.end_effector()[k]);
+        let reach: f64 = arms.iter().map(|c| c.abs()).sum();
         let mut joints = joints(machine)?;
         match &planes {
             // Planes have checks of their own, and order the angles as the machine does.
             Ok(_) => joints.sort_by_key(|joint| joint.angle),
-            Err(_) if sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) => {
-                return Err(NoPoseSpace::Sum { sum });
+            Err(_) if lambda_sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) => {
+                return Err(NoPoseSpace::Sum { sum: lambda_sum });
             }
             Err(_) if !(1e-9..=1e9).contains(&reach) => return Err(NoPoseSpace::Size { reach }),
             Err(_) => {}
         }
         Ok(Self {
-            tip,
+            arms,
             lambda,
-            sum,
+            lambda_sum,
             joints: joints.into(),
             lead: GuidanceMode::LeastEnergy,
             inertia,
@@ -116,7 +116,7 @@ impl PoseSpace {
 
     /// Returns the same space with another use of redundant freedoms.
     #[must_use]
-    pub fn led(self, lead: GuidanceMode) -> Self {
+    pub fn with_guidance(self, lead: GuidanceMode) -> Self {
         Self { lead, ..self }
     }
 
@@ -147,17 +147,17 @@ impl PoseSpace {
 
     /// Returns each choice of active limits and signs for which b can be stationary; computed at the first call.
     pub(super) fn patterns(&self) -> &[Pattern] {
-        self.patterns.of(&self.tip, &self.lambda, &self.joints)
+        self.patterns.of(&self.arms, &self.lambda, &self.joints)
     }
 
     /// Returns the number of drives.
     pub fn drives(&self) -> usize {
-        self.tip.len()
+        self.arms.len()
     }
 
     /// Returns c_k, m: the end effector is Σ_k c_k e^{iq_k}.
-    pub fn tip(&self) -> &PerDrive {
-        &self.tip
+    pub fn arms(&self) -> &PerDrive {
+        &self.arms
     }
 
     /// Returns λ_k.
@@ -167,7 +167,7 @@ impl PoseSpace {
 
     /// Returns Σλ.
     pub fn lambda_sum(&self) -> f64 {
-        self.sum
+        self.lambda_sum
     }
 
     /// Returns D_1, kg m²: the base moment is n_B = −D_1 b̈.
@@ -201,17 +201,17 @@ impl PoseSpace {
 
     /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
     pub fn period(&self) -> f64 {
-        TAU * self.sum
+        TAU * self.lambda_sum
     }
 
     /// Returns the greatest distance from the base that the arms reach, m.
     pub fn farthest(&self) -> f64 {
-        self.tip.iter().map(|c| c.abs()).sum()
+        self.arms.iter().map(|c| c.abs()).sum()
     }
 
     /// Returns the least distance from the base, m: more than 0 if one arm is longer than all others together.
     pub fn nearest(&self) -> f64 {
-        (2.0 * self.tip.max_abs() - self.farthest()).max(0.0)
+        (2.0 * self.arms.max_abs() - self.farthest()).max(0.0)
     }
 
     /// Returns the drive angles of relative angles and b, rad. Never wrapped.
@@ -220,7 +220,7 @@ impl PoseSpace {
             return DriveAngles::from(map.lift(PlanePoint { a: [a[0], a[1]], b }));
         }
         let mut q = self.unturned(a);
-        let turn = (b - self.lambda.dot(&q)) / self.sum;
+        let turn = (b - self.lambda.dot(&q)) / self.lambda_sum;
         q.iter_mut().for_each(|q| *q += turn);
         DriveAngles(q)
     }
@@ -234,7 +234,7 @@ impl PoseSpace {
         for (joint, ad) in self.joints.iter().zip(ad) {
             qd[joint.ends[1]] = qd[joint.ends[0]] + joint.sense * ad;
         }
-        let turn = (bd - self.lambda.dot(&qd)) / self.sum;
+        let turn = (bd - self.lambda.dot(&qd)) / self.lambda_sum;
         qd.iter_mut().for_each(|qd| *qd += turn);
         qd
     }
@@ -257,7 +257,7 @@ impl PoseSpace {
 
     /// Returns the angle by which b turns the workspace, rad.
     pub fn turn(&self, b: f64) -> f64 {
-        b / self.sum
+        b / self.lambda_sum
     }
 
     /// Returns the drive angles of relative angles with drive 1 at 0, rad.
@@ -296,13 +296,13 @@ impl PoseSpace {
     pub fn forward(&self, a: &[f64], b: f64) -> Vector {
         match self.map() {
             Some(map) => map.forward([a[0], a[1]], b),
-            None => self.place(&self.lift(a, b)),
+            None => self.end_effector(&self.lift(a, b)),
         }
     }
 
     /// Returns the end effector of a pose, m.
-    pub fn place(&self, q: &[f64]) -> Vector {
-        self.tip.iter().zip(q).map(|(c, q)| *c * unit(*q)).sum()
+    pub fn end_effector(&self, q: &[f64]) -> Vector {
+        self.arms.iter().zip(q).map(|(c, q)| *c * unit(*q)).sum()
     }
 
     /// Returns the midpoints of the limits of all relative angles, rad.

@@ -35,7 +35,7 @@ fn table(held: &PoseConstraint<'_>, leg: &PathLeg, q: &[PerDrive]) -> Option<Pat
 
 /// Returns the distance of paths from their curves between stations, m, by leg and interval.
 pub(super) fn curve_error(held: &PoseConstraint<'_>, stations: &Stations, tables: &[PathTable]) -> Vec<Vec<f64>> {
-    let off = |table: &PathTable, (s, p): &(f64, Vector)| (held.space.place(&table.at(*s).q) - p).norm();
+    let off = |table: &PathTable, (s, p): &(f64, Vector)| (held.space.end_effector(&table.at(*s).q) - p).norm();
     let legs = stations.legs.iter().zip(tables);
     legs.map(|(leg, table)| leg.between.iter().map(|between| off(table, between)).collect()).collect()
 }

@@ -69,14 +69,14 @@ impl<'a> Layers<'a> {
         let mut angles = starts.to_vec();
         for (i, at) in ats.iter().enumerate() {
             let p = stations.places[*at];
-            let angles_here = filled((space, p, b), std::mem::take(&mut angles), &windows, detail);
+            let angles_here = filled(space, p, b, std::mem::take(&mut angles), &windows, detail);
             if angles_here.is_empty() {
                 return Err(*at);
             }
             let mut next: Vec<Option<PerDrive>> = match ats.get(i + 1) {
                 Some(to) => angles_here
                     .iter()
-                    .map(|a| continued((space, b), a, &stations.places[*at..=*to], &windows, detail.apart))
+                    .map(|a| continued(space, b, a, &stations.places[*at..=*to], &windows, detail.apart))
                     .collect(),
                 None => vec![None; angles_here.len()],
             };
@@ -85,7 +85,7 @@ impl<'a> Layers<'a> {
             if let Some(to) = ats.get(i + 1)
                 && angles.len() < FEW_POSES
             {
-                let all = space.sheets(stations.places[*to], b);
+                let all = space.representative_poses(stations.places[*to], b);
                 for (a, next) in angles_here.iter().zip(&mut next).filter(|(_, next)| next.is_none()) {
                     *next = nearest(&all, a, 2.0 * detail.apart);
                     angles.extend(*next);
@@ -117,7 +117,8 @@ fn chosen(stations: &Stations, layers: usize) -> Vec<usize> {
 
 /// Continues a pose along places, in one step if that keeps it close, else place by place. Returns `None` if it jumps.
 fn continued(
-    (space, b): (&PoseSpace, f64),
+    space: &PoseSpace,
+    b: f64,
     a: &PerDrive,
     places: &[Vector],
     windows: &[[f64; 2]; MAX_DRIVES],
@@ -170,7 +171,9 @@ pub(super) fn near(a: &PerDrive, b: &PerDrive, square: f64) -> bool {
 
 /// Extends the start poses of a point along the null space, with a minimum distance between poses.
 fn filled(
-    (space, p, b): (&PoseSpace, Vector, f64),
+    space: &PoseSpace,
+    p: Vector,
+    b: f64,
     starts: Vec<PerDrive>,
     windows: &[[f64; 2]; MAX_DRIVES],
     detail: Detail,

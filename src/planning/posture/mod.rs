@@ -17,18 +17,18 @@
 mod emit;
 mod envelope;
 mod goal;
-mod hand;
+mod guided_space;
 mod layers;
-mod led;
 mod refine;
 mod route;
 mod rows;
 mod search;
 mod stations;
+mod weights;
 
-pub use hand::PostureWeights;
-pub use led::GuidedSpace;
+pub use guided_space::GuidedSpace;
 pub use search::{NoPosturePath, PosturePaths, PostureRequest};
+pub use weights::PostureWeights;
 
 use stillbase_settings::word::words;
 

@@ -140,7 +140,9 @@ impl Layers<'_> {
                     true => Some(*to).filter(beside),
                     false => self.space.solved(p, self.b, &guess, &windows).filter(beside).or_else(|| {
                         let few = self.all[i].poses.len() < FEW_POSES || self.all[i + 1].poses.len() < FEW_POSES;
-                        few.then(|| nearest(&self.space.sheets(p, self.b), &guess, allowed)).flatten().filter(beside)
+                        few.then(|| nearest(&self.space.representative_poses(p, self.b), &guess, allowed))
+                            .flatten()
+                            .filter(beside)
                     }),
                 };
                 path.push(a.ok_or(i)?);

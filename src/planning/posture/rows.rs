@@ -45,7 +45,7 @@ impl PoseConstraint<'_> {
 
     /// Returns the residual of a pose: of the point, of b and of the drive, all scaled to m.
     fn residual(&self, q: &PerDrive, p: Vector) -> [f64; ROWS] {
-        let off = p - self.space.place(q);
+        let off = p - self.space.end_effector(q);
         let hand = self.hand.map_or(0.0, |(drive, angle)| self.space.farthest() * (angle - q[drive]));
         [off.re, off.im, self.scale() * (self.b - self.space.b(q)), hand]
     }
@@ -180,7 +180,7 @@ pub(super) fn null_directions(across: &[PerDrive], n: usize) -> Vec<PerDrive> {
 /// Returns the arms c_k e^{iq_k} at a pose, m.
 pub(super) fn arms(space: &PoseSpace, q: &PerDrive) -> [Vector; MAX_DRIVES] {
     let mut all = [Vector::default(); MAX_DRIVES];
-    all.iter_mut().zip(space.tip().iter().zip(q.iter())).for_each(|(arm, (c, q))| *arm = c * unit(*q));
+    all.iter_mut().zip(space.arms().iter().zip(q.iter())).for_each(|(arm, (c, q))| *arm = c * unit(*q));
     all
 }
 

@@ -5,11 +5,11 @@ use thiserror::Error;
 use super::Posture;
 use super::emit;
 use super::goal::{CostTerm, PostureCost, WeightMatrix, even, scaled};
-use super::hand::PostureWeights;
 use super::layers::{Detail, Layers};
 use super::refine::{AngleBound, RefinementProblem};
 use super::rows::{PoseConstraint, lifted};
 use super::stations::Stations;
+use super::weights::PostureWeights;
 use crate::curves::{Curve, PathTable};
 use crate::pose_space::PoseSpace;
 use crate::timing::TimeLaw;
@@ -182,7 +182,7 @@ impl PostureRequest<'_> {
         best: impl Fn(&[Way], &[Way]) -> Option<Way>,
     ) -> Result<PosturePaths, NoPosturePath> {
         let rough = Search::on(self, Stations::of(self.curves, self.law, ROUGH_INTERVALS), ROUGH_STEP_TOLERANCE_RAD);
-        let starts = self.space.sheets(rough.stations.places[0], self.b);
+        let starts = self.space.representative_poses(rough.stations.places[0], self.b);
         let mut refused = NoPosturePath::Ends { share: 0.0 };
         for detail in details {
             let why = match rough.layers(&starts, *detail) {
@@ -398,7 +398,7 @@ impl<'a> Search<'a> {
             .map(|w| {
                 let leg = leg_of(w[0].at);
                 let s = [w[0].at, w[1].at].map(|at| leg.s[at - leg.first]);
-                let t = s.map(|s| leg.profile.when(s));
+                let t = s.map(|s| leg.profile.time_at(s));
                 [leg.share * (s[1] - s[0]), (t[1] - t[0]).max(1e-9)]
             })
             .collect();
@@ -494,7 +494,7 @@ impl<'a> Search<'a> {
         let drive = asked.hand.0;
         let starts: Vec<PerDrive> = match angle {
             Some(angle) => {
-                let all = asked.space.facing(places[0], asked.b, (drive, angle), &asked.space.middle());
+                let all = asked.space.poses_with_drive_angle(places[0], asked.b, drive, angle, &asked.space.middle());
                 all.into_iter().map(|q| q.0).collect()
             }
             None => {

@@ -39,7 +39,7 @@ impl PathLeg {
 
     /// Returns quadrature points over time: index of the interval, s, ṡ, s̈ and the weight in time.
     pub fn instants(&self) -> Vec<(usize, [f64; 4])> {
-        let ends: Vec<f64> = self.s.iter().map(|s| self.profile.when(*s)).collect();
+        let ends: Vec<f64> = self.s.iter().map(|s| self.profile.time_at(*s)).collect();
         let last = ends.len() - 2;
         let each = |i: usize| {
             let from = if i == 0 { 0.0 } else { ends[i] };

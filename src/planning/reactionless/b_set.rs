@@ -83,7 +83,7 @@ impl BSet {
 
     /// Returns the set with each interval shifted by whole periods to where it is nearest to b.
     #[must_use]
-    pub fn near(&self, b: f64) -> Self {
+    pub fn shifted_near(&self, b: f64) -> Self {
         let lift = |[low, high]: [f64; 2]| {
             let turns = self.period * ((b - 0.5 * (low + high)) / self.period).round();
             [low + turns, high + turns]
@@ -93,8 +93,9 @@ impl BSet {
 
     /// Moves b towards the middle of the interval that contains it or is nearest, by a fraction of the distance. Poses
     /// at the end of an interval may be infeasible within rounding.
-    pub fn inwards(&self, b: f64, share: f64) -> f64 {
-        let middles = self.near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
+    pub fn moved_inside(&self, b: f64, share: f64) -> f64 {
+        let middles =
+            self.shifted_near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
         let nearest = middles.min_by(|x, y| ((x.0 - b).abs() - x.1).total_cmp(&((y.0 - b).abs() - y.1)));
         nearest.map_or(b, |(middle, _)| b + share * (middle - b))
     }

@@ -60,20 +60,20 @@ impl BSet {
     /// Returns a number near b, with the fewest decimals, but at least `least`, that the set contains.
     pub fn decimal(&self, b: f64, least: usize) -> Option<Decimal> {
         let inside = |[low, high]: [f64; 2], b: f64| low <= b && b <= high;
-        let sets = self.near(b).intervals;
+        let sets = self.shifted_near(b).intervals;
         Decimal::that(b, least, |x| sets.iter().any(|s| inside(*s, x)))
     }
 
     /// Describes the set: `b from 2.2158 to 2.6610 rad`, with the ends rounded inwards, so that they are in the set.
     pub fn in_words(&self) -> String {
-        let ranges: Vec<String> = self.intervals.iter().map(|[low, high]| between(*low, *high)).collect();
+        let ranges: Vec<String> = self.intervals.iter().map(|[low, high]| describe_interval(*low, *high)).collect();
         format!("b {} rad", ranges.join(" or "))
     }
 }
 
 /// Describes an interval: `from 2.216 to 2.661`, with its ends rounded inwards to as many decimals as keep it
 /// non-empty.
-pub fn between(low: f64, high: f64) -> String {
+pub fn describe_interval(low: f64, high: f64) -> String {
     let ends = (4..=MAX_DECIMALS).find_map(|decimals| {
         let [mut from, mut to] = [low, high].map(|x| Decimal::nearest(x, decimals));
         if from.value < low {

@@ -28,7 +28,7 @@ pub use boundary::{
     Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, BoundaryVertex, BoundingBox, ChangeCurve, Nearest,
 };
 pub use change::DRIVE_PAIRS;
-pub use decimal::{Decimal, between, metres, metres_apart};
+pub use decimal::{Decimal, describe_interval, metres, metres_apart};
 pub use dexterity::Dexterity;
 pub use plane::{AngleDefinition, AngleLimit, LIMIT_SLACK, MAX_LIMIT_RANGE, NotAPlaneMap, PlaneMap, PlanePoint};
 pub use poses::Poses;

@@ -26,7 +26,7 @@ impl PlaneMap {
 
     /// Returns the pose (a_1, a_2) of the plane b with a drive at a given angle, rad, that is nearest to another pose.
     /// Within the limits the drive comes as near to that angle as feasible.
-    pub fn turned(&self, drive: usize, angle: f64, b: f64, from: [f64; 2]) -> [f64; 2] {
+    pub fn with_drive_at(&self, drive: usize, angle: f64, b: f64, from: [f64; 2]) -> [f64; 2] {
         let (w, limits) = (self.u()[drive], self.limits());
         let along = self.along(w);
         let [low, high] = self.range_of(drive, b);

@@ -22,9 +22,9 @@ use stillbase_mechanics::planar::PerDrive;
 pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
-/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited quantities change
-/// much. Finally the motion is slowed down by as much as limits are exceeded between stations, so that it keeps them
-/// everywhere.
+/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited
+/// quantities change much. Finally the motion is slowed down by as much as limits are exceeded between stations, so
+/// that it keeps them everywhere.
 ///
 /// # Errors
 /// If no limit acts on the motion, or no motion keeps the limits.
@@ -103,8 +103,8 @@ fn planned(
         None => mended(path, &constraints, grid),
     };
     let bound = timed.map(|Timed { profile, x }| {
-        let limiting = leading(path, &grid, &constraints, &x);
-        FastestMotion { profile, gap: None, limiting }
+        let active_limits = leading(path, &grid, &constraints, &x);
+        FastestMotion { profile, gap: None, active_limits }
     });
     if smooth {
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
@@ -204,7 +204,7 @@ fn dense(path: &Path) -> Vec<f64> {
 
 /// Returns the motion on a path of no length.
 fn nowhere() -> FastestMotion {
-    FastestMotion { profile: Profile::none(), gap: None, limiting: Vec::new() }
+    FastestMotion { profile: Profile::none(), gap: None, active_limits: Vec::new() }
 }
 
 /// Returns the least limit on a derivative of s along a straight line, and the drive limit that sets it.
@@ -238,7 +238,7 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &DriveLimits, smooth: bool
     }
     let time = |spans: [JerkPhase; 7]| spans.iter().map(|s| s.time).sum::<f64>();
     let gap = without.filter(|_| smooth).map(|w| (profile.duration() / time(w) - 1.0).max(0.0));
-    Ok(FastestMotion { profile, gap, limiting: shares.sorted() })
+    Ok(FastestMotion { profile, gap, active_limits: shares.sorted() })
 }
 
 /// A timing on a grid.

@@ -234,10 +234,10 @@ impl<'a> Constraints<'a> {
             let e = q.units();
             let (h, _) = mass_matrix(self.model, &e, first);
             let motors = self.model.motors();
-            let a = motors.torques(&h.times(first));
-            let c = motors.torques(&inverse(self.model, &e, first, second, &Surroundings::default()));
-            let g = motors.torques(&holding_torque(self.model, &e, &self.around));
-            let (first, second) = (motors.turns(first), motors.turns(second));
+            let a = motors.motor_torques(&h.times(first));
+            let c = motors.motor_torques(&inverse(self.model, &e, first, second, &Surroundings::default()));
+            let g = motors.motor_torques(&holding_torque(self.model, &e, &self.around));
+            let (first, second) = (motors.to_motors(first), motors.to_motors(second));
             for (row, limit) in rows.iter_mut().zip(&self.rows) {
                 let k = limit.drive;
                 let per = 1.0 / self.limits.on(limit.quantity)[k];
@@ -250,7 +250,7 @@ impl<'a> Constraints<'a> {
         if self.speed_limited.is_empty() {
             return f64::INFINITY;
         }
-        let first = self.model.motors().turns(first);
+        let first = self.model.motors().to_motors(first);
         speeds
             .iter_mut()
             .zip(&self.speed_limited)
@@ -270,7 +270,7 @@ impl<'a> Constraints<'a> {
 
     /// Returns the drive that reaches its limit on speed first as ṡ grows.
     pub(super) fn fastest_drive(&self, point: &PathPoint) -> usize {
-        let first = self.model.motors().turns(&point.first);
+        let first = self.model.motors().to_motors(&point.first);
         let part = |k: usize| first[k].abs() / self.limits.speed[k];
         (0..first.len()).max_by(|k, l| part(*k).total_cmp(&part(*l))).unwrap_or(0)
     }

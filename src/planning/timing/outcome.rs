@@ -14,7 +14,7 @@ pub struct FastestMotion {
     /// motion. `None` unless jerk is limited and other limits act as well.
     pub gap: Option<f64>,
     /// Limits that are used furthest, with their fractions of T, the greatest first.
-    pub limiting: Vec<(DriveLimit, f64)>,
+    pub active_limits: Vec<(DriveLimit, f64)>,
 }
 
 /// Why no fastest motion exists.

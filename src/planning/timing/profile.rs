@@ -297,7 +297,7 @@ impl Profile {
     }
 
     /// Returns the time at which s is first reached, s, by bisection.
-    pub fn when(&self, s: f64) -> f64 {
+    pub fn time_at(&self, s: f64) -> f64 {
         let (mut low, mut high) = (0.0, self.duration);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);

@@ -101,8 +101,8 @@ pub(super) fn smooth(
     let profile = best.or_else(|| by_law(stretches)).ok_or_else(stuck)?;
     let gap = bound.map(|b| profile.duration() / b.profile.duration() - 1.0);
     let motion = Motion { path: path.clone(), profile };
-    let limiting = Usage::of(&motion, model, around, limits, USAGE_SAMPLES).leading;
-    Ok(FastestMotion { profile: motion.profile, gap, limiting })
+    let active_limits = Usage::of(&motion, model, around, limits, USAGE_SAMPLES).active_limits;
+    Ok(FastestMotion { profile: motion.profile, gap, active_limits })
 }
 
 /// Returns the law of least jerk over the least duration that keeps all limits.

@@ -17,13 +17,13 @@ pub struct Usage {
     /// Fraction of T during which some limit is active, see [`ACTIVE_SHARE`].
     pub active: f64,
     /// Maximum utilisation of a limit: 1 is the limit, more is a violation.
-    pub most: f64,
+    pub max_utilisation: f64,
     /// Time of the maximum, s.
-    pub when: f64,
+    pub time_of_max_s: f64,
     /// Limit of the maximum; `None` without limits.
     pub limit: Option<DriveLimit>,
     /// Limits that are used furthest, with their fractions of T, the greatest first.
-    pub leading: Vec<(DriveLimit, f64)>,
+    pub active_limits: Vec<(DriveLimit, f64)>,
 }
 
 impl Usage {
@@ -32,19 +32,20 @@ impl Usage {
     ///
     /// Torques come from the inverse dynamics (4) along the motion, independently of its planning.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, samples: usize) -> Self {
-        let mut usage = Self { active: 0.0, most: 0.0, when: 0.0, limit: None, leading: Vec::new() };
+        let mut usage =
+            Self { active: 0.0, max_utilisation: 0.0, time_of_max_s: 0.0, limit: None, active_limits: Vec::new() };
         let mut shares = TimeShares::default();
         for i in 0..samples {
             let t = (i as f64 + 0.5) / samples as f64 * motion.duration();
             let demand = Demand::of(&motion.path, model, around, limits, &motion.profile.at(t));
             let Some((part, limit)) = demand.furthest(limits) else { break };
-            if part > usage.most || usage.limit.is_none() {
-                (usage.most, usage.when, usage.limit) = (part, t, Some(limit));
+            if part > usage.max_utilisation || usage.limit.is_none() {
+                (usage.max_utilisation, usage.time_of_max_s, usage.limit) = (part, t, Some(limit));
             }
             usage.active += if part >= ACTIVE_SHARE { 1.0 / samples as f64 } else { 0.0 };
             shares.add(limit, 1.0 / samples as f64);
         }
-        usage.leading = shares.sorted();
+        usage.active_limits = shares.sorted();
         usage
     }
 }
@@ -112,8 +113,8 @@ impl Demand {
         };
         let holding = holding_torque(model, &e, around);
         let motors = model.motors();
-        let [holding, moving] = [holding, moving].map(|torque| motors.torques(&torque));
-        let [speed, acceleration, jerk] = [reference.qd, reference.qdd, jerk].map(|x| motors.turns(&x));
+        let [holding, moving] = [holding, moving].map(|torque| motors.motor_torques(&torque));
+        let [speed, acceleration, jerk] = [reference.qd, reference.qdd, jerk].map(|x| motors.to_motors(&x));
         Self { holding, moving, speed, acceleration, jerk }
     }
 

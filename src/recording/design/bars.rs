@@ -75,7 +75,7 @@ impl Bars {
         let of = |term| match &self.links {
             Some(links) => links.iter().map(|link| breakdown.of_link(term, *link).re).collect::<Vec<_>>(),
             None if term.balanced => vec![0.0],
-            None => vec![term.left.re],
+            None => vec![term.residual.re],
         };
         lines.flat_map(of).collect()
     }

@@ -103,7 +103,7 @@ impl RecordedDesign {
         let palette = palette(Theme::Dark);
         let mut space = RecordingSpace::new(root.clone(), self.eye, palette.background);
         space.rename(vec![("design", "marks".into())]);
-        let options = ViewOptions { invites: false, ..ViewOptions::default() };
+        let options = ViewOptions { show_hints: false, ..ViewOptions::default() };
         for state in &self.states {
             let machine = &state.of.machine;
             let linkage = LinkageModel::of(machine);

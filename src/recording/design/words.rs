@@ -123,7 +123,7 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     };
     let of_term = terms.iter().map(|term| match term.balanced {
         true => "**0**".to_owned(),
-        false => format!("**{}**", complex(term.left)),
+        false => format!("**{}**", complex(term.residual)),
     });
     let residuals = ["**left**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
     let rows = [residuals].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();

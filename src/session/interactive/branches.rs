@@ -19,8 +19,8 @@ impl Session {
     }
 
     /// Returns the number of branches made so far, and the title of the branch that the last of them has displaced.
-    pub fn partings(&self) -> (u64, Option<&str>) {
-        (self.partings.0, self.partings.1.as_deref())
+    pub fn branch_events(&self) -> (u64, Option<&str>) {
+        (self.branch_events.0, self.branch_events.1.as_deref())
     }
 
     /// Returns the difference of each branch from the run on display, the oldest first; no two have the same title.
@@ -43,22 +43,22 @@ impl Session {
         LeftBranch { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
     }
 
-    /// Returns the branches with the present run added, and the new value of `partings`.
+    /// Returns the branches with the present run added, and the new value of `branch_events`.
     pub(super) fn with_left(&self) -> (Arc<Vec<LeftBranch>>, (u64, Option<String>)) {
         let left = self.as_left();
         let mut all = self.document.branches.to_vec();
-        let mut partings = (self.partings.0, None);
+        let mut branch_events = (self.branch_events.0, None);
         match all.iter_mut().find(|known| known.script.is(&left.script)) {
             Some(known) => known.end = known.end.max(left.end),
             None => {
                 all.push(left);
-                partings.0 += 1;
+                branch_events.0 += 1;
             }
         }
         if all.len() > MAX_BRANCHES {
-            partings.1 = Some(self.fork(&all.remove(0)).title);
+            branch_events.1 = Some(self.fork(&all.remove(0)).title);
         }
-        (Arc::new(all), partings)
+        (Arc::new(all), branch_events)
     }
 
     /// Shows a branch; the run on display takes its place among the branches.
@@ -113,7 +113,7 @@ impl Session {
             let step = own.unwrap_or(self.document.scenario.step);
             let last = script.last().map_or(0, |timed| timed.step);
             let end = ((branch.duration / step).round() as u64).max(last).min(MAX_FRAMES as u64 - 1);
-            script.cut(end);
+            script.truncate(end);
             LeftBranch { script, end, step }
         };
         let branches = branches.iter().map(left).collect();

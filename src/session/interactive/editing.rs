@@ -46,11 +46,11 @@ impl Session {
     /// Whether an edit applies at the present step rather than to the run as a whole.
     pub(super) fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
-            edit if edit.leads() => true,
+            edit if edit.is_drag() => true,
             Edit::Push { .. } => true,
-            Edit::PoseB { .. } => self.is_led(),
+            Edit::PoseB { .. } => self.is_dragged(),
             // A dragged machine has the new limits from the present step on.
-            edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
+            edit if edit.sets_limits() && self.is_dragged() && self.run.waiting().is_none() => true,
             // A motion in progress cannot change its time or its base.
             edit if edit.is_of_the_whole() => false,
             // Edits of a gesture apply as its first edit did, even if that set the machine in motion.
@@ -65,16 +65,16 @@ impl Session {
 
     /// Applies an edit at the present step. If an earlier frame is on display, the later frames are replaced.
     fn apply_now(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
-        if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
+        if self.is_full() && self.is_at_end() && (edit.is_drag() || matches!(edit, Edit::Push { .. })) {
             return Err(Refusal::Full { time: self.run.simulation().time() });
         }
         let before = self.document.clone();
         let mut document = before.clone();
-        let (mut remade, mut partings) = (None, self.partings.clone());
+        let (mut remade, mut branch_events) = (None, self.branch_events.clone());
         if !self.is_at_end() {
-            (document.branches, partings) = self.with_left();
+            (document.branches, branch_events) = self.with_left();
             document.end = self.cursor as u64;
-            document.script.cut(document.end);
+            document.script.truncate(document.end);
             remade = Some(document.perform(Some(&self.run), false, watch).map_err(ScriptError::refusal)?);
         }
         let timed = TimedEdit { step: document.end, edit };
@@ -99,10 +99,10 @@ impl Session {
         if let Some(remade) = remade {
             (self.frames, self.machines) = (remade.frames, remade.machines);
         }
-        (self.document, self.run, self.unedited, self.partings) = (document, run, Some(unedited), partings);
+        (self.document, self.run, self.unedited, self.branch_events) = (document, run, Some(unedited), branch_events);
         self.show_present();
         self.cursor = self.frames.len() - 1;
-        if timed.edit.leads() {
+        if timed.edit.is_drag() {
             self.playing = true;
         }
         self.remember(before, timed, inverse);
@@ -114,10 +114,10 @@ impl Session {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);
-        let mut partings = self.partings.clone();
+        let mut branch_events = self.branch_events.clone();
         // The dragged motion would be lost, so it becomes a branch.
-        if self.is_led() && !document.script.is_led() {
-            (document.branches, partings) = self.with_left();
+        if self.is_dragged() && !document.script.is_dragged() {
+            (document.branches, branch_events) = self.with_left();
         }
         match &timed.edit {
             edit if edit.is_aside() => {
@@ -131,7 +131,7 @@ impl Session {
                 self.restore(document, patient, watch)?;
             }
         }
-        self.partings = partings;
+        self.branch_events = branch_events;
         self.remember(before, timed, inverse);
         Ok(())
     }

@@ -158,7 +158,7 @@ impl Session {
     fn return_to(&mut self, document: &Document, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         self.restore(document.clone(), true, watch)?;
         self.playing = false;
-        if self.is_led() {
+        if self.is_dragged() {
             self.cursor = self.frames.len() - 1;
         }
         Ok(())
@@ -177,7 +177,7 @@ impl Session {
     pub fn take_over(&mut self, mut next: Self) {
         let title = format!("open {}", next.document.scenario.title);
         next.undo = std::mem::take(&mut self.undo);
-        next.partings.0 = self.partings.0;
+        next.branch_events.0 = self.branch_events.0;
         next.undo.push(Arc::new(HistoryStep {
             before: self.document.clone(),
             edit: None,

@@ -54,7 +54,7 @@ impl Session {
         watch: ProgressCallback<'_>,
     ) -> Result<Self, ScriptError> {
         let known: Script = script.iter().cloned().collect();
-        let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
+        let runs = known.is_dragged() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
             true => {
                 let run = Run::begin(&scenario, &script, None)?.0;
@@ -94,7 +94,7 @@ impl Session {
             gesture: false,
             gesture_now: None,
             unedited: None,
-            partings: (0, None),
+            branch_events: (0, None),
         })
     }
 }

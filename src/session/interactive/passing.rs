@@ -41,7 +41,7 @@ impl Session {
 
     /// Returns the number of steps that the run still needs to reach a time, s, of its planned motion.
     fn steps_to(&self, time: f64) -> usize {
-        if self.is_led() {
+        if self.is_dragged() {
             return 0;
         }
         let step = self.scenario().step;

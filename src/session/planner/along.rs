@@ -64,7 +64,7 @@ pub(super) fn timed(
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
             pace.taken += time;
             if pace.leading.is_none() {
-                pace.leading = fastest.limiting.first().map(|(limit, _)| *limit);
+                pace.leading = fastest.active_limits.first().map(|(limit, _)| *limit);
             }
             profile
         } else {

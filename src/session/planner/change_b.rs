@@ -93,8 +93,8 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[PoseAngles; 2], Refusal> {
     let pair =
         if a_reached { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
     let inwards = |[from, to]: [f64; 2], share: f64| match a_reached {
-        true => [from, other.inwards(to, share)],
-        false => [own.inwards(from, share), other.inwards(to, share)],
+        true => [from, other.moved_inside(to, share)],
+        false => [own.moved_inside(from, share), other.moved_inside(to, share)],
     };
     pair.and_then(|pair| INWARD_SHARES.into_iter().find_map(|share| nearest(inwards(pair, share)))).ok_or_else(|| {
         Refusal::NoWay("no poses of A and B were found to go straight between: want other points".into())

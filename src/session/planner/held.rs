@@ -45,7 +45,7 @@ pub(super) fn reactionless(
     if let Ok(planes) = space.planes() {
         return match task.shape() {
             PathShape::JointLine => joint_lines(scenario, space, poses_at_b(task, space, &points)?),
-            _ => on_plane(task, (space, planes), &points),
+            _ => on_plane(task, space, planes, &points),
         };
     }
     if let Some((i, why)) = unreached(space, &points, task.b) {
@@ -78,7 +78,7 @@ pub(super) fn along_curves(
         return Ok(tables.into_iter().map(Path::Table).zip(lengths).collect());
     }
     // Without freedoms there is one motion for each b.
-    let start = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
+    let start = posed(&scenario.task, space, &scenario.task.points()[..1], 0, &space.middle())?;
     by_least_rates(scenario, start, curves, Some(space))
 }
 
@@ -115,7 +115,7 @@ fn one_by_one(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Resu
     let mut poses: Vec<PoseAngles> = Vec::with_capacity(points.len() + 1);
     for i in 0..points.len() {
         let kept = poses.first().map(|pose| pose.q[end_drive]);
-        poses.push(PoseAngles::of(space, poses_facing(scenario, space, (points, i), (&near, kept))?));
+        poses.push(PoseAngles::of(space, poses_facing(scenario, space, points, i, &near, kept)?));
         near = poses[i].a;
     }
     Ok(poses)
@@ -171,7 +171,7 @@ fn same_side(task: &Task, poses: &[PoseAngles]) -> Result<(), Refusal> {
 }
 
 /// Follows the curves of the end effector on the plane of the task.
-fn on_plane(task: &Task, (space, planes): (&PoseSpace, &Planes), points: &[Vector]) -> Result<PathSegments, Refusal> {
+fn on_plane(task: &Task, space: &PoseSpace, planes: &Planes, points: &[Vector]) -> Result<PathSegments, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
     // Points are checked first, because an unreachable point is the clearer reason.

@@ -31,8 +31,8 @@ pub(super) fn least_reaction(scenario: &Scenario, space: PlannerSpace<'_>) -> Re
     let law = smooth(&scenario.task)?;
     let space = space.map_err(Clone::clone)?;
     match space.planes() {
-        Ok(planes) => in_corridor(scenario, (space, planes), law),
-        Err(lacking) => holding_b(scenario, (space, lacking)),
+        Ok(planes) => in_corridor(scenario, space, planes, law),
+        Err(lacking) => holding_b(scenario, space, lacking),
     }
 }
 
@@ -68,7 +68,7 @@ fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
 }
 
 /// Plans the motion along the curves of the end effector; b changes as little as its feasible corridor allows.
-fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law: TimeLaw) -> Result<Plan, Refusal> {
+fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: TimeLaw) -> Result<Plan, Refusal> {
     let (task, map) = (&scenario.task, planes.map());
     let curves = curves(task, &task.points())?;
     let curve = whole(&curves, law);
@@ -100,7 +100,7 @@ fn in_corridor(scenario: &Scenario, (space, planes): (&PoseSpace, &Planes), law:
 
 /// Plans the motion with b held, if that is feasible; nothing reaches the base then. The corridor of b is known on
 /// planes only.
-fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -> Result<Plan, Refusal> {
+fn holding_b(scenario: &Scenario, space: &PoseSpace, lacking: &PlaneError) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     if let Some(b_to) = task.b_to.filter(|b_to| *b_to != task.b) {
         return Err(Refusal::Task(format!(
@@ -122,8 +122,10 @@ fn holding_b(scenario: &Scenario, (space, lacking): (&PoseSpace, &PlaneError)) -
     };
     let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
     let common = BSet::overlap(&sets.unwrap_or_default());
-    let candidates =
-        common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
+    let candidates = common
+        .nearest(task.b)
+        .into_iter()
+        .flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.moved_inside(b, to)));
     let feasible =
         candidates.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value(), PlanningEffort::Trial).is_ok());
     let proposal = match feasible {

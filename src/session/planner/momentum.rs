@@ -102,7 +102,7 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
 
 /// Returns every pose of a point; poses that differ by whole turns of all drives count once.
 fn elbows(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<Vec<DriveAngles>, Refusal> {
-    let set = space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?.near(task.b);
+    let set = space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?.shifted_near(task.b);
     let poses: Vec<DriveAngles> = set.intervals.iter().flat_map(|[b, _]| space.poses(p, *b, &space.middle())).collect();
     if poses.is_empty() { reached(task, space, i, p).map(|q| vec![q]) } else { Ok(poses) }
 }
@@ -120,12 +120,12 @@ fn deltas_along(
     let mut turns = Vec::new();
     let mut now = start[1] - start[0];
     for (i, p) in points.iter().enumerate().skip(1) {
-        let miss = |delta: f64| (space.place(&integral.pose(b, delta)) - p).norm();
+        let miss = |delta: f64| (space.end_effector(&integral.pose(b, delta)) - p).norm();
         let poses = elbows(task, space, i, *p).map_err(|why| (i, why))?;
         let deltas =
             poses.iter().map(|q| q[1] - q[0]).filter(|delta| miss(*delta) <= CURVE_TOLERANCE * space.farthest());
         let Some(delta) = deltas.min_by(|x, y| (x - now).abs().total_cmp(&(y - now).abs())) else {
-            return Err((i, off_curve(task, space, integral, (b, now), i, *p)));
+            return Err((i, off_curve(task, space, integral, b, now, i, *p)));
         };
         turns.push(delta);
         now = delta;
@@ -134,17 +134,10 @@ fn deltas_along(
 }
 
 /// Refuses a point off the curve, with its distance from the curve and the nearest point of the curve, m.
-fn off_curve(
-    task: &Task,
-    space: &PoseSpace,
-    integral: &BIntegral,
-    (b, now): (f64, f64),
-    i: usize,
-    p: Vector,
-) -> Refusal {
+fn off_curve(task: &Task, space: &PoseSpace, integral: &BIntegral, b: f64, now: f64, i: usize, p: Vector) -> Refusal {
     let joint = space.joints()[0];
     let [low, high] = joint.bounds();
-    let place = |delta: f64| space.place(&integral.pose(b, delta));
+    let place = |delta: f64| space.end_effector(&integral.pose(b, delta));
     let allowed = |delta: &f64| {
         let a = joint.of(&[0.0, *delta]);
         a >= low - 1e-9 && a <= high + 1e-9

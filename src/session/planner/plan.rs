@@ -80,11 +80,10 @@ impl Plan {
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];
-        let q =
-            space.and_then(|space| space.standing(p, task.b)).unwrap_or_else(|| match PoseSpace::nominal(machine) {
-                Ok(space) => space.near(p, task.b).unwrap_or_else(|| space.lift(&space.middle(), task.b)),
-                Err(_) => DriveAngles(PerDrive::zeros(machine.drives())),
-            });
+        let q = space.and_then(|space| space.pose_at(p, task.b)).unwrap_or_else(|| match PoseSpace::nominal(machine) {
+            Ok(space) => space.pose_at_nearest_b(p, task.b).unwrap_or_else(|| space.lift(&space.middle(), task.b)),
+            Err(_) => DriveAngles(PerDrive::zeros(machine.drives())),
+        });
         let path = Path::JointLine { from: q, to: q };
         Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
     }
@@ -94,7 +93,7 @@ impl Plan {
         let forecast = Forecast::of(&motion, &model, &around, &DriveLimits::of(&scenario.machine));
         let ends = [0.0, motion.duration()].map(|t| motion.at(t).q);
         let mut plan = Self::foreseen(motion, forecast);
-        let is_closed = scenario.task.closed && scenario.idle("task.posture").is_none();
+        let is_closed = scenario.task.closed && scenario.condition_for_effect("task.posture").is_none();
         if is_closed && ends[1].0.minus(&ends[0].0).max_abs() > CLOSURE_TOLERANCE_RAD {
             plan.cycles = ends.to_vec();
         }
@@ -141,7 +140,8 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
             let a = q[angle.to] - q[angle.from] + angle.offset;
             let past = (angle.limits.start() - a).max(a - angle.limits.end());
             if past > 1e-6 {
-                let posture = if scenario.idle("task.posture").is_none() { "another posture, " } else { "" };
+                let posture =
+                    if scenario.condition_for_effect("task.posture").is_none() { "another posture, " } else { "" };
                 return Err(Refusal::NoWay(format!(
                     "{:.1} % along, a{} would pass its {} limit: want another path, another b, {posture}or wider limits",
                     100.0 * s,

@@ -48,7 +48,8 @@ pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusa
 pub(super) fn posed(
     task: &Task,
     space: &PoseSpace,
-    (points, i): (&[Vector], usize),
+    points: &[Vector],
+    i: usize,
     near: &[f64],
 ) -> Result<DriveAngles, Refusal> {
     let none = || refusal(task, i, unreachable_reason(space, points, i, task.b));
@@ -60,21 +61,23 @@ pub(super) fn posed(
 pub(super) fn poses_facing(
     scenario: &Scenario,
     space: &PoseSpace,
-    (points, i): (&[Vector], usize),
-    (near, kept): (&[f64], Option<f64>),
+    points: &[Vector],
+    i: usize,
+    near: &[f64],
+    kept: Option<f64>,
 ) -> Result<DriveAngles, Refusal> {
     let (task, p) = (&scenario.task, points[i]);
-    let Some(angle) = task.orientation.filter(|_| scenario.idle("task.orientation").is_none()) else {
-        return posed(task, space, (points, i), near);
+    let Some(angle) = task.orientation.filter(|_| scenario.condition_for_effect("task.orientation").is_none()) else {
+        return posed(task, space, points, i, near);
     };
     let (drive, turned) = hand_of(scenario);
-    let poses = |angle: f64| space.facing(p, task.b, (drive, angle - turned), near);
+    let poses = |angle: f64| space.poses_with_drive_angle(p, task.b, drive, angle - turned, near);
     let keeps_angle = |q: &DriveAngles| kept.is_none_or(|kept| (q[drive] - kept).abs() < 1e-6);
     if let Some(q) = poses(angle).into_iter().find(keeps_angle) {
         return Ok(q);
     }
     // The point itself may be out of reach.
-    posed(task, space, (points, i), near)?;
+    posed(task, space, points, i, near)?;
     let steps = 180;
     let feasible: Vec<bool> =
         (0..steps).map(|k| !poses(angle + TAU * f64::from(k) / f64::from(steps)).is_empty()).collect();
@@ -113,5 +116,5 @@ pub(super) fn no_b_refusal(task: &Task, i: usize, p: Vector, reason: NoReach) ->
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
     space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
-    space.near(p, task.b).ok_or_else(none)
+    space.pose_at_nearest_b(p, task.b).ok_or_else(none)
 }

@@ -34,9 +34,9 @@ pub(super) fn tables(
 ) -> Result<Vec<PathTable>, Refusal> {
     let task = &scenario.task;
     let link = hand_of(scenario);
-    let angle = task.orientation.filter(|_| scenario.idle("task.orientation").is_none());
+    let angle = task.orientation.filter(|_| scenario.condition_for_effect("task.orientation").is_none());
     if angle.is_some() {
-        poses_facing(scenario, space, (&task.points(), 0), (&space.middle(), None))?;
+        poses_facing(scenario, space, &task.points(), 0, &space.middle(), None)?;
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
     let asked = PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
@@ -64,7 +64,7 @@ pub(super) fn tables(
 
 /// Follows each curve with minimum-norm rates, from the pose nearest to the middle of all ranges.
 fn locally(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<Vec<PathTable>, Refusal> {
-    let mut q = posed(&scenario.task, space, (&scenario.task.points()[..1], 0), &space.middle())?;
+    let mut q = posed(&scenario.task, space, &scenario.task.points()[..1], 0, &space.middle())?;
     let mut tables = Vec::with_capacity(curves.len());
     for curve in curves {
         let table = least_rate_curve(scenario.machine.end_effector(), Some(space.lambda()), q, curve)?;

@@ -25,7 +25,7 @@ pub(super) fn proved_refusal(
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
     // A refusal of a path on one plane may name another plane.
     let another = |why: &Refusal| match why {
-        Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.shown_b),
+        Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.displayed_b),
         _ => None,
     };
     match refusal {
@@ -67,13 +67,13 @@ pub(super) fn tried_refusal(
 ) -> Refusal {
     let Refusal::Unreachable {
         point,
-        unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
+        unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), displayed_b: Some(shown), .. },
     } = &refusal
     else {
         return refusal;
     };
-    let made = |would_do: String, nearest_b: Option<f64>, shown_b: Option<Decimal>| {
-        let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
+    let made = |would_do: String, nearest_b: Option<f64>, displayed_b: Option<Decimal>| {
+        let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, displayed_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
     let stopped = match try_path(shown.value(), PlanningEffort::Whole) {
@@ -85,7 +85,7 @@ pub(super) fn tried_refusal(
     };
     // A refusal of the path on one plane may name another plane.
     if let Refusal::Blocked(blocked) = &stopped
-        && let Some((nearest, shown)) = blocked.nearest_b.zip(blocked.shown_b)
+        && let Some((nearest, shown)) = blocked.nearest_b.zip(blocked.displayed_b)
     {
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
@@ -102,5 +102,5 @@ pub(super) fn tried_refusal(
 
 /// Yields values of b farther and farther inside a set, rad, from the end nearest to `near` towards the other end.
 pub(super) fn inner_values(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
-    TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.inwards(near, share), DECIMALS))
+    TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.moved_inside(near, share), DECIMALS))
 }

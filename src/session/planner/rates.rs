@@ -54,7 +54,7 @@ pub(super) fn same_tip(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<P
     };
     let pose = |i: usize, near: &[f64]| {
         let q = match has_b {
-            true => posed(task, known, (&points, i), near)?,
+            true => posed(task, known, &points, i, near)?,
             false => reached(task, known, i, points[i])?,
         };
         Ok::<PoseAngles, Refusal>(PoseAngles::of(known, q))

@@ -16,9 +16,9 @@ use stillbase_simulation::plant::{Base, Friction, LENGTH_KEYS, LinkDifference, L
 const TASK: [Key; Task::KEYS.len()] = Key::all_reaching(Effect::Plan, Task::KEYS);
 const BASE: [Key; Base::KEYS.len()] = Key::all_reaching(Effect::Plan, Base::KEYS);
 const WHEEL: [Key; Wheel::KEYS.len()] = Key::all_reaching(Effect::Plan, Wheel::KEYS);
-const TOLERANCE: [Key; tolerance::KEYS.len()] = Key::all_reaching(Effect::Aside, &tolerance::KEYS);
-const DESIGN: [Key; DesignBrief::KEYS.len()] = Key::all_reaching(Effect::Aside, DesignBrief::KEYS);
-const HELD: [Key; design::BOUND_KEYS.len()] = Key::all_reaching(Effect::Aside, &design::BOUND_KEYS);
+const TOLERANCE: [Key; tolerance::KEYS.len()] = Key::all_reaching(Effect::NoFrame, &tolerance::KEYS);
+const DESIGN: [Key; DesignBrief::KEYS.len()] = Key::all_reaching(Effect::NoFrame, DesignBrief::KEYS);
+const HELD: [Key; design::BOUND_KEYS.len()] = Key::all_reaching(Effect::NoFrame, &design::BOUND_KEYS);
 
 /// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance, design.
 pub const KEYS: [(&str, &[&[Key]]); 9] = [
@@ -57,7 +57,7 @@ pub(super) const SCENARIO_TABLES: [&str; 6] = ["task", "control", "plant", "base
 
 /// Returns the effect of a change of settings: the largest effect of its keys.
 pub fn effect_of(change: &Table) -> Effect {
-    change.iter().map(|(part, value)| effect_in(part, value)).max().unwrap_or(Effect::Aside)
+    change.iter().map(|(part, value)| effect_in(part, value)).max().unwrap_or(Effect::NoFrame)
 }
 
 /// Returns the effect of a change of one part.

@@ -13,7 +13,7 @@ keyed! {
         step: f64 = "0.001", range: STEP_RANGE, reaching: Effect::Plan, saved: always;
         /// Time that a recording and every command that runs to the end covers.
         duration: Option<f64> = Key::NONE, range: DURATION_RANGE, instead: "that of the planned motion",
-            reaching: Effect::Aside;
+            reaching: Effect::NoFrame;
         /// Bound on |b̈| while b is slid by hand.
         pose_acceleration: f64 = "2", range: POSE_ACCELERATION, saved: always;
         /// Pose constant of a second workspace to compare with.

@@ -59,7 +59,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
-    pub fn with(&self, change: &Table) -> Result<Self, SettingError> {
+    pub fn with_settings(&self, change: &Table) -> Result<Self, SettingError> {
         let mut scenario = self.clone();
         let none = |value: &Value| value.as_str() == Some(Key::NONE);
         match change::leaves(change).into_iter().any(|(_, value)| none(value)) {
@@ -72,7 +72,7 @@ impl Scenario {
     fn lay(&mut self, change: &Table) -> Result<(), SettingError> {
         let (of_machine, own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         if !of_machine.is_empty() {
-            self.machine = self.machine.with(&of_machine)?;
+            self.machine = self.machine.with_settings(&of_machine)?;
         }
         for (part, value) in &own {
             let wrong = |why: String| {
@@ -82,7 +82,9 @@ impl Scenario {
                 })
             };
             match (part.as_str(), value) {
-                ("task", Value::Table(change)) => self.task = self.task.with(change, &self.machine).map_err(wrong)?,
+                ("task", Value::Table(change)) => {
+                    self.task = self.task.with_change(change, &self.machine).map_err(wrong)?
+                }
                 ("task", Value::String(word)) if word == DEFAULT_WORD => {
                     let why = "a task as a whole has no usual value: want that of a key, such as task.time=default";
                     return Err(SettingError::Part { part: part.clone(), why: why.into() });
@@ -140,9 +142,9 @@ impl Scenario {
         self.step = step;
     }
 
-    /// Returns the present values of the keys of a change, with which [`with`](Self::with) undoes it. Returns `None` if
-    /// one of the keys does not exist.
-    pub fn only(&self, change: &Table) -> Option<Table> {
+    /// Returns the present values of the keys of a change, with which [`with_settings`](Self::with_settings) undoes it.
+    /// Returns `None` if one of the keys does not exist.
+    pub fn present_values(&self, change: &Table) -> Option<Table> {
         let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         let known = |part: &String| {
             SCENARIO_TABLES.contains(&part.as_str()) || ScenarioSettings::KEYS.iter().any(|key| key.path == part)
@@ -240,7 +242,7 @@ impl Scenario {
     }
 
     /// Returns the condition for a key to have an effect, if it has none now.
-    pub fn idle(&self, path: &str) -> Option<&'static str> {
+    pub fn condition_for_effect(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
             Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
             Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
@@ -267,16 +269,16 @@ impl Scenario {
 
     /// Returns the given keys that have no effect, each with the condition for one. Keys that files always state are
     /// left out.
-    pub fn idle_keys(&self) -> Vec<(String, &'static str)> {
+    pub fn ineffective_keys(&self) -> Vec<(String, &'static str)> {
         const ALWAYS_STATED: [&str; 7] =
             ["task.kind", "task.from", "task.to", "task.b", "task.time", "task.law", "control.knows_base"];
         let stated = self.stated();
-        let of_machine = self.machine.idle_keys(self.is_pushed()).map(str::to_owned);
+        let of_machine = self.machine.ineffective_keys(self.is_pushed()).map(str::to_owned);
         let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
         of_machine
             .chain(given)
             .filter(|path| !ALWAYS_STATED.contains(&path.as_str()))
-            .filter_map(|path| self.idle(&path).map(|want| (path, want)))
+            .filter_map(|path| self.condition_for_effect(&path).map(|want| (path, want)))
             .collect()
     }
 
@@ -301,11 +303,11 @@ impl Scenario {
     /// # Errors
     /// If these settings cannot be applied.
     pub(crate) fn with_asides_of(&self, other: &Self) -> Result<Self, SettingError> {
-        let asides = || keys().filter(|key| key.effect == Effect::Aside).map(|key| key.part().to_owned());
+        let asides = || keys().filter(|key| key.effect == Effect::NoFrame).map(|key| key.part().to_owned());
         let none: Table = asides().map(|part| (part, DEFAULT_WORD.into())).collect();
         let mut stated = other.stated();
         stated.retain(|part, _| asides().any(|aside| aside == *part));
-        self.with(&none)?.with(&stated)
+        self.with_settings(&none)?.with_settings(&stated)
     }
 }
 

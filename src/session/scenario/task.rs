@@ -92,8 +92,9 @@ keyed! {
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
         /// What to keep small: the root of the mean square of n_B, or its peak.
         least: ReactionObjective = "mean-square", when: "the kind least-reaction" => |task| task.kind == TaskKind::LeastReaction;
-        /// How four drives and more use the freedoms that a point leaves while b is held: they turn least, the last link
-        /// keeps its orientation, the motors need the least torques, or joints stay near the middle of their ranges.
+        /// How four drives and more use the freedoms that a point leaves while b is held: they turn least, the last
+        /// link keeps its orientation, the motors need the least torques, or joints stay near the middle of their
+        /// ranges.
         posture: Posture = "least-rates", when: FREE => Task::has_freedoms;
         /// Which way the last link points all along the path, from root to tip, counted from the x axis.
         orientation: Option<f64> = Key::NONE, range: ANGLE, instead: "with the posture orientation as it does at A",
@@ -121,7 +122,7 @@ struct Ends {
 
 /// Returns the ends of samples of the end effector, or of drive angles turned as a whole by `turn`, rad. Returns `None`
 /// if the samples do not fit the machine.
-fn ends_of((kind, samples): (TaskKind, &Samples), turn: f64, machine: &Machine) -> Option<Ends> {
+fn ends_of(kind: TaskKind, samples: &Samples, turn: f64, machine: &Machine) -> Option<Ends> {
     let last = samples.count() - 1;
     if samples.columns() == 2 && !(machine.drives() == samples.columns() && kind == TaskKind::Given) {
         return Some(Ends { places: [0, last].map(|i| [samples.point(i).re, samples.point(i).im]), b: None });
@@ -157,7 +158,7 @@ impl Task {
         if !stated("kind") {
             return Err("kind");
         }
-        let ends = self.samples.as_ref().and_then(|samples| ends_of((self.kind, samples), self.turn, machine));
+        let ends = self.samples.as_ref().and_then(|samples| ends_of(self.kind, samples, self.turn, machine));
         let place = |key: &'static str, own: [f64; 2], end: usize| match ends {
             _ if stated(key) => Ok(own),
             Some(ends) => Ok(ends.places[end]),
@@ -180,9 +181,9 @@ impl Task {
     pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
         let samples = self.samples.as_ref()?;
         let mut task = Self { b, ..self.clone() };
-        if let Some(Ends { b: Some(own), .. }) = ends_of((self.kind, samples), self.turn, machine) {
+        if let Some(Ends { b: Some(own), .. }) = ends_of(self.kind, samples, self.turn, machine) {
             task.turn += (b - own) / Inertia::of(machine).lambda().iter().sum::<f64>();
-            [task.from, task.to] = ends_of((self.kind, samples), task.turn, machine)?.places;
+            [task.from, task.to] = ends_of(self.kind, samples, task.turn, machine)?.places;
         }
         Some(task)
     }
@@ -256,7 +257,7 @@ impl Task {
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
-    pub fn with(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
+    pub fn with_change(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
         // There may be many samples, so they are serialised only if the change is of them.
         let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
         let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
@@ -267,8 +268,8 @@ impl Task {
         completed.map_err(|key| format!("missing field `{key}`"))
     }
 
-    /// Returns the present values of these keys, with which [`with`](Self::with) undoes a change.
-    pub fn only(&self, change: &TaskChange) -> TaskChange {
+    /// Returns the present values of these keys, with which [`with_change`](Self::with_change) undoes a change.
+    pub fn present_values(&self, change: &TaskChange) -> TaskChange {
         change::present_values(self, change)
     }
 }

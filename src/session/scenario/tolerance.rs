@@ -255,7 +255,7 @@ impl Spread {
 
     /// Returns the same kind of spread with another amount.
     #[must_use]
-    pub fn with(&self, amount: Amount) -> Self {
+    pub fn with_amount(&self, amount: Amount) -> Self {
         match self {
             Self::Normal(_) => Self::Normal(amount),
             Self::Uniform(_) => Self::Uniform(amount),

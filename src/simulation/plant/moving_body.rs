@@ -41,16 +41,16 @@ pub struct MovingBody {
     /// The manipulator with its payload.
     pub(super) arm: Inertia,
     /// All rotating parts: about B on a fixed base, about R on a moving one.
-    pub(super) whole: Inertia,
+    pub(super) rotating: Inertia,
     pub(super) moves: bool,
     /// Whether the base is free, so that weight is not carried.
-    falls: bool,
+    is_free: bool,
     /// M_t, kg.
     pub(super) mass: f64,
     /// Position of B relative to R, as a chain, m.
-    pub(super) anchor: [Vector; MAX_DRIVES],
+    pub(super) base_chain: [Vector; MAX_DRIVES],
     /// Position of the end effector as a chain, m: relative to B on a fixed base, to R on a moving one.
-    pub(super) tip: [Vector; MAX_DRIVES],
+    pub(super) end_effector_chain: [Vector; MAX_DRIVES],
     pub(super) support: Support,
     pub(super) contacts: Contacts,
     pub(super) around: Surroundings,
@@ -72,17 +72,17 @@ impl MovingBody {
         let zero = [Vector::default(); MAX_DRIVES];
         if !base.moves() {
             let contacts = Contacts::of(machine, friction, None);
-            let tip = real(&arm.end_effector);
-            let whole = arm.clone();
+            let end_effector_chain = real(&arm.end_effector);
+            let rotating = arm.clone();
             let (mass, support, base) = (arm.mass, Support::default(), (0.0, Vector::default()));
             return Ok(Self {
                 arm,
-                whole,
+                rotating,
                 moves: false,
-                falls: false,
+                is_free: false,
                 mass,
-                anchor: zero,
-                tip,
+                base_chain: zero,
+                end_effector_chain,
                 support,
                 contacts,
                 around,
@@ -95,21 +95,21 @@ impl MovingBody {
         }
         arm.turn_base();
         let rho = Vector::new(base.com[0], base.com[1]);
-        let mut whole = arm.clone();
-        whole.drives = n + 1;
+        let mut rotating = arm.clone();
+        rotating.drives = n + 1;
         let mut of_base = zero;
         of_base[n] = rho;
-        whole.add(base.mass, base.inertia, n, &of_base);
-        let g = whole.g;
-        let mass = whole.mass;
+        rotating.add(base.mass, base.inertia, n, &of_base);
+        let g = rotating.g;
+        let mass = rotating.mass;
         for k in 0..=n {
             for l in 0..=n {
-                whole.c[k][l] -= g[k].conj() * g[l] / mass;
+                rotating.c[k][l] -= g[k].conj() * g[l] / mass;
             }
         }
-        let anchor = g.map(|g| -g / mass);
-        let mut tip = real(&arm.end_effector);
-        tip.iter_mut().zip(&anchor).for_each(|(tip, anchor)| *tip += anchor);
+        let base_chain = g.map(|g| -g / mass);
+        let mut end_effector_chain = real(&arm.end_effector);
+        end_effector_chain.iter_mut().zip(&base_chain).for_each(|(tip, anchor)| *tip += anchor);
         let support = match base.kind {
             BaseKind::Compliant => {
                 let units = start.units();
@@ -121,13 +121,25 @@ impl MovingBody {
         };
         let contacts = Contacts::of(machine, friction, Some(n));
         let (kind, base) = (base.kind, (base.mass, base.mass * rho));
-        let falls = kind == BaseKind::Free;
-        Ok(Self { arm, whole, moves: true, falls, mass, anchor, tip, support, contacts, around, base })
+        let is_free = kind == BaseKind::Free;
+        Ok(Self {
+            arm,
+            rotating,
+            moves: true,
+            is_free,
+            mass,
+            base_chain,
+            end_effector_chain,
+            support,
+            contacts,
+            around,
+            base,
+        })
     }
 
     /// Returns the body with another force at the end effector, N.
     #[must_use]
-    pub fn pushed(mut self, force: Vector) -> Self {
+    pub fn with_force(mut self, force: Vector) -> Self {
         self.around.force = force;
         self
     }
@@ -163,34 +175,34 @@ impl MovingBody {
 
     /// Returns the number N of rotational coordinates: the drives, and a moving base.
     pub(crate) fn turning(&self) -> usize {
-        self.whole.drives
+        self.rotating.drives
     }
 
     /// Returns the state for given angles and rates of the drives, and pose and rates of the base.
     pub fn state(&self, q: &DriveAngles, qd: &PerDrive, base: Pose2, velocity: Vector, turning: f64) -> State {
         let n = q.len();
         let turns = |drives: &[f64], last: f64| {
-            PerDrive::from_fn(self.whole.drives, |k| drives.get(k).copied().unwrap_or(last))
+            PerDrive::from_fn(self.rotating.drives, |k| drives.get(k).copied().unwrap_or(last))
         };
         let (q, qd) = (turns(q, base.angle), turns(qd, turning));
         let e = DriveAngles(q).units();
-        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &qd);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.rotating, &e, &qd);
         let mut momenta = h.times(&qd);
         let (mut place, mut momentum) = (Vector::default(), Vector::default());
         if self.moves {
             momenta[n] = momenta.iter().sum();
-            let (lever, swing) = self.seen(&self.anchor, &e, &qd);
+            let (lever, swing) = self.seen(&self.base_chain, &e, &qd);
             place = base.at - lever;
             momentum = self.mass * (velocity - swing);
         }
         let impulse = (Vector::default(), 0.0);
-        State { q, momenta, place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
+        State { q, momenta, position: place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
     }
 
     /// Returns the position of a chain's point, m, and its velocity, m/s.
     #[inline(always)]
     fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive) -> (Vector, Vector) {
-        (0..self.whole.drives).fold(Default::default(), |(p, v), k| {
+        (0..self.rotating.drives).fold(Default::default(), |(p, v), k| {
             let arm = chain[k] * e[k];
             (p + arm, v + I * arm * qd[k])
         })
@@ -200,7 +212,7 @@ impl MovingBody {
     /// carried: it belongs to the dynamic part, where free fall cancels it.
     pub fn transmitted(&self, x: &Slope) -> BaseWrench {
         let mut wrench = x.wrench;
-        if self.falls {
+        if self.is_free {
             let weight = self.arm.mass * self.around.gravity;
             let moment = cross(stillbase_mechanics::dynamics::first_moment(&self.arm, &x.e), self.around.gravity);
             wrench.statical.force -= weight;
@@ -218,7 +230,7 @@ impl MovingBody {
         if !self.moves {
             return weight((0..n).map(|k| self.arm.g[k] * x.e[k]).sum());
         }
-        let (lever, _) = self.seen(&self.anchor, &x.e, &x.qd);
+        let (lever, _) = self.seen(&self.base_chain, &x.e, &x.qd);
         let Support { stiffness: [kx, ky, kt], preload: (force, moment), .. } = self.support;
         let (p, angle) = (x.base.at, x.base.angle);
         weight(self.mass * (p - lever)) - dot(force, p) - moment * angle
@@ -249,7 +261,7 @@ impl MovingBody {
         let p = stillbase_mechanics::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
         let mut h = stillbase_mechanics::dynamics::angular_momentum(&self.arm, &x.e, &qd);
         if self.moves {
-            h += self.arm.of_base(&x.qd);
+            h += self.arm.excess_rotor_momentum(&x.qd);
         }
         (p, h + cross(x.base.at, p) + cross(lever, x.base_velocity))
     }
@@ -257,8 +269,8 @@ impl MovingBody {
     /// Returns I_b + m_b |ρ|², kg m².
     fn base_spin(&self) -> f64 {
         let n = self.arm.drives;
-        let g = -self.anchor[n] * self.mass;
-        self.whole.c[n][n].re + self.whole.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
+        let g = -self.base_chain[n] * self.mass;
+        self.rotating.c[n][n].re + self.rotating.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
     }
 
     /// Returns the torques that give the drives commanded accelerations relative to a moving base, rad/s², in a given
@@ -272,8 +284,8 @@ impl MovingBody {
         base: Pose2,
         velocity: Vector,
     ) -> [f64; N] {
-        let (h, v) = assemble(&self.whole, e, rate);
-        let outer = self.outer::<N, true>(e, self.held(base, velocity, rate[N - 1]));
+        let (h, v) = assemble(&self.rotating, e, rate);
+        let outer = self.outer::<N, true>(e, self.support_reaction(base, velocity, rate[N - 1]));
         // Torques between drives and base cancel, so the sum of all equations gives the acceleration of the base.
         let sum = |x: &[f64; N]| x.iter().sum::<f64>();
         let all: f64 = (0..N).map(|k| (0..N).map(|l| h[l][k]).sum::<f64>()).sum();
@@ -294,7 +306,7 @@ impl MovingBody {
     ) -> [f64; N] {
         let Surroundings { gravity, force } = self.around;
         let mut outer = std::array::from_fn(|k| match MOVES {
-            true => cross(self.tip[k] * e[k], force) + cross(self.anchor[k] * e[k], hold),
+            true => cross(self.end_effector_chain[k] * e[k], force) + cross(self.base_chain[k] * e[k], hold),
             false => cross(self.arm.g[k] * e[k], gravity) + cross(e[k] * self.arm.end_effector[k], force),
         });
         if MOVES {
@@ -305,7 +317,7 @@ impl MovingBody {
 
     /// Returns the force and moment of the support on a moving base, N, N m.
     #[inline(always)]
-    pub(super) fn held(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
+    pub(super) fn support_reaction(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
         let Support { stiffness: k, damping: c, preload: (force, moment) } = &self.support;
         let (p, v) = (base.at, velocity);
         let force = force - Vector::new(k[0] * p.re + c[0] * v.re, k[1] * p.im + c[1] * v.im);
@@ -317,7 +329,7 @@ impl MovingBody {
     /// Returns the rates of a state, rad/s.
     pub fn rates(&self, state: &State) -> PerDrive {
         let e = DriveAngles(state.q).units();
-        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.rotating, &e, &state.q);
         h.solve(&self.own_momenta(state))
     }
 
@@ -333,26 +345,26 @@ impl MovingBody {
 
     /// Returns the approximate reduced inertia of a contact, kg m².
     pub fn resists(&self, i: usize) -> f64 {
-        self.contacts.resists(i, |k| self.whole.c[k][k].re + self.whole.spin[k])
+        self.contacts.resists(i, |k| self.rotating.c[k][k].re + self.rotating.spin[k])
     }
 
     /// Returns a state in which stuck contacts have exactly zero sliding rate. Internal impulses between the two sides
     /// remove the residual rate; they do not change the total momentum. The residual is rounding and integration error.
     /// Its energy is not booked, so that the audits show it if it is larger.
     #[must_use]
-    pub fn stuck(&self, mut state: State, slip: &SlipDirections) -> State {
+    pub fn with_stuck_stopped(&self, mut state: State, slip: &SlipDirections) -> State {
         let still = |i: &usize| self.contacts.sticks(*i) && slip[*i] == 0;
         if !(0..self.contacts.len()).any(|i| still(&i)) {
             return state;
         }
         let n = self.arm.drives;
         let e = DriveAngles(state.q).units();
-        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        let (h, _) = stillbase_mechanics::dynamics::mass_matrix(&self.rotating, &e, &state.q);
         for _ in 0..8 {
             let mut fastest: f64 = 0.0;
             for i in (0..self.contacts.len()).filter(still) {
                 let v = self.contacts.sliding(i, &h.solve(&self.own_momenta(&state)));
-                let mut unit = PerDrive::zeros(self.whole.drives);
+                let mut unit = PerDrive::zeros(self.rotating.drives);
                 self.contacts.apply(i, 1.0, &mut unit);
                 let give = -self.contacts.sliding(i, &h.solve(&unit));
                 for k in 0..n {

@@ -1,5 +1,5 @@
-//! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration steps
-//! consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
+//! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration
+//! steps consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
 //! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. Whether
 //! the base moves is a compile-time parameter.
@@ -15,7 +15,7 @@ use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, do
 pub(crate) struct ReducedState<const N: usize> {
     pub q: [f64; N],
     pub momenta: [f64; N],
-    pub place: Vector,
+    pub position: Vector,
     pub momentum: Vector,
     pub wheel: f64,
 }
@@ -26,7 +26,7 @@ pub(crate) struct StateRates<const N: usize> {
     /// q̇, rad/s.
     pub q: [f64; N],
     pub momenta: [f64; N],
-    pub place: Vector,
+    pub position: Vector,
     pub momentum: Vector,
     pub wheel: f64,
     /// Power, W.
@@ -65,8 +65,8 @@ pub(crate) struct RungeKuttaStage<const N: usize> {
 impl<const N: usize> ReducedState<N> {
     #[inline(always)]
     pub fn of(state: &State) -> Self {
-        let State { place, momentum, wheel, .. } = *state;
-        Self { q: *state.q.array(), momenta: *state.momenta.array(), place, momentum, wheel }
+        let State { position, momentum, wheel, .. } = *state;
+        Self { q: *state.q.array(), momenta: *state.momenta.array(), position, momentum, wheel }
     }
 
     /// Returns the point at `h` seconds after a state along given rates, on a base that `MOVES` or not.
@@ -76,7 +76,7 @@ impl<const N: usize> ReducedState<N> {
         Self {
             q: std::array::from_fn(|k| q[k] + h * x.q[k]),
             momenta: std::array::from_fn(|k| momenta[k] + h * x.momenta[k]),
-            place: if MOVES { from.place + h * x.place } else { from.place },
+            position: if MOVES { from.position + h * x.position } else { from.position },
             momentum: if MOVES { from.momentum + h * x.momentum } else { from.momentum },
             wheel: from.wheel + h * x.wheel,
         }
@@ -89,7 +89,7 @@ impl<const N: usize> StateRates<N> {
         Self {
             q: *x.qd.array(),
             momenta: *x.momenta_rate.array(),
-            place: x.place_rate,
+            position: x.place_rate,
             momentum: x.momentum_rate,
             wheel: x.wheel_rate,
             work: x.power,
@@ -109,7 +109,7 @@ impl<const N: usize> StateRates<N> {
             (0..N).for_each(|k| q[k] += w * x.q[k]);
             (0..N).for_each(|k| momenta[k] += w * x.momenta[k]);
             if MOVES {
-                state.place += w * x.place;
+                state.position += w * x.position;
                 state.momentum += w * x.momentum;
             }
             state.wheel += w * x.wheel;
@@ -159,14 +159,14 @@ struct Afloat<const N: usize> {
     /// Velocity of the common centre of mass, m/s.
     drift: Vector,
     /// Terms of the position of B relative to the common centre of mass, m.
-    anchor: [Vector; N],
+    base_chain: [Vector; N],
 }
 
 impl<const N: usize> Default for Afloat<N> {
     #[inline(always)]
     fn default() -> Self {
         let still = Vector::default();
-        Self { base: Pose2::default(), velocity: still, turning: 0.0, drift: still, anchor: [still; N] }
+        Self { base: Pose2::default(), velocity: still, turning: 0.0, drift: still, base_chain: [still; N] }
     }
 }
 
@@ -176,7 +176,7 @@ impl<const N: usize> RungeKuttaStage<N> {
     pub fn slope(&self, drives: usize) -> Slope {
         let mut e = [Vector::default(); MAX_DRIVES];
         e[..N].copy_from_slice(&self.e);
-        let StateRates { q, momenta, place, momentum, wheel, work, lost, .. } = self.rates;
+        let StateRates { q, momenta, position, momentum, wheel, work, lost, .. } = self.rates;
         Slope {
             e,
             qd: PerDrive::from(q),
@@ -192,7 +192,7 @@ impl<const N: usize> RungeKuttaStage<N> {
             power: work,
             loss: lost,
             momenta_rate: PerDrive::from(momenta),
-            place_rate: place,
+            place_rate: position,
             momentum_rate: momentum,
             wheel_rate: wheel,
         }
@@ -201,8 +201,8 @@ impl<const N: usize> RungeKuttaStage<N> {
 
 impl MovingBody {
     /// Returns the slope of a state without torques.
-    pub fn still(&self, state: &State) -> Slope {
-        by_drives!(self.whole.drives, self.moves, still_of(self, state))
+    pub fn slope_without_torque(&self, state: &State) -> Slope {
+        by_drives!(self.rotating.drives, self.moves, still_of(self, state))
     }
 
     /// Computes rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control`
@@ -226,17 +226,17 @@ impl MovingBody {
         }
         let rate = factors.solve(momenta);
         let (gain, v) = velocity_terms(&im, &rate);
-        let Afloat { base, velocity, turning, drift, anchor } = match MOVES {
+        let Afloat { base, velocity, turning, drift, base_chain } = match MOVES {
             true => self.afloat(at, &e, &rate),
             false => Afloat::default(),
         };
         let Actuation { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
         // Generalised forces: outer forces, whose sum changes L, and torques between the drives and the base.
-        let tip = |k: usize| if MOVES { self.tip[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
+        let tip = |k: usize| if MOVES { self.end_effector_chain[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
         let (mut hold, mut moment) = Default::default();
         if MOVES {
-            (hold, moment) = self.held(base, velocity, turning);
+            (hold, moment) = self.support_reaction(base, velocity, turning);
             moment -= spin.torque;
         }
         let mut force = self.outer::<N, MOVES>(&e, (hold, moment));
@@ -268,17 +268,17 @@ impl MovingBody {
         let mut base_acceleration = Vector::default();
         let wrench = if MOVES {
             momenta_rate[N - 1] = external;
-            let pull: Vector = (0..N).map(|k| anchor[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
+            let pull: Vector = (0..N).map(|k| base_chain[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
             base_acceleration = momentum_rate / self.mass + pull;
             // The constants of the arm are zero at the index of the base.
             let (h, v) = assemble(&self.arm, &e, &rate);
-            let mut wrench = self.wrench((&h, &v), &e, &rate, &acceleration);
+            let mut wrench = self.wrench(&h, &v, &e, &rate, &acceleration);
             let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
             wrench.dynamic.force -= self.arm.mass * base_acceleration;
             wrench.dynamic.moment -= cross(lever, base_acceleration);
             wrench
         } else {
-            self.wrench((&h, &v), &e, &rate, &acceleration)
+            self.wrench(&h, &v, &e, &rate, &acceleration)
         };
         let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
             + 0.5 * dot(at.momentum, drift)
@@ -297,7 +297,7 @@ impl MovingBody {
             rates: StateRates {
                 q: rate,
                 momenta: momenta_rate,
-                place: drift,
+                position: drift,
                 momentum: momentum_rate,
                 wheel: if rotor > 0.0 { spin.torque / rotor } else { 0.0 },
                 work: power,
@@ -312,10 +312,10 @@ impl MovingBody {
     fn couplings<const N: usize>(&self, e: &[Vector; N]) -> ([[f64; N]; N], [[f64; N]; N]) {
         let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
         for k in 0..N {
-            h[k][k] = self.whole.c[k][k].re + self.whole.spin[k];
+            h[k][k] = self.rotating.c[k][k].re + self.rotating.spin[k];
             for l in k + 1..N {
-                let z = self.whole.c[k][l] * (e[k].conj() * e[l]);
-                let coupled = z.re + self.whole.gears[k][l];
+                let z = self.rotating.c[k][l] * (e[k].conj() * e[l]);
+                let coupled = z.re + self.rotating.rotor_coupling[k][l];
                 h[k][l] = coupled;
                 h[l][k] = coupled;
                 im[k][l] = z.im;
@@ -328,15 +328,15 @@ impl MovingBody {
     #[inline(always)]
     fn afloat<const N: usize>(&self, at: &ReducedState<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
         let drift = at.momentum / self.mass;
-        let anchor: [Vector; N] = std::array::from_fn(|k| self.anchor[k] * e[k]);
-        let lever: Vector = anchor.iter().sum();
-        let swing: Vector = (0..N).map(|k| turned(anchor[k]) * rate[k]).sum();
+        let base_chain: [Vector; N] = std::array::from_fn(|k| self.base_chain[k] * e[k]);
+        let lever: Vector = base_chain.iter().sum();
+        let swing: Vector = (0..N).map(|k| turned(base_chain[k]) * rate[k]).sum();
         Afloat {
-            base: Pose2 { at: at.place + lever, angle: at.q[N - 1] },
+            base: Pose2 { at: at.position + lever, angle: at.q[N - 1] },
             velocity: drift + swing,
             turning: rate[N - 1],
             drift,
-            anchor,
+            base_chain,
         }
     }
 
@@ -344,7 +344,8 @@ impl MovingBody {
     #[inline(always)]
     fn wrench<const N: usize>(
         &self,
-        (h, v): (&[[f64; N]; N], &[f64; N]),
+        h: &[[f64; N]; N],
+        v: &[f64; N],
         e: &[Vector; N],
         rate: &[f64; N],
         acceleration: &[f64; N],

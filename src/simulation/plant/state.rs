@@ -12,7 +12,7 @@ pub struct State {
     /// π_k, kg m²/s; on a moving base the last entry is L.
     pub momenta: PerDrive,
     /// R, m.
-    pub place: Vector,
+    pub position: Vector,
     /// P, kg m/s.
     pub momentum: Vector,
     /// Ω of a wheel, rad/s.

@@ -90,9 +90,9 @@ impl ControlLoop {
                 let (n, count) = (reading.q.len(), sampling.count);
                 // Encoders measure the motors' own angles.
                 let motors = self.controller.arm().motors();
-                let turned = motors.turns(&reading.q.0);
+                let turned = motors.to_motors(&reading.q.0);
                 seen.q = DriveAngles(PerDrive::from_fn(n, |k| (turned[k] / count).round() * count));
-                motors.drive(&mut seen.q.0);
+                motors.transform_to_drives(&mut seen.q.0);
                 if let Some(last) = sampling.last.replace((step, seen.q)).filter(|(at, _)| *at < step) {
                     sampling.before = Some(last);
                 }
@@ -204,8 +204,13 @@ impl ControlLoop {
         if arm.motors().in_joints() {
             sum -= (0..n).filter(|k| arm.motors().on(*k).is_some()).map(|k| torque[k]).sum::<f64>();
         }
-        let geared =
-            |k: usize| if arm.taken_up[k] != 0.0 || n >= MAX_DRIVES { arm.taken_up[k] } else { arm.gears[n][k] };
+        let geared = |k: usize| {
+            if arm.stator_reaction[k] != 0.0 || n >= MAX_DRIVES {
+                arm.stator_reaction[k]
+            } else {
+                arm.rotor_coupling[n][k]
+            }
+        };
         sum + (0..n).map(|k| geared(k) * wanted[k]).sum::<f64>()
     }
 }

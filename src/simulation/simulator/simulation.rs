@@ -88,7 +88,7 @@ impl Simulation {
         let force = Vector::new(plant.force[0], plant.force[1]);
         let start = &reference.q;
         let holding = load.held_by(&machine)?;
-        let body = |m: &Machine| MovingBody::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
+        let body = |m: &Machine| MovingBody::of(m, &plant.friction, setup.base, start).map(|b| b.with_force(force));
         let empty = body(&machine)?;
         let first = load.is_held(0.0, 0.5 * setup.step);
         // The springs are preloaded for the payload that is held at the start.
@@ -111,7 +111,7 @@ impl Simulation {
         let control_loop = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base.wheel);
         let loaded = usize::from(first);
         let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
-        let now = bodies[loaded].still(&state);
+        let now = bodies[loaded].slope_without_torque(&state);
         let mut sim = Self {
             bodies: Box::new(bodies),
             load,
@@ -188,7 +188,7 @@ impl Simulation {
     }
 
     /// Changes the source of the reference. The machine keeps its state, and control corrects the difference.
-    pub fn lead(&mut self, guide: Guide) {
+    pub fn set_guide(&mut self, guide: Guide) {
         self.guide = guide;
         self.prepare();
         self.evaluate();
@@ -199,7 +199,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`new`](Self::new); then the simulation is unchanged.
-    pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
+    pub fn reconfigure(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
         let Self { step, guide, state, peaks, totals, step_control, baseline, now, control_loop, bodies, .. } = old;
@@ -231,7 +231,7 @@ impl Simulation {
     }
 
     /// Moves the machine to the pose and rates of the reference without motion in between.
-    pub fn place(&mut self, guide: Guide) {
+    pub fn move_to_reference(&mut self, guide: Guide) {
         self.guide = guide;
         let reference = self.guide.at(self.time());
         let (base, velocity) = (self.now.base, self.now.base_velocity);

@@ -58,7 +58,7 @@ impl Simulation {
                     stillbase_mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
                 let moments = &self.link_moments[usize::from(self.loaded)];
                 let pull = stillbase_mechanics::dynamics::inertial_pull(moments, &e, &r.qd, &r.qdd);
-                let torque = arm.motors().torques(&torque);
+                let torque = arm.motors().motor_torques(&torque);
                 expected.torque_sum = expected.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
                 expected.force = expected.force.max(wrench.dynamic.force.norm());
                 expected.moment = expected.moment.max(wrench.total().moment.abs());
@@ -313,7 +313,7 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     let k4 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
     let mut state = StateRates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
     if body.contacts().stick() {
-        state = body.stuck(state, slip);
+        state = body.with_stuck_stopped(state, slip);
     }
     let last = simulation.stage::<N, MOVES>(&ReducedState::of(&state), &aim, slip, stuck_torque);
     let drives = body.arm().drives();

@@ -229,7 +229,7 @@ impl Simulation {
 
     /// Stops stuck contacts exactly, evaluates the slope again, and releases contacts that cannot hold.
     fn hold(&self, reached: &mut StepState, segment: &Segment) {
-        reached.state = self.body().stuck(reached.state, &reached.slip);
+        reached.state = self.body().with_stuck_stopped(reached.state, &reached.slip);
         self.reevaluate(reached, segment);
         self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
     }

@@ -115,7 +115,7 @@ impl Alternative {
             }
             set("time", (SLOW_FACTOR * scenario.task.time).into());
         }
-        if let Ok(task) = scenario.task.with(&change, &scenario.machine) {
+        if let Ok(task) = scenario.task.with_change(&change, &scenario.machine) {
             other.task = task;
         }
         if self == Self::Slowly {

@@ -1,4 +1,5 @@
-//! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another run.
+//! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another
+//! run.
 
 use std::sync::Arc;
 
@@ -28,7 +29,7 @@ pub struct DesignMeasures {
     /// Σ D_k, kg m².
     pub inertia: f64,
     /// Residuals: of (7), largest |g_k|, kg m; and of (8), largest |C_kl|, kg m².
-    pub left: [f64; 2],
+    pub residuals: [f64; 2],
     /// Comparison with the machine of the first run, in the first run's motion; without β if that motion does not
     /// apply.
     pub beside: Option<Measures>,
@@ -40,9 +41,11 @@ pub struct DesignMeasures {
 pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     column("mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
     column("inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
-    column("force_left", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| Some(d.left[0])),
+    column("force_left", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| {
+        Some(d.residuals[0])
+    }),
     column("coupling_left", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
-        Some(d.left[1])
+        Some(d.residuals[1])
     }),
     column("added_mass", "added", "mass less that of the first run's machine", "kg", 3, |d| Some(d.beside?.added_mass)),
     column("added_inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
@@ -90,7 +93,7 @@ impl DesignCandidate {
         let mut design = DesignMeasures {
             mass: self.machine.mass(),
             inertia: inertia.total_momentum(),
-            left: [inertia.force_residual(), inertia.invariance_residual()],
+            residuals: [inertia.force_residual(), inertia.invariance_residual()],
             beside: None,
             apart: None,
         };

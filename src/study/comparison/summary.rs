@@ -122,7 +122,7 @@ impl Summary {
             moment_impulse: totals.moment_impulse,
             base_shift: totals.shift,
             base_tilt: totals.base_angle,
-            miss: verdict.miss,
+            miss: verdict.target_distance,
             peak_torque: peaks.torque.max_abs(),
             energy: totals.energy,
             wheel_rate: scenario.base.wheel.map(|_| totals.wheel_rate),

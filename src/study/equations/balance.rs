@@ -40,7 +40,7 @@ impl BalanceEquations<'_> {
             Condition::Force(k) => first_moment(self.bodies, k),
             Condition::Coupling(k, l) => coupling(self.bodies, k, l),
         };
-        let tolerance = condition.nothing(self.inertia);
+        let tolerance = condition.tolerance(self.inertia);
         Equality { name: symbol(condition), unit: condition.unit(), left, right: Vec::new(), tolerance }
     }
 
@@ -88,7 +88,7 @@ impl BalanceEquations<'_> {
                     ..term
                 })
                 .collect();
-            let tolerance = condition.nothing(self.inertia);
+            let tolerance = condition.tolerance(self.inertia);
             Equality { name: symbol(condition), unit: condition.unit(), left: self.row(&a, row), right, tolerance }
         };
         let mut notes = Vec::new();

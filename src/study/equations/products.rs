@@ -25,7 +25,7 @@ pub(super) fn first_moment(bodies: &Bodies, k: usize) -> Vec<Term> {
 
 fn moments(bodies: &Bodies, k: usize) -> impl Iterator<Item = Product> {
     let of = move |(at, mass): (usize, &BodyMass)| {
-        let product = move |arm: &Arm| product((at, mass), arm.sign * arm.value, arm.sign, &[arm]);
+        let product = move |arm: &Arm| product(at, mass, arm.sign * arm.value, arm.sign, &[arm]);
         mass.arms.iter().filter(|arm| arm.drive == k).map(product).collect::<Vec<_>>()
     };
     bodies.masses.iter().enumerate().flat_map(of)
@@ -50,14 +50,14 @@ fn couplings(bodies: &Bodies, k: usize, l: usize) -> impl Iterator<Item = Produc
         let on = |k: usize| mass.arms.iter().filter(move |arm| arm.drive == k);
         let product = |(a, b): (&Arm, &Arm)| {
             let sign = a.sign * b.sign;
-            product((at, mass), sign * a.value * b.value, sign, &[a, b])
+            product(at, mass, sign * a.value * b.value, sign, &[a, b])
         };
         on(k).flat_map(|a| on(l).map(move |b| (a, b))).map(product).collect::<Vec<_>>()
     };
     bodies.masses.iter().enumerate().flat_map(of)
 }
 
-fn product((at, mass): (usize, &BodyMass), value: f64, sign: f64, arms: &[&Arm]) -> Product {
+fn product(at: usize, mass: &BodyMass, value: f64, sign: f64, arms: &[&Arm]) -> Product {
     let mut lengths: Vec<String> = arms.iter().map(|arm| arm.symbol.clone()).collect();
     // The lengths of links come before the l_c, as in the paper.
     lengths.sort_by_key(|symbol| (arms.iter().any(|arm| arm.is_own && arm.symbol == *symbol), symbol.clone()));

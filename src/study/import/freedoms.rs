@@ -7,7 +7,7 @@ use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::curves::{Curve, Samples};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::posture::Posture;
-use stillbase_planning::reactionless::{BSet, between};
+use stillbase_planning::reactionless::{BSet, describe_interval};
 use stillbase_query::ProgressCallback;
 use stillbase_session::scenario::{Task, TaskKind};
 use stillbase_settings::number::fixed;
@@ -25,10 +25,11 @@ pub(super) fn held_b_motion(
     asked: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
-    (samples, curve): (&Samples, &Curve),
+    samples: &Samples,
+    curve: &Curve,
     goes_on: ProgressCallback<'_>,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
-    let start = |b: f64| space.near(samples.point(0), b);
+    let start = |b: f64| space.pose_at_nearest_b(samples.point(0), b);
     let points: Vec<Vector> = (0..PATH_POINTS).map(|i| curve.at(i as f64 / (PATH_POINTS - 1) as f64).p).collect();
     let (mut tried, range) = match (asked, widest(space, &points)) {
         (Some(b), _) => (vec![b], None),
@@ -49,12 +50,12 @@ pub(super) fn held_b_motion(
                 let why = match range {
                     None => "b is the one asked for".to_owned(),
                     Some([low, high]) if b == tried[0] => {
-                        format!("b is the middle of what reaches all of the path, {} rad", between(low, high))
+                        format!("b is the middle of what reaches all of the path, {} rad", describe_interval(low, high))
                     }
                     Some([low, high]) => format!(
                         "b = {} rad is one at which all of it can be followed, of {} rad that reach it",
                         fixed(b, 4),
-                        between(low, high)
+                        describe_interval(low, high)
                     ),
                 };
                 return (start(b), Ok(vec![MotionCandidate { way: "on-plane", why, task }]));

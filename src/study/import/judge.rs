@@ -153,7 +153,7 @@ impl MotionEvaluator {
     /// Assesses a motion.
     fn account(&self, motion: &Motion, goes_on: ProgressCallback<'_>) -> MotionEffects {
         let limits = DriveLimits::of(&self.machine);
-        let f = Forecast::at_while(motion, (&self.model, &self.around, &limits), self.instants, goes_on);
+        let f = Forecast::at_while(motion, &self.model, &self.around, &limits, self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
         let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
         MotionEffects {
@@ -164,7 +164,7 @@ impl MotionEvaluator {
             rms_base_force: f.force_rms,
             peak_torque: f.torque.to_vec(),
             peak_speed: f.speed.to_vec(),
-            over: f.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            over: f.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             past_limits: self.past_limits(motion),
             b_range: f.b,
             b_mean: f.b_mean,
@@ -233,7 +233,7 @@ impl MotionEvaluator {
             way: candidate.way,
             why: candidate.why.clone(),
             b: account.b_mean,
-            tip_deviation: deviation.as_ref().map_or(0.0, |d| d.tip),
+            tip_deviation: deviation.as_ref().map_or(0.0, |d| d.end_effector),
             joint_deviation: deviation.as_ref().map_or_else(Vec::new, |d| d.joints.to_vec()),
             rms_deviation: deviation.as_ref().map_or(0.0, |d| d.rms),
             account,

@@ -7,7 +7,7 @@ use stillbase_planning::curves::{Curve, Samples};
 use stillbase_planning::following::{Rule, trace};
 use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_planning::posed::poses_of_points;
-use stillbase_planning::reactionless::{BSet, between};
+use stillbase_planning::reactionless::{BSet, describe_interval};
 use stillbase_session::scenario::{Task, TaskKind};
 
 /// Number of points of a path at which the reachable b are computed.
@@ -18,8 +18,10 @@ const PATH_POINTS: usize = 257;
 pub(super) fn held_plane_motion(
     asked: Option<f64>,
     judge: &MotionEvaluator,
-    (space, planes): (&PoseSpace, &Planes),
-    (samples, curve): (&Samples, &Curve),
+    space: &PoseSpace,
+    planes: &Planes,
+    samples: &Samples,
+    curve: &Curve,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let (map, curves) = (planes.map(), std::slice::from_ref(curve));
     let (b, why) = match asked {
@@ -32,11 +34,11 @@ pub(super) fn held_plane_motion(
             let what = if all.is_some() { "all of the path" } else { "its first point" };
             let range = all.or(first).unwrap_or([0.0; 2]);
             let b = 0.5 * (range[0] + range[1]);
-            (b, format!("b is the middle of what reaches {what}, {} rad", between(range[0], range[1])))
+            (b, format!("b is the middle of what reaches {what}, {} rad", describe_interval(range[0], range[1])))
         }
     };
     let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
-    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.shown_b), asked) {
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), asked) {
         (Some((b, shown)), None) => {
             follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
         }

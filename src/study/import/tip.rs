@@ -32,12 +32,12 @@ pub(super) fn of_tip(
     let (start, held) = if reaches_area {
         let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
-            Ok(planes) => plane::held_plane_motion(asked.b, judge, (space, planes), (samples, &curve)),
-            Err(_) => freedoms::held_b_motion(asked.b, judge, space, (samples, &curve), &mut searching),
+            Ok(planes) => plane::held_plane_motion(asked.b, judge, space, planes, samples, &curve),
+            Err(_) => freedoms::held_b_motion(asked.b, judge, space, samples, &curve, &mut searching),
         };
         (start, Some(candidates))
     } else {
-        (space.near(samples.point(0), asked.b.unwrap_or(0.0)), None)
+        (space.pose_at_nearest_b(samples.point(0), asked.b.unwrap_or(0.0)), None)
     };
     let usual = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
     let given = usual.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));

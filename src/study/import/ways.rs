@@ -36,7 +36,7 @@ pub(super) fn unchanged_motion(
         true => Some(samples.path(0.0).ok_or(MotionImportError::TooDense)?),
         false => {
             let curve = samples.curve().ok_or(MotionImportError::TooDense)?;
-            let start = PoseSpace::nominal(&judge.machine)?.near(samples.point(0), 0.0);
+            let start = PoseSpace::nominal(&judge.machine)?.pose_at_nearest_b(samples.point(0), 0.0);
             start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok())
         }
     };

@@ -38,7 +38,8 @@ impl Batch {
         ensemble: &Ensemble,
         sampler: &mut Sampler,
         mode: Mode,
-        (chunk, range): (u64, &Range<u64>),
+        chunk: u64,
+        range: &Range<u64>,
         keep_deviations: bool,
     ) -> Result<Self, Refusal> {
         let first = chunk * CHUNK as u64;

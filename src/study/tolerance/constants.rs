@@ -35,7 +35,7 @@ pub(super) fn coupling(n: usize, k: usize, l: usize) -> usize {
 
 /// Returns the inertia with constant i equal to 1 and all others 0.
 pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
-    let mut unit = Inertia::nothing(n, like.motors, like.end_effector);
+    let mut unit = Inertia::massless(n, like.motors, like.end_effector);
     let one = |imaginary: bool| if imaginary { Vector::new(0.0, 1.0) } else { Vector::new(1.0, 0.0) };
     if i < 2 * n {
         unit.g[i / 2] = one(i % 2 == 1);

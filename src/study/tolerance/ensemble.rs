@@ -97,7 +97,7 @@ impl Ensemble {
         let wrenches = |inertia: &Inertia| references.iter().map(|r| wrench(inertia, r, &around)).collect::<Vec<_>>();
         let nominal = wrenches(&inertia);
         let influence: Vec<_> = (0..count(n)).map(|i| wrenches(&unit(n, i, &inertia))).collect();
-        let table = MotionTable::of((n, parameters.len()), &bodies, &nominal, &influence, &moments.varies);
+        let table = MotionTable::of(n, parameters.len(), &bodies, &nominal, &influence, &moments.varies);
         let machine = machine.clone();
         Ok(Self { machine, parameters, bodies, seed, references, time, nominal, influence, moments, table })
     }
@@ -217,7 +217,8 @@ fn wrench(inertia: &Inertia, r: &Reference, around: &Surroundings) -> (f64, Vect
 
 impl MotionTable {
     fn of(
-        (n, parameters): (usize, usize),
+        n: usize,
+        parameters: usize,
         bodies: &[LinkConstants],
         nominal: &[(f64, Vector)],
         influence: &[Vec<(f64, Vector)>],

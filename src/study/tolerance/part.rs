@@ -101,7 +101,7 @@ impl PartReport {
 }
 
 /// Returns the samples of the i-th of n equal parts of a study, i from 1.
-pub fn shard(samples: u64, (i, n): (u64, u64)) -> Range<u64> {
+pub fn shard(samples: u64, i: u64, n: u64) -> Range<u64> {
     let end = |i: u64| (u128::from(samples) * u128::from(i) / u128::from(n.max(1))) as u64;
     end(i.saturating_sub(1))..end(i)
 }

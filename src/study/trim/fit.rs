@@ -22,10 +22,10 @@ pub struct Fit {
     /// Ratio of the half width of a 95 % interval to the standard deviation.
     pub critical: f64,
     /// Whether each unknown is identifiable from the data.
-    pub told: Vec<bool>,
+    pub identifiable: Vec<bool>,
     /// Groups of unknowns that are only identifiable in combination; a single unknown in a group is not identifiable at
     /// all.
-    pub confused: Vec<Vec<usize>>,
+    pub confounded: Vec<Vec<usize>>,
     /// Standard deviation σ of the residuals of force, N, and of moment, N m.
     pub noise: [f64; 2],
     /// Root mean square of the measured force, N, and moment, N m, without offset and drift.
@@ -111,7 +111,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
         }
     }
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
-    let (confused, told) = solved.confused(p);
+    let (confounded, identifiable) = solved.confounded(p);
     let count = rows.count();
     let least = if rows.made == RegressorSource::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
@@ -158,8 +158,8 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
         nominal,
         covariance,
         critical: t_quantile(lags as f64 / count as f64),
-        told,
-        confused,
+        identifiable,
+        confounded,
         noise: sigma,
         size,
         largest,
@@ -289,7 +289,7 @@ impl Solved {
 
     /// Returns the groups of unknowns that are only identifiable in combination, and whether each unknown is
     /// identifiable.
-    fn confused(&self, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
+    fn confounded(&self, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
         let mut rows: Vec<DVector<f64>> = self.free.column_iter().map(|c| c.clone_owned()).collect();
         let told: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
         // Gauss–Jordan elimination, so that each unobservable direction involves few unknowns.

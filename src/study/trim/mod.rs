@@ -30,37 +30,37 @@
 //! Newey and West (1987) for S; Andrews (1991) for the width of its window; Kiefer and Vogelsang (2005) for critical
 //! values; modulating functions after Shinbrot (1957).
 
+mod adopted_parameters;
+mod adopting_edit;
+mod correction_benefit;
 mod differences;
 mod doubt;
 mod error;
 mod fit;
 mod long_run;
-mod mend;
-mod next;
+mod machine_correction;
+mod next_excitation;
 mod recording;
 mod report;
 mod rows;
-mod taken;
-mod taking;
+mod trim_method;
 mod trimming;
 mod unknowns;
-mod way;
 mod window;
-mod worth;
 
+pub use adopted_parameters::{AdoptedParameters, adopt_parameters};
+pub use adopting_edit::adopting_edit;
+pub use correction_benefit::{CorrectionBenefit, correction_benefit};
 pub use doubt::{Cause, Doubt, MeasuredValue, doubt};
 pub use error::TrimError;
 pub use fit::{Fit, fit};
-pub use mend::{
+pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };
-pub use next::{Excitation, NextMeasurement, next_excitation};
+pub use next_excitation::{Excitation, NextMeasurement, next_excitation};
 pub use recording::{MeasuredMotion, MeasurementSet};
 pub use report::{ExcitationReport, Number, Suggestion, TrimImprovement, TrimReport};
 pub use rows::{Regressor, RegressorSource};
-pub use taken::{AdoptedParameters, adopt_parameters};
-pub use taking::adopting_edit;
+pub use trim_method::{TrimMethod, free_weights};
 pub use trimming::{NoTrim, TrimOutcome, TrimQuery, TrimRequest, TrimResult};
 pub use unknowns::{ComplexPart, Unknown, Unknowns};
-pub use way::{TrimMethod, free_weights};
-pub use worth::{CorrectionBenefit, correction_benefit};

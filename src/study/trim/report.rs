@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
+use super::adopted_parameters::AdoptedParameters;
+use super::correction_benefit::CorrectionBenefit;
 use super::fit::Fit;
-use super::mend::{MachineCorrection, ParameterChange};
-use super::next::{Excitation, NextMeasurement};
+use super::machine_correction::{MachineCorrection, ParameterChange};
+use super::next_excitation::{Excitation, NextMeasurement};
 use super::rows::{Regressor, RegressorSource};
-use super::taken::AdoptedParameters;
-use super::worth::CorrectionBenefit;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{fixed, shown};
@@ -35,7 +35,8 @@ pub struct TrimReport {
     /// Values of every line of (7) and (8), and of the momenta.
     pub numbers: Vec<Number>,
     /// Groups of unknowns that are only identifiable in combination.
-    pub untold: Vec<Vec<String>>,
+    #[serde(rename = "untold")]
+    pub unidentifiable: Vec<Vec<String>>,
     /// Proposed changes.
     pub changes: Vec<ParameterChange>,
     /// Effect of the change over these motions, also if it is not significant and therefore not proposed.
@@ -65,7 +66,8 @@ pub struct Number {
     /// Value in the machine's file.
     pub nominal: f64,
     /// Whether the unknown is identifiable from the data.
-    pub told: bool,
+    #[serde(rename = "told")]
+    pub identifiable: bool,
     /// Measured value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<f64>,
@@ -79,8 +81,8 @@ pub struct Number {
     /// Half width of the 95 % interval of that value; 0 if it is from the file.
     pub taken_half_width: f64,
     /// Residual after the change.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub left: Option<f64>,
+    #[serde(rename = "left", skip_serializing_if = "Option::is_none")]
+    pub residual: Option<f64>,
     /// Whether the unknown belongs to (7) or (8).
     #[serde(skip)]
     pub balance: bool,
@@ -148,7 +150,7 @@ impl TrimReport {
 
     /// Returns a sentence for each group of unknowns that is not identifiable.
     pub fn untold_words(&self) -> impl Iterator<Item = String> {
-        self.untold.iter().map(|group| match group.as_slice() {
+        self.unidentifiable.iter().map(|group| match group.as_slice() {
             [one] => format!("The data say nothing of {one}: it is taken from the machine's file."),
             several => {
                 format!("The data cannot tell {} apart: they are taken from the machine's file.", several.join(", "))
@@ -160,27 +162,29 @@ impl TrimReport {
     pub(super) fn of(
         machine: &Machine,
         rows: &Regressor,
-        (fit, taken): (&Fit, &AdoptedParameters),
-        (mended, worth): (Option<&MachineCorrection>, Option<CorrectionBenefit>),
+        fit: &Fit,
+        taken: &AdoptedParameters,
+        mended: Option<&MachineCorrection>,
+        worth: Option<CorrectionBenefit>,
         next: &NextMeasurement,
     ) -> Self {
         let unknowns = &fit.unknowns;
         let number = |i: usize| {
             let what = unknowns.at(i);
-            let told = fit.told[i];
+            let identifiable = fit.identifiable[i];
             let part = |left: &Vector| if i.is_multiple_of(2) { left.re } else { left.im };
             let balance = i < unknowns.of_balance();
             Number {
                 name: what.name(machine),
                 unit: what.unit(),
                 nominal: fit.nominal[i] + 0.0,
-                told,
-                measured: told.then_some(fit.measured[i] + 0.0),
-                half_width: told.then_some(fit.half_width(i)),
+                identifiable,
+                measured: identifiable.then_some(fit.measured[i] + 0.0),
+                half_width: identifiable.then_some(fit.half_width(i)),
                 off: taken.off[i],
                 taken: taken.values[i] + 0.0,
                 taken_half_width: taken.half_widths[i],
-                left: mended.filter(|_| balance).and_then(|m| m.left.get(i / 2)).map(|left| part(left) + 0.0),
+                residual: mended.filter(|_| balance).and_then(|m| m.residuals.get(i / 2)).map(|left| part(left) + 0.0),
                 balance,
             }
         };
@@ -200,7 +204,7 @@ impl TrimReport {
             noise: fit.noise,
             effective_rows: fit.effective,
             numbers: (0..unknowns.count()).map(number).collect(),
-            untold: fit.confused.iter().map(|group| group.iter().map(name).collect()).collect(),
+            unidentifiable: fit.confounded.iter().map(|group| group.iter().map(name).collect()).collect(),
             changes: mended.map_or_else(Vec::new, |mended| mended.changes.clone()),
             worth: worth.map(|worth| TrimImprovement { worth, helps: worth.helps() }),
             next: Suggestion {

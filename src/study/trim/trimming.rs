@@ -2,17 +2,17 @@
 
 use thiserror::Error;
 
+use super::adopted_parameters::{AdoptedParameters, adopt_parameters};
+use super::correction_benefit::correction_benefit;
 use super::doubt::{Doubt, DoubtSearch};
 use super::error::TrimError;
 use super::fit::{Fit, fit};
-use super::mend::{MachineCorrection, NoCorrection, correct_machine};
-use super::next::{NextMeasurement, next_excitation};
+use super::machine_correction::{MachineCorrection, NoCorrection, correct_machine};
+use super::next_excitation::{NextMeasurement, next_excitation};
 use super::recording::MeasurementSet;
 use super::report::TrimReport;
 use super::rows::{Regressor, RegressorSource};
-use super::taken::{AdoptedParameters, adopt_parameters};
-use super::way::TrimMethod;
-use super::worth::correction_benefit;
+use super::trim_method::TrimMethod;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
 
@@ -177,7 +177,7 @@ impl TrimResult {
         let helps = worth.is_some_and(|worth| worth.helps());
         // A change whose effect is not significant is not proposed.
         let mended = mended.map(|mended| if helps { mended } else { MachineCorrection::not_at_all(machine, &taken) });
-        let report = TrimReport::of(machine, rows, (fit, &taken), (mended.as_ref().ok(), worth), next);
+        let report = TrimReport::of(machine, rows, fit, &taken, mended.as_ref().ok(), worth, next);
         Self { report, taken, mended }
     }
 }

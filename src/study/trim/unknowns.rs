@@ -87,7 +87,8 @@ impl Unknowns {
 
     /// Returns the values of a machine.
     pub fn nominal(&self, inertia: &Inertia) -> Vec<f64> {
-        let parts = self.conditions.iter().map(|condition| condition.left(inertia)).flat_map(|left| [left.re, left.im]);
+        let parts =
+            self.conditions.iter().map(|condition| condition.residual(inertia)).flat_map(|left| [left.re, left.im]);
         parts.chain((0..self.drives).map(|k| inertia.momentum(k))).collect()
     }
 

@@ -16,11 +16,11 @@
 //! | y | p (m − m₀) of a mass, p (m/m₀)(l_c − l₀) of a position: (7) and (8) are linear in them | |
 //! | z | y = y₀ + N z satisfies (7) and (8) for every z; N has orthonormal columns | |
 
-mod asked;
 mod problem;
 mod refusal;
+mod request;
 mod search;
 
-pub use asked::{ListedParameter, ParameterBounds, RebalanceRequest};
 pub use problem::{RebalancedMachine, rebalance, rebalance_with, unreachable_by_changes};
 pub use refusal::{LimitRelaxation, LimitSide, ParameterLimit, RebalanceError};
+pub use request::{ListedParameter, ParameterBounds, RebalanceRequest};

@@ -6,8 +6,8 @@ use super::super::breakdown::Body;
 use super::super::condition::Condition;
 use super::super::parameter::{BodyQuantity, Parameter};
 use super::super::plane::{LinearEquation, SolutionSpace};
-use super::asked::{ListedParameter, MIN_MASS, ParameterBounds, RebalanceRequest};
 use super::refusal::{LimitRelaxation, LimitSide, ParameterLimit, RebalanceError};
+use super::request::{ListedParameter, MIN_MASS, ParameterBounds, RebalanceRequest};
 use super::search::{MassVariable, RebalanceSearch};
 use crate::machine::{BALANCE_TOLERANCE, Inertia, Machine, MachineError, MachineSpec};
 use crate::planar::Vector;
@@ -50,8 +50,8 @@ pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<Rebalanc
     rebalance_with(machine, asked, &[])
 }
 
-/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums of
-/// computed and additional residuals are to vanish.
+/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums
+/// of computed and additional residuals are to vanish.
 ///
 /// # Errors
 /// As [`rebalance`].
@@ -94,7 +94,7 @@ pub fn unreachable_by_changes(
     let n = asked.parameters.len();
     let fixed = (0..n).filter_map(|i| problem.fixed(i));
     let equations: Vec<LinearEquation> = problem.balance.iter().cloned().chain(fixed).collect();
-    let missed = SolutionSpace::of(&equations, n).missed;
+    let missed = SolutionSpace::of(&equations, n).residuals;
     let count = problem.conditions.len();
     Ok((0..count).map(|i| Vector::new(missed[i], missed[count + i])).collect())
 }
@@ -126,9 +126,9 @@ impl<'a> Problem<'a> {
         for across in [false, true] {
             for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
                 let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
-                let residual = condition.left(&start) + beyond;
+                let residual = condition.residual(&start) + beyond;
                 // A tenth of the tolerance of the finished machine.
-                let tolerance = 0.1 * condition.nothing(&scale).max(condition.nothing(&start));
+                let tolerance = 0.1 * condition.tolerance(&scale).max(condition.tolerance(&start));
                 let equation = LinearEquation {
                     a: a.collect(),
                     right: if across { -residual.im } else { -residual.re },
@@ -298,9 +298,9 @@ impl<'a> Problem<'a> {
         let machine = Machine::new(spec).map_err(of_machine)?;
         let inertia = Inertia::of(&machine);
         let conditions = self.conditions.iter().zip(&self.beyond);
-        let tolerance = |condition: &Condition| condition.nothing(&inertia);
+        let tolerance = |condition: &Condition| condition.tolerance(&inertia);
         let balanced = |(condition, beyond): (&Condition, &Vector)| {
-            (condition.left(&inertia) + beyond).norm() <= tolerance(condition)
+            (condition.residual(&inertia) + beyond).norm() <= tolerance(condition)
         };
         match conditions.into_iter().all(balanced) {
             true => Ok(RebalancedMachine { machine, values, cost, certified: self.is_convex() }),
@@ -329,14 +329,14 @@ impl<'a> Problem<'a> {
 
     fn inconsistent(&self, plane: &SolutionSpace) -> RebalanceError {
         let n = self.conditions.len();
-        let residual = |i: usize| plane.missed[i].hypot(plane.missed[n + i]);
+        let residual = |i: usize| plane.residuals[i].hypot(plane.residuals[n + i]);
         let off: Vec<usize> = (0..n).filter(|i| residual(*i) > self.balance[*i].tolerance).collect();
         let force = off.iter().any(|i| matches!(self.conditions[*i], Condition::Force(_)));
         let of_kind = off.iter().copied().filter(|i| matches!(self.conditions[*i], Condition::Force(_)) == force);
         let worst = of_kind.max_by(|a, b| residual(*a).total_cmp(&residual(*b))).unwrap_or_default();
         let condition = self.conditions[worst];
         let left = format!("{:.3e} {}", residual(worst), condition.unit());
-        RebalanceError::Inconsistent { condition: condition.name(self.machine), left }
+        RebalanceError::Inconsistent { condition: condition.name(self.machine), residual: left }
     }
 
     /// Returns the relaxed limits with the least Σ p |change| with which there is a solution: within the default
@@ -357,7 +357,7 @@ impl<'a> Problem<'a> {
                 [LimitSide::Least, LimitSide::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
             ends.map(move |(side, value)| self.limit(i, side, value))
         });
-        let (m, c) = plane.cut(&widest.chain(self.bounds(limits)).collect::<Vec<_>>());
+        let (m, c) = plane.reduced_bounds(&widest.chain(self.bounds(limits)).collect::<Vec<_>>());
         let (k, floors, scale) = (m.ncols(), c.len() - limits.len(), c.amax().max(f64::MIN_POSITIVE));
         let mut program = Program::over(k);
         program.linear.resize(k + limits.len(), 1.0);
@@ -374,7 +374,7 @@ impl<'a> Problem<'a> {
         }
         let Ok(least) = program.solve() else { return Vec::new() };
         let z = DVector::from_fn(k, |j, _| least.x[j] * scale);
-        let y = &plane.start + &plane.free * &z;
+        let y = &plane.particular + &plane.null_space * &z;
         // Rounded outwards to few digits, and to fewer if the rounded limits are infeasible.
         let mut reliefs = [1e-4, 1e-3, 1e-2].into_iter().map(|step| self.relieved(limits, &y, step, scale));
         reliefs.find(|relief| plane.nearest(&self.bounds(&self.relaxed(limits, relief))).is_ok()).unwrap_or_default()

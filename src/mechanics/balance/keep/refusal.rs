@@ -105,13 +105,13 @@ pub enum RebalanceError {
     Twice(String),
     /// No values of the listed parameters balance the machine.
     #[error(
-        "nothing that may change balances this machine: {left} remain at best in {condition}; want more parameters free"
+        "nothing that may change balances this machine: {residual} remain at best in {condition}; want more parameters free"
     )]
     Inconsistent {
         /// The condition with the largest residual.
         condition: String,
         /// Its residual, with unit.
-        left: String,
+        residual: String,
     },
     /// Balance would need a mass of zero or less.
     #[error("only a mass of nothing or less would balance this machine: want more parameters free")]

@@ -128,24 +128,24 @@ impl RebalanceSearch<'_> {
             mass.places.iter().for_each(|i| h[(*i, *i)] /= ratio * ratio);
             from[mass.at] = mass.penalty * mass.from * (ratio - 1.0);
         }
-        let (m, c) = plane.cut(self.bounds);
-        let reduced = plane.free.tr_mul(&(&h * &plane.free));
-        let slope = plane.free.tr_mul(&(&h * (&plane.start - from)));
-        let z = step(&DVector::zeros(plane.free.ncols()), &slope, reduced, (&m, &c))?;
-        Some(&plane.start + &plane.free * z)
+        let (m, c) = plane.reduced_bounds(self.bounds);
+        let reduced = plane.null_space.tr_mul(&(&h * &plane.null_space));
+        let slope = plane.null_space.tr_mul(&(&h * (&plane.particular - from)));
+        let z = step(&DVector::zeros(plane.null_space.ncols()), &slope, reduced, &m, &c)?;
+        Some(&plane.particular + &plane.null_space * z)
     }
 
     /// Minimises F from a start by Newton's method with a backtracking line search.
     fn descend(&self, plane: &SolutionSpace, start: DVector<f64>) -> DVector<f64> {
-        let (m, c) = plane.cut(self.bounds);
-        let place = |z: &DVector<f64>| &plane.start + &plane.free * z;
-        let mut z = plane.free.tr_mul(&(&start - &plane.start));
+        let (m, c) = plane.reduced_bounds(self.bounds);
+        let place = |z: &DVector<f64>| &plane.particular + &plane.null_space * z;
+        let mut z = plane.null_space.tr_mul(&(&start - &plane.particular));
         for _ in 0..MAX_NEWTON_STEPS {
             let y = place(&z);
             let value = self.value(&y);
-            let slope = plane.free.tr_mul(&self.slope(&y));
+            let slope = plane.null_space.tr_mul(&self.slope(&y));
             let model = |convex: bool| {
-                step(&z, &slope, plane.free.tr_mul(&(self.curvature(&y, convex) * &plane.free)), (&m, &c))
+                step(&z, &slope, plane.null_space.tr_mul(&(self.curvature(&y, convex) * &plane.null_space)), &m, &c)
             };
             let Some(to) = model(false).or_else(|| model(true)) else { break };
             let way = &to - &z;
@@ -218,7 +218,8 @@ fn step(
     z: &DVector<f64>,
     slope: &DVector<f64>,
     curvature: DMatrix<f64>,
-    (m, c): (&DMatrix<f64>, &DVector<f64>),
+    m: &DMatrix<f64>,
+    c: &DVector<f64>,
 ) -> Option<DVector<f64>> {
     let model = Cholesky::new(curvature)?;
     let (centre, l) = (z - model.solve(slope), model.l());

@@ -226,7 +226,7 @@ impl Prism {
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
-        let hot = options.hot == Some(Handle::Plane);
+        let hot = options.highlighted == Some(Handle::Plane);
         let solid = |name: &'static str, mesh, world_from_item, colour, changes| Solid {
             name: name.into(),
             mesh,
@@ -249,7 +249,7 @@ impl Prism {
         self.plane(&mut scene, &palette, frame, plane, hot);
         self.drops(&mut scene, &palette, frame, eye);
         self.course(&mut scene, &palette, b);
-        items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
+        items::draw_pose(&mut scene, &palette, self.pose(frame), options.highlighted == Some(Handle::Target));
         scene
     }
 

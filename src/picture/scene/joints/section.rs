@@ -233,7 +233,7 @@ impl JointSection {
         match pick.handle {
             Handle::Target => {
                 let a = space.clamped(&space.angles(&self.angles(self.under(frame, pointer)?, frame)));
-                let p = space.place(&space.lift(&a, b));
+                let p = space.end_effector(&space.lift(&a, b));
                 Some(DragAction::Target([p.re, p.im]))
             }
             Handle::Plane => {
@@ -255,7 +255,7 @@ impl JointSection {
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
-        let hot = options.hot == Some(Handle::Plane);
+        let hot = options.highlighted == Some(Handle::Plane);
         let part = self.surface(b, frame);
         let mut scene = Scene::new(palette.background, Arc::new(MeshSet { meshes: vec![fan(&part)] }));
         if self.is_flat() {
@@ -279,7 +279,7 @@ impl JointSection {
             scene.labels.push(label);
         }
         self.course(&mut scene, &palette, b);
-        items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
+        items::draw_pose(&mut scene, &palette, self.pose(frame), options.highlighted == Some(Handle::Target));
         scene
     }
 

@@ -63,7 +63,7 @@ impl BaseStage {
 
     /// Returns the name of the constant force on the base.
     pub fn rest(&self, options: &ViewOptions) -> &'static str {
-        match options.push {
+        match options.external_force {
             Some([x, y]) if x.hypot(y) > 0.0 && self.weightless => "the push",
             Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",
             _ => "its weight",
@@ -170,7 +170,7 @@ impl BaseStage {
                 let stem = vec![point(shown.end_effector, z), point(at, z)];
                 scene.lines.push(Polyline::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
-            let hot = options.hot == Some(Handle::Payload);
+            let hot = options.highlighted == Some(Handle::Payload);
             let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
             let disc = Marker::disc("payload", point(at, z), radius, mix(palette.background, palette.ink, 0.55));
             scene.markers.push(disc.edged(palette.ink, if hot { 3.0 } else { 1.6 }));
@@ -186,7 +186,7 @@ impl BaseStage {
                 Anchor::Centre,
             ));
         }
-        let Some([x, y]) = options.push else { return };
+        let Some([x, y]) = options.external_force else { return };
         let force = Vector::new(x, y);
         let size = force.norm();
         if size < 1e-9 {

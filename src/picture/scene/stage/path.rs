@@ -54,8 +54,8 @@ impl PlannedPath {
         let path = Polyline::new("plan/path", self.path.clone(), 1.6, faded(palette.ink, 0.75));
         scene.lines.push(path.dashed(2.0, 4.0).on_top().still());
         for (i, name, at) in &self.waypoints {
-            let hot = options.hot == Some(Handle::Waypoint(*i));
-            let at = match (hot, options.held) {
+            let hot = options.highlighted == Some(Handle::Waypoint(*i));
+            let at = match (hot, options.drag_position) {
                 (true, Some([x, y])) => Vector::new(x, y),
                 _ => *at,
             };

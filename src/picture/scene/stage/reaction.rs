@@ -29,7 +29,7 @@ pub fn draw(
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
     // An invisible arrow or arc is a line without points.
     let mut line = |name: &'static str, own: Handle, strips: Vec<Vec<[f32; 3]>>| {
-        let width = if options.hot == Some(own) { 5.0 } else { 3.0 };
+        let width = if options.highlighted == Some(own) { 5.0 } else { 3.0 };
         let line = Polyline::new(name, Strips::from(strips), width, palette.reaction).on_top();
         scene.lines.push(Polyline { world_from_item: at_b, ..line });
     };

@@ -57,7 +57,7 @@ impl BaseRing {
         let along = |i: usize| point(at + unit(base + swept * i as f64 / n as f64) * self.radius, z);
         let arc = (0..=n).map(along).collect();
         scene.lines.push(Polyline::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
-        let hot = options.hot == Some(Handle::Ring);
+        let hot = options.highlighted == Some(Handle::Ring);
         let disc = Marker::disc("b_ring/knob", point(self.knob(shown), z), if hot { 9.0 } else { 7.0 }, palette.amber);
         scene.markers.push(disc.edged(palette.background, 2.0));
         let beside = point(at + unit(turn) * (self.radius * 1.28), z);

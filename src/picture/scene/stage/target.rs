@@ -22,9 +22,9 @@ fn place(p: Vector) -> String {
 /// Draws the end effector and its target at height `z`, m.
 pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions, z: f64) {
     let frame = shown.frame;
-    let hot = options.hot == Some(Handle::Target);
+    let hot = options.highlighted == Some(Handle::Target);
     let outside = matches!(frame.target.reach, Reach::Outside { .. });
-    let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
+    let held = options.drag_position.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
     let at = held.unwrap_or(shown.target);
     let (ink, dim) = (palette.ink, palette.dim);
     scene.markers.push(Marker::disc("end_effector", point(shown.end_effector, z), 4.0, ink));
@@ -65,8 +65,8 @@ fn miss(frame: &Frame) -> Option<f64> {
 fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
     let mut rows: Vec<(String, bool)> = Vec::new();
     match frame.target.reach {
-        Reach::Outside { nearest, shown_b, other_sheet, .. } => {
-            let would = match shown_b {
+        Reach::Outside { nearest, displayed_b, other_sheet, .. } => {
+            let would = match displayed_b {
                 Some(b) => format!("b = {b} rad would reach it"),
                 None if other_sheet => "drag it round, or change b".into(),
                 None => "no b reaches it".into(),
@@ -89,7 +89,7 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
             }
             match reach {
                 Reach::Carried => rows.push(("turns with its workspace".into(), false)),
-                _ if options.invites => rows.push((INVITATION.into(), false)),
+                _ if options.show_hints => rows.push((INVITATION.into(), false)),
                 _ => {}
             }
         }

@@ -78,7 +78,7 @@ pub fn turned(
     b: f64,
 ) -> Option<[f64; 2]> {
     let at = place(bar, shown, pointer)?;
-    let pose = |angle: f64| map.turned(bar.drive, angle, b, grip.from);
+    let pose = |angle: f64| map.with_drive_at(bar.drive, angle, b, grip.from);
     let stops = |angle: f64| match grip.snaps {
         true => pose((angle / ANGLE_SNAP).round() * ANGLE_SNAP),
         false => pose(angle),

@@ -248,7 +248,7 @@ impl Workspace {
         if let Some(b) = compared.filter(|_| options.compares) {
             self.compared(scene, palette, b, shown.base, floor - 2.0 * FILL_DEPTH * linkage.reach());
         }
-        self.fill_own(scene, (linkage, fill), palette, shown, options);
+        self.fill_own(scene, linkage, fill, palette, shown, options);
         self.own(scene, palette, shown, options, floor);
         if let (Some(b), Some(_)) = (options.preview_b, self.sheets()) {
             let pose = posed(Vector::default(), unit(self.space.turn(b)), floor);
@@ -261,7 +261,7 @@ impl Workspace {
         let turn = self.turn(b, base);
         if let Some(sheets) = self.sheets() {
             let colour = faded(palette.dim, 0.08);
-            scene.areas.push(area(sheets.planes.map(), (turn, base.at), "workspace/compared", z, colour));
+            scene.areas.push(area(sheets.planes.map(), turn, base.at, "workspace/compared", z, colour));
         }
         let name = "workspace/compared/boundary";
         let edge = Polyline::new(name, self.boundary.clone(), 1.2, faded(palette.dim, 0.55)).dashed(5.0, 4.0);
@@ -277,7 +277,8 @@ impl Workspace {
     fn fill_own(
         &self,
         scene: &mut Scene,
-        (linkage, fill): (&LinkageModel, Option<usize>),
+        linkage: &LinkageModel,
+        fill: Option<usize>,
         palette: &Palette,
         shown: &DrawnFrame<'_>,
         options: &ViewOptions,
@@ -296,7 +297,7 @@ impl Workspace {
             return;
         };
         let mut area =
-            area(sheets.planes.map(), (turn, shown.base.at), "workspace", z, faded(palette.amber, FILL_OPACITY));
+            area(sheets.planes.map(), turn, shown.base.at, "workspace", z, faded(palette.amber, FILL_OPACITY));
         if let Some((measure, [low, high])) = options.dexterity.and_then(|m| Some((m, self.shaded(m)?))) {
             // Colour scale from the minimum to the maximum of the measure.
             let [least, most] = dexterity::colours(palette);
@@ -315,7 +316,7 @@ impl Workspace {
                 scene.lines.push(Polyline { dash, ..Polyline::new(name, strips.clone(), width, colour).moving(pose) });
             }
         };
-        let width = if options.hot == Some(Handle::Boundary) { 3.0 } else { 1.8 };
+        let width = if options.highlighted == Some(Handle::Boundary) { 3.0 } else { 1.8 };
         line("workspace/boundary", &self.boundary, width, palette.amber, None);
         let there = |p: Vector| point(base.at + p * turn, z);
         if let Some(sheets) = self.sheets() {
@@ -354,7 +355,7 @@ fn flat(points: &[Vector]) -> Vec<[f32; 3]> {
 }
 
 /// Returns the workspace of a map, rotated by `turn`, rad, shifted to `at`, m, at height `z`, m.
-fn area(map: &PlaneMap, (turn, at): (f64, Vector), name: impl Into<Name>, z: f64, colour: Rgba) -> Area {
+fn area(map: &PlaneMap, turn: f64, at: Vector, name: impl Into<Name>, z: f64, colour: Rgba) -> Area {
     let limits = map.limits();
     Area {
         name: name.into(),

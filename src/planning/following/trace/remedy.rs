@@ -21,7 +21,7 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
         stop,
         leaves_workspace: map.poses(beyond, b).is_empty(),
         nearest_b,
-        shown_b: shown_b.flatten(),
+        displayed_b: shown_b.flatten(),
         some_b_reaches_all: !common.is_empty(),
         longest: longest(map, curves, b, rule).map(|[from, to]| match from < s && s < to {
             // The curve touches a boundary between stations, which the coarse walk missed.
@@ -39,7 +39,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     const TRIES: usize = 24;
     let can = |b: f64| is_feasible(map, curves, b, rule);
     let mut tries: Vec<f64> = Vec::new();
-    for [low, high] in common.near(b).intervals {
+    for [low, high] in common.shifted_near(b).intervals {
         // Slightly inside the interval, where rounding does not matter.
         let inset = (1e-7_f64).min(0.25 * (high - low));
         let (low, high) = (low + inset, high - inset);
@@ -62,7 +62,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     let start = curves.first().map(|curve| curve.at(0.0).p)?;
     let follows =
         |b: f64| starting_poses(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
-    let mut further = [good, first, common.inwards(first, 0.5)].into_iter().chain(tries[found..].iter().copied());
+    let mut further = [good, first, common.moved_inside(first, 0.5)].into_iter().chain(tries[found..].iter().copied());
     let mut inner = further.find(|b| follows(*b))?;
     if inner != good {
         for _ in 0..10 {

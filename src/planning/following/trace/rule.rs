@@ -50,7 +50,7 @@ pub struct Blocked {
     pub nearest_b: Option<f64>,
     /// `nearest_b` as it is shown: rounded so that the curve can still be followed.
     #[serde(skip)]
-    pub shown_b: Option<Decimal>,
+    pub displayed_b: Option<Decimal>,
     /// Whether one b reaches every point of the curve, even if the curve cannot be followed at it.
     #[serde(skip)]
     pub some_b_reaches_all: bool,
@@ -88,7 +88,7 @@ impl Serialize for SheetEnd {
 impl Blocked {
     fn in_words(&self) -> String {
         let where_to = if self.leaves_workspace { ", the boundary of the reactionless workspace" } else { "" };
-        let remedy = match (self.shown_b, self.some_b_reaches_all) {
+        let remedy = match (self.displayed_b, self.some_b_reaches_all) {
             (Some(b), _) => format!("b = {b} rad would do"),
             (None, false) => "no b reaches all of it".into(),
             (None, true) => "some b reaches every point of it, but with no b can it be followed".into(),

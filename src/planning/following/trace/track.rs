@@ -56,7 +56,7 @@ impl PlaneTrack<'_> {
             match found.filter(near) {
                 Some(x) => {
                     let there = self.jet(x, next);
-                    self.keeps_limits((s, here), (next, there))?;
+                    self.keeps_limits(s, here, next, there)?;
                     (a, s, here) = (x, next, there);
                     step *= 2.0;
                 }
@@ -108,7 +108,7 @@ impl PlaneTrack<'_> {
             while let Some(&next) = ahead.last() {
                 let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
                 let there = self.jet(self.advance(here.a, s, next)?, next);
-                let error = self.quintic_error((s, here), (next, there));
+                let error = self.quintic_error(s, here, next, there);
                 if error < MAX_QUINTIC_ERROR_RAD
                     || (next - s < MIN_INTERVAL * run && error < MAX_QUINTIC_ERROR_NEAR_FOLD_RAD)
                 {
@@ -130,7 +130,7 @@ impl PlaneTrack<'_> {
     }
 
     /// Returns the error of the quintic halfway between two nodes, rad.
-    fn quintic_error(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> f64 {
+    fn quintic_error(&self, s: f64, x: Jet, t: f64, y: Jet) -> f64 {
         let middle =
             [0, 1].map(|i| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, 0.5));
         match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
@@ -140,7 +140,7 @@ impl PlaneTrack<'_> {
     }
 
     /// Checks that no angle exceeds its limit between two nodes, where it may have an extremum.
-    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), TraceEnd> {
+    fn keeps_limits(&self, s: f64, x: Jet, t: f64, y: Jet) -> Result<(), TraceEnd> {
         const PROBES: i32 = 16;
         let limits = self.map.limits();
         for (i, limit) in limits.iter().enumerate() {

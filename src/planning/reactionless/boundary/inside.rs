@@ -24,7 +24,7 @@ impl Boundary {
     }
 
     /// Returns the largest number of poses of any point, except on the curves themselves.
-    pub fn sheets(&self) -> usize {
+    pub fn max_pose_count(&self) -> usize {
         let most = self.strands.iter().map(|s| s.left.max(s.right)).max();
         most.unwrap_or(1).max(1) as usize
     }
@@ -36,7 +36,7 @@ impl Boundary {
         let arrangement = Arrangement::of(&self.on, &self.cycle);
         let swept = |p: &SpanPart| self.on.swept(&self.cycle.spans[p.span], p.from, p.to);
         let area = |n: i32| arrangement.level(&self.strands, n).iter().map(swept).sum();
-        (1..=self.sheets() as i32).map(area).collect()
+        (1..=self.max_pose_count() as i32).map(area).collect()
     }
 
     /// Returns the folds: the complete images of det ∂(x, y)/∂(a_1, a_2) = 0 within the limits, on the boundary or

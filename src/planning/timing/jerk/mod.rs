@@ -20,8 +20,8 @@
 
 mod band;
 mod easing;
+mod interior_point;
 mod program;
-mod room;
 mod solution;
 mod spline;
 mod start;

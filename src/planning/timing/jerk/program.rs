@@ -105,7 +105,7 @@ impl JerkProgram {
                 sides.extend(rows.iter().map(|row| side(sum(0.0, row.a / 3.0, row.c), row.g)));
                 sides.push(side(y.map(|y| y / cap.powf(1.5)), 0.0));
                 let motors = constraints.motors();
-                let [first, second, third] = [&point.first, &point.second, &third].map(|x| motors.turns(x));
+                let [first, second, third] = [&point.first, &point.second, &third].map(|x| motors.to_motors(x));
                 sides.extend(jerked.iter().map(|k| {
                     let per = 1.0 / limits.jerk[*k];
                     let (a, b, c) = (per * first[*k], per * second[*k], per * third[*k]);

@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::odds::{FitTrial, likelihood_ratio, shares, try_fit};
 use super::possible::impossible_numbers;
-use super::said::{Cause, Doubt, MeasuredValue};
+use super::rejection::{Cause, Doubt, MeasuredValue};
 use super::tolerances::{Tolerances, known_numbers};
 use crate::trim::error::TrimError;
 use crate::trim::recording::{MeasuredMotion, MeasurementSet};
@@ -176,7 +176,7 @@ fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Op
         let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
-    let candidates = (0..fit.unknowns.count()).filter(|i| fit.told[*i] && known[*i]);
+    let candidates = (0..fit.unknowns.count()).filter(|i| fit.identifiable[*i] && known[*i]);
     // Values as in the file are no evidence.
     let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW);
     candidates.max_by(|a, b| off(a).total_cmp(&off(b)))

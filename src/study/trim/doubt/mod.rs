@@ -31,9 +31,9 @@ mod doubting;
 mod fault;
 mod odds;
 mod possible;
-mod said;
+mod rejection;
 mod tolerances;
 
 pub(super) use doubting::DoubtSearch;
 pub use doubting::doubt;
-pub use said::{Cause, Doubt, MeasuredValue};
+pub use rejection::{Cause, Doubt, MeasuredValue};

@@ -32,7 +32,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let unknowns = &fit.unknowns;
     let from = unknowns.of_balance();
     let rotors = |k: usize| inertia.rotors[..n].iter().map(|rotor| rotor.inertia * rotor.rates[k]).sum::<f64>();
-    let drives: Vec<usize> = (0..n).filter(|k| fit.told[from + k]).collect();
+    let drives: Vec<usize> = (0..n).filter(|k| fit.identifiable[from + k]).collect();
     let size = |k: usize| (inertia.momentum(k) - rotors(k)).abs().max(1e-9 * inertia.diagonal(k)).sqrt();
     let whole = |of: &[usize]| {
         let used = |condition: &Condition| match condition {
@@ -40,7 +40,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             Condition::Coupling(k, l) => of.contains(k) && of.contains(l),
         };
         let conditions = unknowns.conditions().iter().enumerate();
-        conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.told[2 * i] && fit.told[2 * i + 1])
+        conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.identifiable[2 * i] && fit.identifiable[2 * i + 1])
     };
     // Each drive alone, then all drives with all moments, if these are identifiable.
     let alone = drives.iter().map(|k| (vec![*k], false));

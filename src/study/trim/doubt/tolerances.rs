@@ -84,7 +84,7 @@ impl Tolerances {
     pub fn of(machine: &Machine) -> Self {
         let (n, inertia) = (machine.drives(), Inertia::of(machine));
         let unknowns = Unknowns::of(n);
-        let empty = || Inertia::nothing(n, *machine.motors(), *machine.end_effector());
+        let empty = || Inertia::massless(n, *machine.motors(), *machine.end_effector());
         let body = |mass: f64, own: f64, drive: usize, chain: &[Vector; _]| {
             let mut one = empty();
             one.add(mass, own, drive, chain);

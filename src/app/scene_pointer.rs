@@ -50,7 +50,7 @@ impl<'a> ScenePointer<'a> {
         Self { ui, response, spot, session, shown, views, view, catches_arm, pushes }
     }
 
-    /// Handles grabbing, dragging, release, handle_clicks, and the key that removes a point.
+    /// Handles grabbing, dragging, release, clicks, and the key that removes a point.
     pub fn points(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         self.update_hot(view_state);
         self.grab(view_state, commands);
@@ -76,7 +76,7 @@ impl<'a> ScenePointer<'a> {
             false => self.arm(pos).or_else(|| self.views.pick(self.view, self.shown, &pointer)),
         };
         // Targets cannot be dragged while the run waits, in any view.
-        pick.filter(|pick| pick.handle != Handle::Target || self.session.follows_hands())
+        pick.filter(|pick| pick.handle != Handle::Target || self.session.can_be_dragged())
     }
 
     /// Stores the object under the pointer.
@@ -91,7 +91,7 @@ impl<'a> ScenePointer<'a> {
                 arm.or_else(|| self.views.under(self.view, self.shown, &self.spot.pointer(pos)))
             }
         };
-        view_state.pointed.hot = self.response.hover_pos().and_then(seen);
+        view_state.pointed.object = self.response.hover_pos().and_then(seen);
     }
 
     /// Grabs the object that was under the pointer at the press of the button: it may have moved since.
@@ -109,9 +109,9 @@ impl<'a> ScenePointer<'a> {
             let origin = origin();
             view_state.gesture = DragGesture {
                 grabbed: view_state.gesture.pressed.or_else(|| origin.and_then(|pos| self.under(pos))),
-                fine: [origin.unwrap_or_default().to_vec2(), Vec2::ZERO],
+                last_pointer: origin.unwrap_or_default().to_vec2(),
                 force: self.session.scenario().plant.force,
-                undone_to: self.session.undo_count(),
+                undo_entries: self.session.undo_count(),
                 ..DragGesture::default()
             };
         }
@@ -125,7 +125,7 @@ impl<'a> ScenePointer<'a> {
         let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
         let aim = if snaps { aim.snapped() } else { aim };
         if let DragAction::Target(at) | DragAction::Waypoint(_, at) = aim {
-            view_state.gesture.held = Some(at);
+            view_state.gesture.position = Some(at);
         }
         edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
     }
@@ -141,12 +141,12 @@ impl<'a> ScenePointer<'a> {
         let moved =
             response.drag_delta() != Vec2::ZERO || (view_state.gesture.dragged && response.drag_stopped()) || lasts;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            let [last, behind] = &mut view_state.gesture.fine;
+            let DragGesture { last_pointer, pointer_offset, .. } = &mut view_state.gesture;
             if self.ui.input(|i| i.modifiers.shift) {
-                *behind += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last);
+                *pointer_offset += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last_pointer);
             }
-            *last = pos.to_vec2();
-            let at = pos - *behind;
+            *last_pointer = pos.to_vec2();
+            let at = pos - *pointer_offset;
             commands.extend(self.drag_command(pick, at, view_state));
             if pushes && !self.session.is_playing() {
                 commands.push(SessionCommand::TogglePlay.into());
@@ -154,29 +154,29 @@ impl<'a> ScenePointer<'a> {
         }
         let gives_up = self.ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || gives_up {
-            let DragGesture { dragged, undone_to, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
+            let DragGesture { dragged, undo_entries, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
             if pushes && dragged {
                 // Back to the force that acted before the push.
                 commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
             }
             commands.push(SessionCommand::EndGesture.into());
             if gives_up && dragged {
-                commands.push(SessionCommand::TakeBack(undone_to).into());
+                commands.push(SessionCommand::TakeBack(undo_entries).into());
             }
         }
     }
 
     /// Sets the cursor by what can be dragged.
     fn set_cursor(&self, view_state: &ViewState) {
-        let Some(hot) = view_state.pointed.hot else { return };
-        let turns = self.session.follows_hands()
+        let Some(hot) = view_state.pointed.object else { return };
+        let turns = self.session.can_be_dragged()
             && self.session.run().pose_space().is_ok_and(|map| map.leaves_freedoms() || map.planes().is_ok());
         let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
         self.ui.ctx().set_cursor_icon(cursor(hot, false));
     }
 
-    /// Handles handle_clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them. A
-    /// double click beside all handles adds a point to the path.
+    /// Handles clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them.
+    /// A double click beside all handles adds a point to the path.
     fn handle_clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let pos = self.response.interact_pointer_pos();
@@ -186,10 +186,10 @@ impl<'a> ScenePointer<'a> {
         {
             commands.extend([edit, Command::Session(SessionCommand::EndGesture)]);
         }
-        if clicked && let Some(thing) = view_state.pointed.hot.filter(|thing| place::is_in_panel(*thing)) {
+        if clicked && let Some(thing) = view_state.pointed.object.filter(|thing| place::is_in_panel(*thing)) {
             commands.push(ViewChange::Reveal(thing).into());
         }
-        let beside = !view_state.pointed.hot.is_some_and(Handle::can_be_dragged);
+        let beside = !view_state.pointed.object.is_some_and(Handle::can_be_dragged);
         let twice = self.response.double_clicked_by(PointerButton::Primary) && beside && self.view.shows_machine();
         let height = self.views.stage().handle_height();
         if let Some(pos) = pos.filter(|_| twice)
@@ -208,14 +208,14 @@ impl<'a> ScenePointer<'a> {
         let typing = self.ui.ctx().egui_wants_keyboard_input();
         let key = |i: &egui::InputState| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace);
         let out = !typing && self.ui.input(key);
-        if let (Some(Handle::Waypoint(i)), None, true) = (view_state.pointed.hot, view_state.gesture.grabbed, out)
+        if let (Some(Handle::Waypoint(i)), None, true) = (view_state.pointed.object, view_state.gesture.grabbed, out)
             && let Some(change) = self.session.scenario().task.removing(i)
         {
             commands.extend([
                 Command::Session(SessionCommand::Edit(Edit::of("task", change))),
                 Command::Session(SessionCommand::EndGesture),
             ]);
-            view_state.pointed.hot = None;
+            view_state.pointed.object = None;
         }
     }
 }

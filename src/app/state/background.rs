@@ -47,7 +47,7 @@ impl AppState {
             self.queries().give_up::<OutlineQuery>();
             return false;
         };
-        if self.queries().ask_beside::<OutlineQuery>(&Shared(space)).known().is_none() {
+        if self.queries().ask_in_background::<OutlineQuery>(&Shared(space)).known().is_none() {
             return false;
         }
         self.refresh_views();
@@ -55,10 +55,10 @@ impl AppState {
     }
 
     /// Runs ahead to the end of the planned motion in the background, to find how far the base will move.
-    pub(super) fn foresee(&mut self) {
+    pub(super) fn run_ahead(&mut self) {
         let run = self.session.run();
-        if run.scenario().base.moves() && !self.session.is_led() && run.planned_steps() <= MAX_STEPS_AHEAD {
-            let _ = self.queries().ask_beside::<RunAhead>(&ByIdentity(Arc::new(run.clone())));
+        if run.scenario().base.moves() && !self.session.is_dragged() && run.planned_steps() <= MAX_STEPS_AHEAD {
+            let _ = self.queries().ask_in_background::<RunAhead>(&ByIdentity(Arc::new(run.clone())));
         } else {
             self.queries().forget::<RunAhead>();
         }
@@ -69,7 +69,7 @@ impl AppState {
         if self.view_state.below != Some(BottomPanel::Tolerances) {
             self.queries().forget::<StudyQuery>();
         } else if self.view_state.gesture.grabbed.is_none() {
-            let _ = self.queries().ask_beside::<StudyQuery>(&StudiedRun(Arc::new(self.session.run().clone())));
+            let _ = self.queries().ask_in_background::<StudyQuery>(&StudiedRun(Arc::new(self.session.run().clone())));
         }
     }
 
@@ -91,7 +91,7 @@ impl AppState {
         if self.view_state.below != Some(BottomPanel::Runs) {
             self.comparison = None;
             self.queries().forget::<AlternativeRuns>();
-            self.background.stop(Activity::Kept);
+            self.background.stop(Activity::ExtraRun);
             return;
         }
         let scenario = self.session.scenario();
@@ -105,7 +105,7 @@ impl AppState {
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
         let wanted = stale || self.queries().progress::<AlternativeRuns>().is_some();
         if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
-            let _ = self.queries().ask_beside::<AlternativeRuns>(&self.session.run().shared_scenario());
+            let _ = self.queries().ask_in_background::<AlternativeRuns>(&self.session.run().shared_scenario());
         }
     }
 
@@ -151,7 +151,7 @@ impl AppState {
     /// Runs a scenario in the background and adds it to the table of runs; `news` is the message on success.
     pub(super) fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
         let work = move |ticket: &Ticket| ComparedRun::of_while(scenario, &mut |done| ticket.goes_on(done));
-        self.background.run(Activity::Kept, work, move |app_state, run| {
+        self.background.run(Activity::ExtraRun, work, move |app_state, run| {
             let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
             let said = match (run, &mut app_state.comparison) {
                 (Ok(run), Some(comparison)) => {
@@ -160,7 +160,7 @@ impl AppState {
                 }
                 (run, _) => run.map(|_| None),
             };
-            app_state.tell(said);
+            app_state.show_outcome(said);
         });
         self.collect();
     }

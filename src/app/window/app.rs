@@ -116,7 +116,7 @@ impl App {
         };
         self.app_state.pass(wall);
         if let Clock::Wall(_) = self.clock {
-            self.app_state.took(now.elapsed().as_secs_f64());
+            self.app_state.record_cost(now.elapsed().as_secs_f64());
         }
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         if let Some(path) = dropped {

@@ -42,19 +42,19 @@ const KKT: usize = 2 * MAX_DRIVES;
 impl PoseSpace {
     /// Returns relative angles at b with the end effector on p, m, or as near as possible, starting from others; and
     /// its distance from p, m.
-    pub fn toward(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
+    pub fn drag_to(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let gone = self.approach(p, b, from, None);
         if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }
     }
 
-    /// Does the same for a space [led](Self::led) to [keep](GuidanceMode::Keep) the angle of a drive, or to approach the
-    /// [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
-    pub fn toward_led(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
+    /// Does the same for a space [guided](Self::with_guidance) to [keep](GuidanceMode::Keep) the angle of a drive, or
+    /// to approach the [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
+    pub fn drag_to_guided(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
             GuidanceMode::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
             GuidanceMode::Middle => {
                 let (a, off) = self.approach(p, b, from, None);
-                Some((self.centred(p, b, &a), off))
+                Some((self.midrange_pose(p, b, &a), off))
             }
             GuidanceMode::LeastEnergy | GuidanceMode::Weighed(_) => None,
         }
@@ -64,7 +64,7 @@ impl PoseSpace {
         let reach = self.farthest();
         let mut a = self.clamped(from);
         let mut q = self.lift(&a, b);
-        let mut distance = (self.place(&q) - p).norm();
+        let mut distance = (self.end_effector(&q) - p).norm();
         let mut mu = INITIAL_DAMPING;
         let mut locked = [false; MAX_DRIVES];
         for _ in 0..MAX_STEPS {
@@ -80,7 +80,7 @@ impl PoseSpace {
             }
             let next = self.clamped(&next);
             let there = self.lift(&next, b);
-            let next_distance = (self.place(&there) - p).norm();
+            let next_distance = (self.end_effector(&there) - p).norm();
             if next_distance < distance {
                 let gain = distance - next_distance;
                 (a, q, distance) = (next, there, next_distance);
@@ -99,14 +99,14 @@ impl PoseSpace {
     }
 
     /// Does the same for a point that was out of reach at a nearby b, starting from the pose there.
-    pub fn toward_beside(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
+    pub fn drag_to_from_nearby(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let a = self.clamped(from);
-        let distance = (self.place(&self.lift(&a, b)) - p).norm();
+        let distance = (self.end_effector(&self.lift(&a, b)) - p).norm();
         let settled = self.minimise_distance(p, b, (a, distance));
         if settled.1 > RETRY_BELOW * self.farthest() {
             return settled;
         }
-        let gone = self.toward(p, b, from);
+        let gone = self.drag_to(p, b, from);
         if gone.1 < settled.1 { gone } else { settled }
     }
 
@@ -126,7 +126,7 @@ impl PoseSpace {
                 }
                 let next = self.clamped(&next);
                 let there = self.lift(&next, b);
-                let next_distance = (self.place(&there) - p).norm();
+                let next_distance = (self.end_effector(&there) - p).norm();
                 if next_distance < distance {
                     (a, q, distance) = (next, there, next_distance);
                     (mu, locked) = (0.1 * mu, [false; MAX_DRIVES]);
@@ -156,8 +156,8 @@ impl PoseSpace {
     /// Returns the Newton step Δq, limited in length; `None` if the system is singular.
     fn curved_step(&self, p: Vector, q: &DriveAngles, locked: &[bool; MAX_DRIVES], mu: f64) -> Option<PerDrive> {
         let (n, reach) = (self.drives(), self.farthest());
-        let arm = |k: usize| unit(q[k]) * (self.tip[k] / reach);
-        let gap = (p - self.place(q)) / reach;
+        let arm = |k: usize| unit(q[k]) * (self.arms[k] / reach);
+        let gap = (p - self.end_effector(q)) / reach;
         let mut square = SMatrix::<f64, KKT, KKT>::zeros();
         let mut r = SVector::<f64, KKT>::zeros();
         for k in 0..n {
@@ -195,10 +195,10 @@ impl PoseSpace {
         let (n, reach) = (self.drives(), self.farthest());
         let mut c = Rows::zeros();
         let mut r = SVector::<f64, ROWS>::zeros();
-        let gap = (p - self.place(q)) / reach;
+        let gap = (p - self.end_effector(q)) / reach;
         (r[0], r[1]) = (gap.re, gap.im);
         for k in 0..n {
-            let column = Vector::new(0.0, 1.0) * unit(q[k]) * (self.tip[k] / reach);
+            let column = Vector::new(0.0, 1.0) * unit(q[k]) * (self.arms[k] / reach);
             (c[(0, k)], c[(1, k)], c[(2, k)]) = (column.re, column.im, self.lambda[k]);
         }
         for (i, joint) in self.joints.iter().enumerate().filter(|(i, _)| locked[*i]) {

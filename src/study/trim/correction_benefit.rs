@@ -15,10 +15,10 @@
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
+use super::adopted_parameters::AdoptedParameters;
 use super::fit::Fit;
-use super::mend::MachineCorrection;
+use super::machine_correction::MachineCorrection;
 use super::rows::Regressor;
-use super::taken::AdoptedParameters;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_settings::number::shown;
 

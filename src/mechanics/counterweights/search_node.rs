@@ -1,9 +1,9 @@
 //! [`SearchNode`]: one subproblem of the search for counterweights.
 
-use super::asked::CounterweightSpec;
 use super::cell::SearchCell;
+use super::free_span::FreeSpan;
 use super::refusal::BoundKind;
-use super::room::FreeSpan;
+use super::spec::CounterweightSpec;
 
 /// Form of the balance conditions (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub(super) struct SearchNode {
 
 impl SearchNode {
     /// Returns the subproblem without choices: no clearance of pins, and cells as wide as the bounds.
-    pub fn free(asked: &CounterweightSpec, balance: BalanceGoal) -> Self {
+    pub fn unconstrained(asked: &CounterweightSpec, balance: BalanceGoal) -> Self {
         Self {
             rooms: vec![None; asked.sites.len()],
             balance,

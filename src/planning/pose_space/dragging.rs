@@ -35,7 +35,7 @@ impl PoseSpace {
     }
 
     /// Returns a pose at b with the end effector on p, m, or at the nearest boundary point; `None` without planes.
-    pub fn standing(&self, p: Vector, b: f64) -> Option<DriveAngles> {
+    pub fn pose_at(&self, p: Vector, b: f64) -> Option<DriveAngles> {
         let planes = self.planes().ok()?;
         let map = planes.map();
         let pose = map.poses(p, b).first().copied();
@@ -48,13 +48,13 @@ impl PoseSpace {
         if let Ok(planes) = self.planes() {
             return planes.follow(p, b, [from[0], from[1]]).map(PerDrive::from);
         }
-        let keeping = self.toward_led(p, b, from).filter(|(_, off)| is_at(self, *off));
-        let (a, off) = keeping.unwrap_or_else(|| self.toward(p, b, from));
+        let keeping = self.drag_to_guided(p, b, from).filter(|(_, off)| is_at(self, *off));
+        let (a, off) = keeping.unwrap_or_else(|| self.drag_to(p, b, from));
         is_at(self, off).then_some(a)
     }
 
     /// Returns the pose for a target p, m, at b, rad, or the nearest feasible one, searched within all limits.
-    pub fn pose_for(&self, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
+    pub fn target_pose(&self, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
         if let Ok(planes) = self.planes() {
             let (a, reach) = planes.reach(p, b, [from[0], from[1]]);
             return (PerDrive::from(a), reach);
@@ -64,19 +64,19 @@ impl PoseSpace {
 
     /// Does the same starting from a nearby pose, for a target out of reach while b changes; the feasible b in `known`
     /// are kept.
-    pub fn pose_beside(&self, p: Vector, b: f64, from: &PerDrive, known: Reach) -> (PerDrive, Reach) {
+    pub fn target_pose_nearby(&self, p: Vector, b: f64, from: &PerDrive, known: Reach) -> (PerDrive, Reach) {
         if self.planes().is_ok() {
-            return self.pose_for(p, b, from);
+            return self.target_pose(p, b, from);
         }
         let (a, off) = match self.drives() {
             2 => along_curve(self, p, b, from[0]),
-            _ => self.toward_beside(p, b, from),
+            _ => self.drag_to_from_nearby(p, b, from),
         };
         let reach = match known {
             _ if is_at(self, off) => Reach::Inside,
-            Reach::Outside { mending_b, shown_b, other_sheet, .. } => {
-                let nearest = self.place(&self.lift(&a, b));
-                Reach::Outside { nearest, mending_b, shown_b, other_sheet }
+            Reach::Outside { feasible_b, displayed_b, other_sheet, .. } => {
+                let nearest = self.end_effector(&self.lift(&a, b));
+                Reach::Outside { nearest, feasible_b, displayed_b, other_sheet }
             }
             known => known,
         };
@@ -89,37 +89,37 @@ fn is_at(space: &PoseSpace, off: f64) -> bool {
 }
 
 fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
-    if let Some((a, _)) = space.toward_led(p, b, from).filter(|(_, off)| is_at(space, *off)) {
+    if let Some((a, _)) = space.drag_to_guided(p, b, from).filter(|(_, off)| is_at(space, *off)) {
         return (a, Reach::Inside);
     }
     let (mut a, mut off) = match space.drives() {
         2 => along_curve(space, p, b, from[0]),
-        _ => space.toward(p, b, from),
+        _ => space.drag_to(p, b, from),
     };
     if !is_at(space, off) && space.drives() > 3 {
         // A pose of another elbow may reach it; no obstacle lies between.
         let poses = space.poses(p, b, from);
         match poses.first() {
             Some(q) => (a, off) = (space.angles(q), 0.0),
-            None => (a, off) = nearest_of_all(space, p, b, (a, off)),
+            None => (a, off) = nearest_of_all(space, p, b, a, off),
         }
     }
     if is_at(space, off) {
         return (a, Reach::Inside);
     }
     let set = space.reach(p).ok();
-    let mending_b = set.as_ref().and_then(|set| set.nearest(b));
+    let feasible_b = set.as_ref().and_then(|set| set.nearest(b));
     // A single value of b is printed with as many decimals as it needs.
     let serves = |b: f64| space.reaches(p, b);
     let printed = |set: &BSet, b: f64| set.decimal(b, 3).or_else(|| Decimal::that(b, 3, serves));
-    let shown_b = set.as_ref().zip(mending_b).and_then(|(set, b)| printed(set, b));
-    let nearest = space.place(&space.lift(&a, b));
-    (a, Reach::Outside { nearest, mending_b, shown_b, other_sheet: false })
+    let displayed_b = set.as_ref().zip(feasible_b).and_then(|(set, b)| printed(set, b));
+    let nearest = space.end_effector(&space.lift(&a, b));
+    (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })
 }
 
 /// Returns the pose nearest to p, m, over starts from all ranges; keeps the given one unless another is clearly nearer.
-fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64)) -> (PerDrive, f64) {
-    let others = (0..MAX_STARTS).map(|i| space.toward(p, b, &space.spread(i)));
+fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -> (PerDrive, f64) {
+    let others = (0..MAX_STARTS).map(|i| space.drag_to(p, b, &space.sample(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
     best.filter(|(_, other)| *other < off - MIN_IMPROVEMENT * space.farthest()).unwrap_or((a, off))
 }
@@ -130,7 +130,7 @@ fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f6
     // A free joint is searched within half a turn either way: the curve is periodic.
     let is_free = space.joints()[0].bounds()[0].is_infinite();
     let [low, high] = if is_free { [turn - PI, turn + PI] } else { space.joints()[0].limits() };
-    let off = |a: f64| (space.place(&space.lift(&[a], b)) - p).norm();
+    let off = |a: f64| (space.end_effector(&space.lift(&[a], b)) - p).norm();
     let step = (high - low) / CURVE_SAMPLES as f64;
     let looks = (0..=CURVE_SAMPLES).map(|i| low + step * i as f64);
     let near = looks.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);

@@ -3,7 +3,7 @@
 //! A disc of mass w at x has radius κ √w. Between pins at a and b, with clearance c, it must keep x ≥ a + c + κ √w and
 //! x ≤ b − c − κ √w. With s = w x these are s ≥ (a + c) w + κ w^1.5 and s ≤ (b − c) w − κ w^1.5, both convex.
 
-use super::asked::CounterweightSpec;
+use super::spec::CounterweightSpec;
 use stillbase_convex::{LinearRow, Program};
 
 /// Interval between neighbouring pins, or beyond the outermost, m from the root; infinite where there is no pin.
@@ -39,7 +39,7 @@ impl FreeSpan {
     }
 
     /// Returns how far a disc violates the clearance, m; at most 0 if it does not.
-    pub fn missed(&self, clearance: f64, radius: f64, at: f64) -> f64 {
+    pub fn violation(&self, clearance: f64, radius: f64, at: f64) -> f64 {
         (self.from + clearance + radius - at).max(at + radius + clearance - self.to)
     }
 }

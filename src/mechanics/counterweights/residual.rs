@@ -1,7 +1,7 @@
 //! [`ConditionResidual`]: residual of each condition of (7) and (8), and its change with counterweights.
 
-use super::asked::{CounterweightSpec, Sites};
 use super::refusal::CounterweightError;
+use super::spec::{CounterweightSpec, Sites};
 use crate::balance::Condition;
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
@@ -10,7 +10,7 @@ use crate::planar::Vector;
 pub(super) struct ConditionResidual {
     pub of: Condition,
     /// Residual of the bare machine along and across the axes, kg m or kg m², with the mean payload.
-    pub left: Vector,
+    pub residual: Vector,
     /// Residual along the axes with the smallest and with the largest payload.
     pub ends: [f64; 2],
     /// Derivatives of the residual by w and s of each site.
@@ -46,8 +46,8 @@ pub(super) fn conditions(
         let more = beyond.get(i).copied().unwrap_or_default();
         ConditionResidual {
             of: condition,
-            left: condition.left(inertia) + more,
-            ends: [0, 1].map(|i| (condition.left(&ends[i]) + more).re),
+            residual: condition.residual(inertia) + more,
+            ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
             changes: asked.sites.iter().map(change).collect(),
         }
     };

@@ -14,7 +14,8 @@ use super::space::{BASE_RADIUS, PoseSpace};
 use crate::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of these.
+/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of
+/// these.
 const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];
 /// Number of critical poses on either side of a gap from which climbs are tried: in a quick and in a careful search.
 const NEAREST_CRITICALS: [usize; 2] = [3, 24];
@@ -83,7 +84,7 @@ impl PoseSpace {
     ) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_reached_by_climbs(p, gap, (criticals, NEAREST_CRITICALS[usize::from(looks.careful)]))
+            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(looks.careful)])
                 || self.is_reached_on_grid(p, &gap.places(), looks)
                 || self.is_sampled(distance, gap, looks)
                 || (looks.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
@@ -96,7 +97,8 @@ impl PoseSpace {
         &self,
         p: Vector,
         gap: &CriticalInterval,
-        (criticals, nearest): (&[CriticalPose], usize),
+        criticals: &[CriticalPose],
+        nearest: usize,
     ) -> bool {
         let (period, n) = (self.period(), criticals.len());
         let into = (GAP_DEPTH * (gap.to - gap.from)).min(MAX_GAP_DEPTH * period);
@@ -153,11 +155,11 @@ impl PoseSpace {
         if looks.samples.is_empty() {
             let b = |a: PerDrive| {
                 let q = self.unturned(&a);
-                let turn = self.place(&DriveAngles(q)).arg();
-                self.lambda.dot(&q) - turn * self.sum
+                let turn = self.end_effector(&DriveAngles(q)).arg();
+                self.lambda.dot(&q) - turn * self.lambda_sum
             };
             let found = (0..START_SAMPLES[usize::from(looks.careful)])
-                .filter_map(|i| self.pose_at_distance(distance, self.spread(i)))
+                .filter_map(|i| self.pose_at_distance(distance, self.sample(i)))
                 .map(b);
             looks.samples.extend(found.chain([f64::NAN]));
         }
@@ -183,10 +185,10 @@ impl PoseSpace {
         match self.drives() {
             ..4 => self.has_isolated_pose(Vector::new(distance, 0.0), 0.0),
             _ if distance <= BASE_RADIUS * self.farthest() => self.has_pose_at_base(starts),
-            _ if (0..starts).any(|i| self.pose_at_distance(distance, self.spread(i)).is_some()) => true,
+            _ if (0..starts).any(|i| self.pose_at_distance(distance, self.sample(i)).is_some()) => true,
             // By continuity, between a pose farther from B and one at B.
             _ => {
-                let distance_of = |i: usize| self.place(&DriveAngles(self.unturned(&self.spread(i)))).norm();
+                let distance_of = |i: usize| self.end_effector(&DriveAngles(self.unturned(&self.sample(i)))).norm();
                 (0..starts).any(|i| distance_of(i) >= distance) && self.has_pose_at_base(starts)
             }
         }
@@ -196,7 +198,7 @@ impl PoseSpace {
     fn has_pose_at_base(&self, starts: usize) -> bool {
         let windows = self.windows();
         let leads = |a: &PerDrive| self.solved(Vector::default(), 0.0, a, &windows).is_some();
-        (0..starts).map(|i| self.spread(i)).any(|a| {
+        (0..starts).map(|i| self.sample(i)).any(|a| {
             leads(&a) || self.pose_at_distance(NEAR_BASE_DISTANCE * self.farthest(), a).is_some_and(|near| leads(&near))
         })
     }
@@ -215,7 +217,7 @@ impl PoseSpace {
     /// angle that brings the end effector nearest to the distance.
     fn pose_at_distance(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
         let far = self.farthest();
-        let at = |a: &PerDrive| self.place(&DriveAngles(self.unturned(a)));
+        let at = |a: &PerDrive| self.end_effector(&DriveAngles(self.unturned(a)));
         let mut missing = f64::INFINITY;
         for _ in 0..MAX_SWEEPS {
             let before = missing;
@@ -288,7 +290,7 @@ impl PoseSpace {
         }
         let (mut arm, mut lambda) = ([Vector::default(); 3], [0.0; 3]);
         for k in 0..n {
-            arm[of[k]] += self.tip[k] * unit(delta[k]);
+            arm[of[k]] += self.arms[k] * unit(delta[k]);
             lambda[of[k]] += self.lambda[k];
         }
         let lean = arm.map(|l| l.arg());

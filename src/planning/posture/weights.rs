@@ -27,7 +27,7 @@ impl<'a> PostureWeights<'a> {
         let inertia = Inertia::of(machine);
         let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
         let torques: Vec<PerDrive> =
-            (0..n).map(|l| inertia.motors().torques(&PerDrive::from_fn(n, |k| inertia.constant(k, l)))).collect();
+            (0..n).map(|l| inertia.motors().motor_torques(&PerDrive::from_fn(n, |k| inertia.constant(k, l)))).collect();
         let trace: f64 = torques.iter().map(|column| column.dot(column)).sum();
         let mut torque = [[0.0; MAX_DRIVES]; MAX_DRIVES];
         for (k, row) in torque.iter_mut().enumerate().take(n) {

@@ -16,13 +16,13 @@ impl QuickQuery for GuidedSpace {
     type Answer = Arc<PoseSpace>;
 
     fn answer((ByIdentity(space), machine, posture, keep_off): &Self::Input) -> Self::Answer {
-        let space = led(PoseSpace::clone(space), machine, *posture);
+        let space = with_posture_guidance(PoseSpace::clone(space), machine, *posture);
         Arc::new(space.keeping_off_change_points(*keep_off))
     }
 }
 
 /// Returns a pose space with the rule of a posture for dragging; without free degrees of freedom it is unchanged.
-fn led(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
+fn with_posture_guidance(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
     if !space.leaves_freedoms() {
         return space;
     }
@@ -34,5 +34,5 @@ fn led(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
             .map_or(GuidanceMode::LeastEnergy, |inverse| GuidanceMode::Weighed(Box::new(inverse))),
         Posture::MidRange => GuidanceMode::Middle,
     };
-    space.led(lead)
+    space.with_guidance(lead)
 }

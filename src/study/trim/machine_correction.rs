@@ -3,8 +3,8 @@
 use serde::Serialize;
 use thiserror::Error;
 
-use super::taken::AdoptedParameters;
-use super::way::TrimMethod;
+use super::adopted_parameters::AdoptedParameters;
+use super::trim_method::TrimMethod;
 use stillbase_mechanics::balance::{
     Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceError, RebalanceRequest, rebalance_with,
     unreachable_by_changes,
@@ -36,7 +36,7 @@ pub struct MachineCorrection {
     /// The nominal machine with the rounded changes.
     pub machine: Machine,
     /// Residual of each line of (7) and (8) after the change, if the machine is as identified.
-    pub left: Vec<Vector>,
+    pub residuals: Vec<Vector>,
     /// Effect of the changes on each line of (7) and (8), independent of the identified machine.
     pub by: Vec<Vector>,
 }
@@ -44,8 +44,8 @@ pub struct MachineCorrection {
 impl MachineCorrection {
     /// Returns a correction without any change.
     pub fn not_at_all(machine: &Machine, taken: &AdoptedParameters) -> Self {
-        let left = taken.left();
-        Self { changes: Vec::new(), machine: machine.clone(), by: vec![Vector::default(); left.len()], left }
+        let residuals = taken.residuals();
+        Self { changes: Vec::new(), machine: machine.clone(), by: vec![Vector::default(); residuals.len()], residuals }
     }
 }
 
@@ -69,7 +69,7 @@ const SETTING_STEP: f64 = 1e-4;
 const NEGLIGIBLE_MASS: f64 = 1e-3;
 
 /// Finds the least change that removes the identified imbalance. An imbalance that no change on the axes of the links
-/// removes stays; it is part of [`MachineCorrection::left`].
+/// removes stays; it is part of [`MachineCorrection::residuals`].
 ///
 /// # Errors
 /// Fails if the bounds permit no solution.
@@ -79,7 +79,7 @@ pub fn correct_machine(
     way: &TrimMethod,
 ) -> Result<MachineCorrection, NoCorrection> {
     let nominal = balance_residuals(machine);
-    let beyond: Vec<Vector> = taken.left().iter().zip(&nominal).map(|(real, nominal)| real - nominal).collect();
+    let beyond: Vec<Vector> = taken.residuals().iter().zip(&nominal).map(|(real, nominal)| real - nominal).collect();
     let (exact, rounded) = match way {
         TrimMethod::Change(asked) => {
             let stays = unreachable_by_changes(machine, asked, &beyond)?;
@@ -112,7 +112,7 @@ pub fn correct_machine(
     let machine = Machine::new(rounded).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     let now = balance_residuals(&machine);
     let left = now.iter().zip(&beyond).map(|(now, beyond)| now + beyond).collect();
-    Ok(MachineCorrection { changes, machine, left, by: difference(&now, &nominal) })
+    Ok(MachineCorrection { changes, machine, residuals: left, by: difference(&now, &nominal) })
 }
 
 /// Returns the machine as built, before any correction, and the residuals of (7) and (8), by line, that it does not
@@ -131,7 +131,7 @@ pub fn identified_machine(
         asked.hold(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
     }
     // With the negative of the identified imbalance as offset, balance is reached where the machine has that imbalance.
-    let wanted: Vec<Vector> = taken.left().iter().map(|left| -left).collect();
+    let wanted: Vec<Vector> = taken.residuals().iter().map(|left| -left).collect();
     let misses = unreachable_by_changes(machine, &asked, &wanted)?;
     let kept = rebalance_with(machine, &asked, &difference(&wanted, &misses))?;
     let mut spec = kept.machine.spec().clone();
@@ -181,7 +181,7 @@ fn set_momenta(spec: &mut MachineSpec, machine: &Machine, momenta: &[Option<f64>
 
 fn balance_residuals(machine: &Machine) -> Vec<Vector> {
     let inertia = Inertia::of(machine);
-    Condition::all(machine.drives()).map(|condition| condition.left(&inertia)).collect()
+    Condition::all(machine.drives()).map(|condition| condition.residual(&inertia)).collect()
 }
 
 fn difference(all: &[Vector], part: &[Vector]) -> Vec<Vector> {

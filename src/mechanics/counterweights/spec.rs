@@ -97,7 +97,7 @@ impl Objective {
     }
 
     /// Returns whether it depends on more than mass.
-    pub(super) fn turns(&self) -> bool {
+    pub(super) fn depends_on_inertia(&self) -> bool {
         self.inertia > 0.0 || self.momentum > 0.0 || self.torque > 0.0
     }
 }
@@ -117,7 +117,7 @@ pub struct FreeRotor {
     /// The drive to whose motor it belongs, counted from 0.
     pub drive: usize,
     /// The free parameter.
-    pub free: RotorFreedom,
+    pub parameter: RotorFreedom,
 }
 
 /// A request for counterweights.
@@ -204,7 +204,7 @@ impl CounterweightSpec {
     }
 
     fn check_rotors(&self, machine: &Machine) -> Result<(), CounterweightError> {
-        for (i, FreeRotor { drive, free }) in self.rotors.iter().enumerate() {
+        for (i, FreeRotor { drive, parameter }) in self.rotors.iter().enumerate() {
             let Some(of) = machine.spec().drives.get(*drive) else {
                 let want = "one of the machine's drives, counted from 0";
                 return Err(CounterweightError::out("drive number", *drive as f64, want));
@@ -213,11 +213,11 @@ impl CounterweightSpec {
                 return Err(CounterweightError::RotorTwice(of.name.clone()));
             }
             let what = format!("the rotor of drive {}:", of.name);
-            match free {
+            match parameter {
                 RotorFreedom::Inertia(ends) => rising(&format!("{what} inertia"), *ends, ranges::INERTIA)?,
                 RotorFreedom::Ratio(ends) => rising(&format!("{what} ratio"), *ends, ranges::RATIO)?,
             }
-            if matches!(free, RotorFreedom::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
+            if matches!(parameter, RotorFreedom::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
                 return Err(CounterweightError::NoRotor(of.name.clone()));
             }
         }

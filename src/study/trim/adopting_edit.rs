@@ -1,6 +1,6 @@
 //! The edit by which a session adopts the result of a measurement.
 
-use super::mend::{corrected_as_built, identified_machine};
+use super::machine_correction::{corrected_as_built, identified_machine};
 use super::trimming::TrimResult;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::Edit;

@@ -1,4 +1,5 @@
-//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's file.
+//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's
+//! file.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +26,7 @@ pub struct AdoptedParameters {
 
 impl AdoptedParameters {
     /// Returns the residual of each line of (7) and (8).
-    pub fn left(&self) -> Vec<Vector> {
+    pub fn residuals(&self) -> Vec<Vector> {
         let parts = &self.values.as_slice()[..self.measured.len()];
         parts.chunks_exact(2).map(|part| Vector::new(part[0], part[1])).collect()
     }
@@ -41,7 +42,7 @@ pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     let count = fit.unknowns.of_balance();
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
     let mut known = Known { values, covariance, inverse };
-    let mut measured: Vec<bool> = fit.told[..count].to_vec();
+    let mut measured: Vec<bool> = fit.identifiable[..count].to_vec();
     let rounding = (ROUNDING_TOLERANCE * fit.measured.amax()).max(f64::MIN_POSITIVE);
     let half_width = |covariance: &DMatrix<f64>, i: usize| fit.critical * covariance[(i, i)].max(0.0).sqrt();
     loop {
@@ -57,15 +58,15 @@ pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     }
     let Known { mut values, mut covariance, .. } = known;
     // Unknowns that are not identifiable are independent of the others.
-    for i in (0..count).filter(|i| !fit.told[*i]) {
+    for i in (0..count).filter(|i| !fit.identifiable[*i]) {
         values[i] = fit.nominal[i];
         covariance.row_mut(i).fill(0.0);
         covariance.column_mut(i).fill(0.0);
     }
-    let momentum = |i: usize| fit.told[i].then(|| values[i]);
+    let momentum = |i: usize| fit.identifiable[i].then(|| values[i]);
     let momenta = (count..fit.unknowns.count()).map(momentum).collect();
     let half_widths: Vec<f64> = (0..values.len()).map(|i| half_width(&covariance, i)).collect();
-    let differs = |i: usize| fit.told[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
+    let differs = |i: usize| fit.identifiable[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
     let off = (0..values.len()).map(|i| measured.get(i).copied().unwrap_or_else(|| differs(i))).collect();
     AdoptedParameters { values, covariance, half_widths, measured, off, momenta }
 }

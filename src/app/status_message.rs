@@ -29,11 +29,12 @@ pub struct RefusedEdit {
 impl RefusedEdit {
     pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
         let curve = RefusedCurve::of(refusal);
-        let remedy = edit.part("task").zip(refusal.mending_b().zip(refusal.shown_b())).map(|(change, (b, shown))| {
-            let mut change = change.clone();
-            change.insert("b".into(), b.into());
-            (Edit::of("task", change), shown)
-        });
+        let remedy =
+            edit.part("task").zip(refusal.feasible_b().zip(refusal.displayed_b())).map(|(change, (b, shown))| {
+                let mut change = change.clone();
+                change.insert("b".into(), b.into());
+                (Edit::of("task", change), shown)
+            });
         Self { curve: curve.map(Arc::new), remedy }
     }
 }

@@ -33,7 +33,7 @@ pub fn gentle_motion(machine: &Machine) -> Result<Scenario, ScenarioError> {
                 let task = task(machine, kind, span, is_round);
                 for time in DURATIONS_S {
                     let scenario = stated(machine, &format!("{task}time = {time:?}\n"))?;
-                    let plan = Run::new(&scenario).map(|run| run.plan().forecast.over.is_none());
+                    let plan = Run::new(&scenario).map(|run| run.plan().forecast.exceeded_limit.is_none());
                     match plan {
                         Ok(true) => return Ok(scenario),
                         Ok(false) => slow = Some(scenario),
