@@ -205,7 +205,7 @@ fn a_widened_limit_has_the_name_of_its_angle() {
     spec.angles.iter_mut().zip(&names).for_each(|(angle, name)| angle.name.clone_from(name));
     let machine = stillbase::mechanics::machine::Machine::new(spec).expect("names may be any");
     let exchanged = Scenario { machine, ..task.clone() };
-    let again = Run::new(&exchanged).err().expect("refused as well").to_string();
+    let again = Run::new(&exchanged).expect_err("refused as well").to_string();
     let name = |words: &str| {
         words.split_once("want limits.").and_then(|(_, rest)| rest.split_once(" = ")).map(|(name, _)| name.to_owned())
     };
