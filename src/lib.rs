@@ -137,7 +137,7 @@
 //! case_3.task.b = 2.9;
 //! let refusal = Run::new(&case_3).expect_err("no pose of these planes is at B");
 //! assert!(refusal.to_string().ends_with("want b from 2.2158 to 2.6610 rad"), "{refusal}");
-//! case_3.task.b = refusal.mending_b().expect("another b would do");
+//! case_3.task.b = refusal.feasible_b().expect("another b would do");
 //! assert!((case_3.task.b - 2.66107).abs() < 1e-5 && Run::new(&case_3).is_ok());
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
