@@ -1,16 +1,14 @@
 //! Paths of four drives and more against the least costs that SciPy finds over all poses of their stations.
 
 use serde_json::{Value, json};
-use stillbase::mechanics::machine::{Machine, to_toml};
-use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::mechanics::machine::to_toml;
 use stillbase::planning::curves::Curve;
 use stillbase::planning::curves::Path;
-use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::posture::{Posture, PostureRequest};
 use stillbase::planning::timing::TimeLaw;
 
 use super::python::answers;
-use crate::random::{a_pose, a_space};
+use crate::random::{Case, a_case};
 use crate::{Noise, Test, count};
 
 pub const TESTS: &[Test] = tests![scipy_finds_no_path_of_less_cost];
@@ -26,26 +24,6 @@ const KINDS: [(&str, Posture); 4] = [
     ("middle", Posture::MidRange),
     ("orientation", Posture::Orientation),
 ];
-
-/// A machine, and a line between two points that it reaches at one b.
-struct Case {
-    machine: Machine,
-    space: PoseSpace,
-    b: f64,
-    ends: [Vector; 2],
-}
-
-fn a_case(noise: &mut Noise, n: usize) -> Case {
-    loop {
-        let (machine, space) = a_space(noise, n);
-        let b = noise.between(0.0, space.period());
-        let from = space.end_effector(&space.lift(&a_pose(noise, &space), b));
-        let to = from + noise.between(0.03, 0.4) * space.farthest() * unit(noise.between(-3.2, 3.2));
-        if space.reaches(to, b) {
-            return Case { machine, space, b, ends: [from, to] };
-        }
-    }
-}
 
 impl Case {
     fn path(&self, posture: Posture) -> Option<Path> {

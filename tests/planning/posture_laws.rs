@@ -2,41 +2,19 @@
 //! where no way along it exists.
 
 use stillbase::mechanics::dynamics::{Surroundings, inverse};
-use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase::mechanics::machine::Inertia;
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::common::common_b_set;
 use stillbase::planning::curves::path::least_rate_curve;
 use stillbase::planning::curves::{Curve, Path};
-use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::posture::{NoPosturePath, Posture, PostureRequest, PostureWeights};
 use stillbase::planning::timing::TimeLaw;
 
 use crate::support::Noise;
-use crate::support::random::{a_pose, a_space};
+use crate::support::random::{Case, a_case};
 
 const ALL: [Posture; 4] = [Posture::LeastRates, Posture::Orientation, Posture::LeastTorque, Posture::MidRange];
-
-/// A machine, and a line between points that it reaches at one b.
-struct Case {
-    machine: Machine,
-    space: PoseSpace,
-    b: f64,
-    ends: [Vector; 2],
-}
-
-fn a_case(noise: &mut Noise, n: usize) -> Case {
-    loop {
-        let (machine, space) = a_space(noise, n);
-        let b = noise.between(0.0, space.period());
-        let from = space.end_effector(&space.lift(&a_pose(noise, &space), b));
-        let far = noise.between(0.03, 0.4) * space.farthest();
-        let to = from + far * unit(noise.between(-3.2, 3.2));
-        if space.reaches(to, b) {
-            return Case { machine, space, b, ends: [from, to] };
-        }
-    }
-}
 
 impl Case {
     fn path(&self, posture: Posture) -> Result<Path, NoPosturePath> {

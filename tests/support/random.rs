@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::{Machine, parse};
-use stillbase::mechanics::planar::PerDrive;
+use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
 use super::Noise;
@@ -137,4 +137,25 @@ pub fn a_pose(noise: &mut Noise, space: &PoseSpace) -> PerDrive {
         let [low, high] = space.joints()[i].limits();
         noise.between(low, high)
     })
+}
+
+/// A machine, and a line between two points that it reaches at one b.
+pub struct Case {
+    pub machine: Machine,
+    pub space: PoseSpace,
+    pub b: f64,
+    pub ends: [Vector; 2],
+}
+
+pub fn a_case(noise: &mut Noise, n: usize) -> Case {
+    loop {
+        let (machine, space) = a_space(noise, n);
+        let b = noise.between(0.0, space.period());
+        let from = space.end_effector(&space.lift(&a_pose(noise, &space), b));
+        let far = noise.between(0.03, 0.4) * space.farthest();
+        let to = from + far * unit(noise.between(-3.2, 3.2));
+        if space.reaches(to, b) {
+            return Case { machine, space, b, ends: [from, to] };
+        }
+    }
 }
