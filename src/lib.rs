@@ -177,9 +177,9 @@
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu | 130 |
 //! | `ui` | panels, plots and figures, without a window | 162 |
 //! | `window` | the window around them | 271 |
-//! | `record` | recordings for the Rerun viewer | 437 |
+//! | `record` | recordings for the Rerun viewer | 296 |
 //!
-//! `window`, `record` and `cli` are on by default, 583 crates together. `tables`, `render` and `ui` come with what needs
+//! `window`, `record` and `cli` are on by default, 468 crates together. `tables`, `render` and `ui` come with what needs
 //! them.
 //!
 //! # How the interface is watched

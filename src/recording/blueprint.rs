@@ -4,18 +4,18 @@
 //! Views are rows of a separate store. The builders of the SDK set neither the eye of a 3D view nor axis ranges nor
 //! backgrounds, so the rows are written here.
 
-use rerun::blueprint::components::VisualBounds2D;
-use rerun::blueprint::components::{
+use crate::rerun::Uuid;
+use crate::rerun::blueprint::archetypes as view;
+use crate::rerun::blueprint::components::VisualBounds2D;
+use crate::rerun::blueprint::components::VisualizerInstructionId;
+use crate::rerun::blueprint::components::{
     ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, IncludedContent, LinkAxis, LoopMode, PanelState,
     PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
-use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::components::Range1D;
-use rerun::datatypes::Range2D;
-use rerun::external::re_sdk_types::blueprint::archetypes as view;
-use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionId;
-use rerun::external::uuid::Uuid;
-use rerun::{AsComponents, EntityPath, SeriesLines};
+use crate::rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use crate::rerun::components::Range1D;
+use crate::rerun::datatypes::Range2D;
+use crate::rerun::{AsComponents, EntityPath, SeriesLines};
 
 use super::design::FRONT_VIEW;
 use super::eye::Eye;

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use rerun::{
+use crate::rerun::{
     AsComponents, Clear, EntityPath, InstancePoses3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius, Transform3D,
 };
 

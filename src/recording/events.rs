@@ -1,6 +1,6 @@
 //! Texts of events, phases and the verdict.
 
-use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
+use crate::rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
 
 use super::rows::SparseRows;
 use super::store::{Instant, RowTimes, Store, StoreError};

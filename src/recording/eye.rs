@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use rerun::blueprint::components::Eye3DKind;
-use rerun::external::re_sdk_types::blueprint::archetypes::EyeControls3D;
+use crate::rerun::blueprint::archetypes::EyeControls3D;
+use crate::rerun::blueprint::components::Eye3DKind;
 
 use stillbase_picture::scene::camera::{Camera, FlatCamera, Orbit};
 

@@ -46,6 +46,7 @@ mod options;
 mod pictures;
 mod preview;
 mod recorder;
+mod rerun;
 mod rows;
 mod space;
 mod stop;
@@ -57,7 +58,7 @@ pub use options::{Options, Pictures};
 
 use std::path::{Path, PathBuf};
 
-use rerun::{EntityPath, RecordingInfo, TextDocument};
+use crate::rerun::{EntityPath, RecordingInfo, TextDocument};
 use thiserror::Error;
 
 use hash::Hash;

@@ -1,6 +1,6 @@
 //! Offscreen pictures during a recording, as PNG.
 
-use rerun::{EncodedImage, EntityPath};
+use crate::rerun::{EncodedImage, EntityPath};
 
 use super::options::Pictures;
 use super::stop::CaseError;
@@ -157,8 +157,8 @@ impl PictureSeries {
             return Ok(());
         }
         let columns = EncodedImage::update_fields()
-            .with_many_media_type(self.pictures.iter().map(|_| rerun::MediaType::png()))
-            .with_many_blob(self.pictures.drain(..).map(rerun::components::Blob::from));
+            .with_many_media_type(self.pictures.iter().map(|_| crate::rerun::MediaType::png()))
+            .with_many_blob(self.pictures.drain(..).map(crate::rerun::components::Blob::from));
         store.columns(&self.clock.columns(), path, columns.columns_of_unit_batches()?)?;
         self.clock.clear();
         Ok(())

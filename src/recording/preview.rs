@@ -1,8 +1,8 @@
 //! Runs a scenario once before it is recorded. Its extreme values determine the layout and the scales, which come first
 //! in the file. A scenario that cannot run is refused before anything is written.
 
-use rerun::EntityPath;
-use rerun::external::re_log_types::EntityPathPart;
+use crate::rerun::EntityPath;
+use crate::rerun::EntityPathPart;
 
 use super::design::RecordedDesign;
 use super::eye::Eye;

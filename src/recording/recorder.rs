@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use rerun::components::{Scalar, Text};
-use rerun::external::re_log_types::EntityPathPart;
-use rerun::{AnyValues, EntityPath, ViewCoordinates};
+use crate::rerun::EntityPathPart;
+use crate::rerun::components::{Scalar, Text};
+use crate::rerun::{AnyValues, EntityPath, ViewCoordinates};
 
 use super::events::Events;
 use super::eye::Eye;

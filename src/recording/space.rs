@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use rerun::EntityPath;
+use crate::rerun::EntityPath;
 
 use super::entity::{Dot, Entity, EntityKind, EntityShape, Rigid, StaticShape, Strokes};
 use super::eye::Eye;

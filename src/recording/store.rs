@@ -8,12 +8,12 @@ use std::io::Write;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
-use rerun::external::re_log_encoding::{EncodeError, Encoder, EncodingOptions};
-use rerun::external::re_log_types::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
-use rerun::external::{re_build_info::CrateVersion, re_log_types::StoreId};
-use rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
-use rerun::time::{TimeInt, TimePoint, Timeline};
-use rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
+use crate::rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
+use crate::rerun::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
+use crate::rerun::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
+use crate::rerun::{CrateVersion, StoreId};
+use crate::rerun::{EncodeError, Encoder, EncodingOptions};
+use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
 use stillbase_files::NewFile;
@@ -56,8 +56,8 @@ impl From<ChunkError> for StoreError {
     }
 }
 
-impl From<rerun::SerializationError> for StoreError {
-    fn from(error: rerun::SerializationError) -> Self {
+impl From<crate::rerun::SerializationError> for StoreError {
+    fn from(error: crate::rerun::SerializationError) -> Self {
         Self::Data(error.to_string())
     }
 }

@@ -1,7 +1,7 @@
 //! Names and styles of entities: the colours of the palette in the types of the viewer.
 
-use rerun::external::re_log_types::EntityPathPart;
-use rerun::{AsComponents, Color, EntityPath, LineStrips3D, Mesh3D, Radius, SerializedComponentBatch};
+use crate::rerun::EntityPathPart;
+use crate::rerun::{AsComponents, Color, EntityPath, LineStrips3D, Mesh3D, Radius, SerializedComponentBatch};
 
 use super::eye::Eye;
 use stillbase_picture::scene::{Mesh, Rgba};

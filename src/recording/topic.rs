@@ -1,7 +1,7 @@
 //! Topics: signals that share an entity. Each row of an entity has an identifier and two times, which take 18 bytes in
 //! the file, while a value takes 8; signals of one entity share them.
 
-use rerun::{EntityPath, Scalars, SeriesLines};
+use crate::rerun::{EntityPath, Scalars, SeriesLines};
 
 use super::store::{RowTimes, Store, StoreError};
 use super::style::{colour, series_name, under};

@@ -254,7 +254,7 @@ fn stocked(name: &str) -> Folder {
 /// Messages of a whole recording; the order of columns within them may differ from one to the next.
 #[cfg(all(debug_assertions, feature = "record"))]
 fn recorded(bytes: &[u8]) -> Option<usize> {
-    let messages = rerun::external::re_log_encoding::DecoderApp::decode_lazy(std::io::BufReader::new(bytes));
+    let messages = re_log_encoding::DecoderApp::decode_lazy(std::io::BufReader::new(bytes));
     messages.map(|message| message.ok()).try_fold(0, |count, message| message.map(|_| count + 1))
 }
 

@@ -62,9 +62,9 @@ fn links_stand_where_the_machine_is() {
         let floats = |component: &'static str| -> Vec<f32> {
             let list = moving.components().get_array(component.into()).expect("a column");
             let rows = list.values();
-            let rows = rows.as_any().downcast_ref::<rerun::external::arrow::array::FixedSizeListArray>();
+            let rows = rows.as_any().downcast_ref::<arrow::array::FixedSizeListArray>();
             let flat = rows.expect("vectors").values().clone();
-            let flat = flat.as_any().downcast_ref::<rerun::external::arrow::array::Float32Array>();
+            let flat = flat.as_any().downcast_ref::<arrow::array::Float32Array>();
             flat.expect("numbers").values().to_vec()
         };
         let (places, turns) = (floats("Transform3D:translation"), floats("Transform3D:quaternion"));

@@ -16,13 +16,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
 
-use rerun::external::arrow::array::{
+use arrow::array::{
     Array, BooleanArray, FixedSizeListArray, Float32Array, Float64Array, ListArray, StringArray, UInt32Array,
 };
-use rerun::external::re_log_encoding::DecoderApp;
-use rerun::external::re_log_types::StoreId;
-use rerun::log::{Chunk, LogMsg};
-use rerun::{EntityPath, StoreKind, TimelineName};
+use re_chunk::Chunk;
+use re_log_encoding::DecoderApp;
+use re_log_types::{EntityPath, LogMsg, StoreId, StoreKind, TimelineName};
 use stillbase::files::WriteError;
 use stillbase::mechanics::planar::{Vector, unit};
 use stillbase::planning::timing::TimeLaw;
@@ -250,7 +249,7 @@ fn packed(rgba: [f32; 4]) -> u32 {
 impl Contents {
     /// All colours of a component of an entity.
     fn colours(&self, path: &str, component: &'static str) -> Vec<u32> {
-        use rerun::external::arrow::array::UInt32Array;
+        use arrow::array::UInt32Array;
         let columns = self.at(path).into_iter().filter_map(|c| c.components().get_array(component.into()));
         let colours = columns.flat_map(|column| {
             let flat = column.values().as_any().downcast_ref::<UInt32Array>().expect("colours");

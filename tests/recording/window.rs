@@ -6,7 +6,7 @@ use super::*;
 /// same numbers in the same words, each in its own colour.
 #[test]
 fn the_reaction_is_the_same_in_the_window() {
-    use rerun::external::arrow::array::UInt32Array;
+    use arrow::array::UInt32Array;
     use stillbase::picture::scene::options::ViewOptions;
     use stillbase::picture::scene::palette::{Theme, palette};
     use stillbase::picture::scene::stage::Stage;

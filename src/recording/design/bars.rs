@@ -1,6 +1,6 @@
 //! [`Bars`]: contributions of the links to the conditions (7) or (8), as a group of bars for each condition.
 
-use rerun::{BarChart, EntityPath};
+use crate::rerun::{BarChart, EntityPath};
 
 use crate::rows::SparseRows;
 use crate::store::{Instant, Store, StoreError};

@@ -1,7 +1,7 @@
 //! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
 //! machine.
 
-use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
+use crate::rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
 use super::state::bare;
 use crate::rows::SparseRows;

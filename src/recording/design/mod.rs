@@ -7,7 +7,7 @@ mod front;
 mod state;
 mod words;
 
-use rerun::{EntityPath, TextDocument};
+use crate::rerun::{EntityPath, TextDocument};
 
 use super::eye::Eye;
 use super::rows::SparseRows;
@@ -131,7 +131,7 @@ impl RecordedDesign {
             return store.fixed(path, &TextDocument::from_markdown(text.as_str()));
         }
         let rows = TextDocument::update_fields()
-            .with_many_media_type(texts.iter().map(|_| rerun::MediaType::markdown()))
+            .with_many_media_type(texts.iter().map(|_| crate::rerun::MediaType::markdown()))
             .with_many_text(texts);
         store.columns(&clock.columns(), path, rows.columns_of_unit_batches()?)
     }
