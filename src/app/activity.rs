@@ -15,11 +15,11 @@ pub enum Activity {
     Table,
     /// Sampling machines for a study of tolerances.
     Study,
-    /// Running the task in its different ways.
+    /// Running the same task in several ways, for comparison.
     TaskVariants,
     /// Running one more scenario for the table of runs.
     ExtraRun,
-    /// Searching for lengths.
+    /// Searching for link lengths.
     Seeking,
     /// Computing the Pareto fronts of other machines.
     Fronts,

@@ -89,13 +89,13 @@ pub(super) enum SessionFile {
 /// The changed session, and the message or the reason of a refusal.
 pub(super) type SessionResult = (Session, Result<Option<String>, Refusal>);
 
-/// Sessions with more frames are freed in the background: that takes milliseconds.
+/// Sessions with more frames are freed in the background, because freeing them takes milliseconds.
 const MAX_FRAMES_FREED_AT_ONCE: usize = 20_000;
 
-/// Number of repaints before a change is reported in the status line: most are finished earlier.
+/// Number of repaints before a change is reported in the status line; most changes finish earlier.
 const SILENT_REPAINTS: u32 = 6;
 
-/// Work in the background, its worker threads, and the follow-up, which changes `A`.
+/// Work in the background, its worker threads, and its follow-ups, which change the program's state `A`.
 pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
     /// Queue in which work waits until the window is drawn; `None` if work is done at once.
@@ -108,7 +108,7 @@ pub(super) struct Background<A> {
     running: Vec<(Activity, Box<dyn Pending<A>>)>,
     /// The change of the session under way, and the number of repaints since its start.
     pub change: Option<(SessionChange, u32)>,
-    /// Commands that wait for its end.
+    /// Session commands that wait until the change has ended.
     pub waiting_commands: VecDeque<SessionCommand>,
 }
 
@@ -160,7 +160,7 @@ impl<A> Background<A> {
         }
     }
 
-    /// Starts work in the background that nobody waits for.
+    /// Starts work in the background without a follow-up.
     fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
         self.start_by(&*self.workers, work)
     }
@@ -194,8 +194,8 @@ impl<A> Background<A> {
         self.running.push((activity, Box::new(Running { job: Some(job), result: None, then })));
     }
 
-    /// Takes out the follow-up of the first finished work whose turn it is. Changes of the session come before a
-    /// session is opened, and work of one activity ends in the order of its start.
+    /// Removes the first finished work whose turn has come, and returns its follow-up. An opening waits until changes
+    /// of the session have ended. Work of one activity is followed up in the order of its start.
     pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
         let is_changing = self.is_changing();
         let (mut place, mut before) = (None, Vec::new());

@@ -43,7 +43,8 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     }
 }
 
-/// Draws the button *show everything* at the upper edge, for when a part of the machine or its target is out of view.
+/// Draws the button *show everything* at the upper edge. It is needed when a part of the machine or its target is out
+/// of view.
 pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
@@ -57,7 +58,7 @@ pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands
     }
 }
 
-/// Draws the colour scale of the workspace.
+/// Draws the colour scale of the workspace; a click on its symbol chooses the next measure.
 fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let [least, most] = views.stage().shaded(measure);

@@ -1,5 +1,5 @@
-//! "Show everything": stays in force until the user moves the view, and keeps the content clear of what covers the
-//! scene.
+//! Framing of the camera by *show everything*. It lasts until the user moves the view, and keeps the content clear of
+//! cards that cover the scene.
 
 use std::sync::Arc;
 

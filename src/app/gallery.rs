@@ -20,12 +20,12 @@ const MARGIN: f32 = 12.0;
 /// Maximum number of columns.
 const MAX_COLUMNS: f32 = 4.0;
 
-/// Returns the maximum height of the list, px.
+/// Returns the maximum height of the list, points.
 pub fn room(ui: &Ui) -> f32 {
     (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD.y + GAP))
 }
 
-/// Draws the list; returns the chosen machine, if it is another one.
+/// Draws the list; returns the machine that the user has chosen, if it differs from the present one.
 pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
     let wide = ui.ctx().content_rect().width() - 60.0;
     let columns = ((wide + GAP) / (CARD.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;

@@ -15,7 +15,7 @@ const MAX_HEIGHT_PT: f32 = 380.0;
 /// Height of a branch in its list, points.
 const BRANCH_HEIGHT_PT: f32 = 38.0;
 
-/// Draws its button, and the list while it is open.
+/// Draws the button of the list, and the list while it is open.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -117,7 +117,7 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
     }
 }
 
-/// Key of the entry to which the list was scrolled last.
+/// Identifier under which egui stores the index of the entry to which the list was scrolled last.
 fn seen_id() -> egui::Id {
     egui::Id::unique("history seen")
 }

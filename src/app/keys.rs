@@ -9,13 +9,13 @@ use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChan
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-/// Turns keys into commands. In a text field, only keys that the field does not use count: shortcuts with Ctrl that a
-/// field does not know, and F1.
+/// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
+/// Ctrl O, Ctrl K and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing =
         ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
-    // During a drag or with a list open, Esc ends only that.
+    // During a drag or with a list open, Esc only ends the drag or closes the list.
     let busy = view_state.gesture.grabbed.is_some()
         || view_state.open.history
         || view_state.open.naming.is_some()
@@ -26,14 +26,15 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         commands.push(escape(view_state));
     }
     let allowed = |key: &KeyboardShortcut| !typing || works_while_typing(key);
-    // Keys with Shift or Alt come first: a shortcut without them would match as well.
+    // Shortcuts with Shift or Alt come first, because a shortcut without them would match the same key.
     let mut all: Vec<(&Action, &KeyboardShortcut)> = ACTIONS
         .iter()
         .chain(FINE_ACTIONS)
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
-    // A key that opens a text field takes the rest of a slow pass: what is typed after it is no shortcut.
+    // After a key that opens a text field, no other key of this pass is a shortcut: in a slow pass the user may
+    // already type text.
     if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
         commands.extend(action.command(session, view_state));
         return;
@@ -43,7 +44,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
             commands.extend(action.command(session, view_state));
         }
     }
-    // The changes of a held key are one undo entry.
+    // While one of these keys is held, its changes form one undo entry.
     let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
     if !typing && view_state.gesture.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
         commands.push(SessionCommand::EndGesture.into());
@@ -131,7 +132,7 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
 
 type Lines = Vec<(String, &'static str)>;
 
-/// Returns the titles of the card, with the keys below each title and their effects; filtered by the search text.
+/// Returns the groups of lines that match the search text: the title of each group, then keys and their effects.
 fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
     let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
     let of = |group: ActionGroup| -> Lines {

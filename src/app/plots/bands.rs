@@ -1,4 +1,5 @@
-//! The chart *Which b?* of machines without planes in closed form: intervals of b that reach the points or the target.
+//! The chart *Which b?* for machines without planes in closed form: intervals of b at which the machine reaches each
+//! point or the target.
 
 use std::sync::Arc;
 
