@@ -105,6 +105,7 @@ fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
     Some(Command::Session(SessionCommand::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y })))
 }
 
+/// Changes b by an amount, rad.
 fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
     session.run().pose_space().ok()?;
     Some(Command::Session(SessionCommand::Edit(set_b(session, view_state, session.b_aim() + by))))
@@ -160,16 +161,16 @@ fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
 
 macro_rules! actions {
     ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal
-        $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
+        $(turns $switch:ident)? $(, $command:expr)?;)+) => {
         &[$(Action {
             group: ActionGroup::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@given $($asks)?),
+            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@option $($command)?),
         }),+]
     };
     (@of $kind:ident) => { None };
     (@of $kind:ident $of:ident) => { Some($kind::$of) };
-    (@given) => { None };
-    (@given $given:expr) => { Some($given) };
+    (@option) => { None };
+    (@option $value:expr) => { Some($value) };
 }
 
 /// Every action.

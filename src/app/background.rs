@@ -198,16 +198,16 @@ impl<A> Background<A> {
     /// of the session have ended. Work of one activity is followed up in the order of its start.
     pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
         let is_changing = self.is_changing();
-        let (mut place, mut before) = (None, Vec::new());
+        let (mut index, mut before) = (None, Vec::new());
         for (i, (activity, work)) in self.running.iter_mut().enumerate() {
             let waits = before.contains(activity) || (*activity == Activity::Opening && is_changing);
             if !waits && work.has_ended() {
-                place = Some(i);
+                index = Some(i);
                 break;
             }
             before.push(*activity);
         }
-        let (_, work) = self.running.remove(place?);
+        let (_, work) = self.running.remove(index?);
         Some(|app_state: &mut A| work.finish(app_state))
     }
 

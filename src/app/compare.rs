@@ -81,9 +81,9 @@ impl Head {
 fn columns(comparison: &Comparison) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
-    let stands = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
+    let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
     let all = SUMMARY_COLUMNS.iter().enumerate();
-    let of_runs = all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
+    let of_runs = all.filter(|(_, c)| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
     let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c));
     of_runs.map(|(i, c)| Head::of(i, c)).chain(of_designs).collect()

@@ -97,9 +97,9 @@ impl QuickQuery for Settings {
         let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != KeyType::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
             let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT_WORD).unwrap_or_default();
-            let normal = || change::same_value(&change::value(key.default), &value);
+            let is_default = || change::same_value(&change::value(key.default), &value);
             Setting {
-                usual: typed.is_empty() || key.default.is_empty() || normal(),
+                usual: typed.is_empty() || key.default.is_empty() || is_default(),
                 wants: scenario.condition_for_effect(&path),
                 text: format!("{path}\n{}", key.words).to_lowercase(),
                 typed,

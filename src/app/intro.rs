@@ -223,7 +223,7 @@ impl Intro {
         &self,
         ctx: &egui::Context,
         rect: egui::Rect,
-        spoken_of: &[egui::Rect],
+        mentioned: &[egui::Rect],
         session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,
@@ -233,11 +233,11 @@ impl Intro {
         let width = 390.0_f32.min(rect.width() - 32.0);
         let id = Id::unique("hint");
         let size = ctx.memory(|m| m.area_rect(id)).map_or(vec2(width, 100.0), |last| last.size());
-        let stands = Id::unique("corner of the hint");
+        let corner_id = Id::unique("corner of the hint");
         // During a drag the hint stays in its corner.
-        let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
-        let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, spoken_of));
-        ctx.data_mut(|d| d.insert_temp(stands, corner));
+        let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(corner_id)));
+        let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, mentioned));
+        ctx.data_mut(|d| d.insert_temp(corner_id, corner));
         let area = Area::new(id).pivot(Align2::LEFT_TOP);
         area.fixed_pos(corner.place(rect, size).min).show(ctx, |ui| {
             card(&p).show(ui, |ui| {
@@ -286,10 +286,10 @@ impl Corner {
     }
 
     /// Returns the corner whose card covers the least area of these rectangles; of equal corners, the first.
-    fn freest(rect: egui::Rect, size: egui::Vec2, spoken_of: &[egui::Rect]) -> Self {
+    fn freest(rect: egui::Rect, size: egui::Vec2, mentioned: &[egui::Rect]) -> Self {
         let covered = |corner: &Self| {
             let card = corner.place(rect, size).expand(6.0);
-            let common = spoken_of.iter().map(|part| card.intersect(*part)).filter(|part| part.is_positive());
+            let common = mentioned.iter().map(|part| card.intersect(*part)).filter(|part| part.is_positive());
             common.map(|part| part.area()).sum::<f32>()
         };
         Self::ALL.into_iter().min_by(|a, b| covered(a).total_cmp(&covered(b))).unwrap_or(Self::RightBottom)

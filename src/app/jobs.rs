@@ -47,16 +47,16 @@ impl Workers for Threads {
 }
 
 /// Passes the work to `run` on a new thread; if no thread can be started, runs the work on the calling thread.
-fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
+fn on_thread(work: Work, run: impl FnOnce(Work) + Send + 'static) {
     // A thread that cannot start drops its closure; the work is sent separately, so that it is not lost.
-    let (hand, take) = channel::<Work>();
+    let (sender, receiver) = channel::<Work>();
     let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
-        if let Ok(work) = take.recv() {
-            way(work);
+        if let Ok(work) = receiver.recv() {
+            run(work);
         }
     });
     match thread {
-        Ok(_) => drop(hand.send(work)),
+        Ok(_) => drop(sender.send(work)),
         Err(_) => work(),
     }
 }
@@ -88,9 +88,9 @@ impl Pool {
         step_back(None);
         loop {
             work();
-            let (hand, take) = channel();
-            self.idle().push(hand);
-            match take.recv() {
+            let (sender, receiver) = channel();
+            self.idle().push(sender);
+            match receiver.recv() {
                 Ok(next) => work = next,
                 Err(_) => return,
             }

@@ -161,11 +161,11 @@ impl Marks {
 
 /// Returns the time, s, of the next mark after the instant on display if `forward`, otherwise of the last mark before
 /// it.
-pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
+pub(super) fn beside(queries: &Queries, session: &Session, forward: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
     let marks = queries.last::<QuickWork<MarksByTime>>()?;
     let mut times = within(&marks, session.length()).iter().map(|mark| mark.time);
-    match on {
+    match forward {
         true => times.find(|mark| *mark > time + 0.5 * step),
         false => times.rfind(|mark| *mark < time - 0.5 * step),
     }

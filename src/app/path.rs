@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
     corners(ui, task, p, commands);
-    off_plane(ui, session, task, p, commands);
+    kind_settings(ui, session, task, p, commands);
     costs(ui, session, p);
 }
 
@@ -222,7 +222,7 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
 }
 
 /// Draws the settings that only some kinds of task have.
-fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
         TaskKind::Reactionless | TaskKind::Given

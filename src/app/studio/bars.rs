@@ -1,4 +1,4 @@
-//! The imbalance: every line of (7) and (8) as a bar, composed of the contributions of the links.
+//! The imbalance: each line of Eqs. (7) and (8) as a bar, composed of the contributions of the links.
 
 use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 

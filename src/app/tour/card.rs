@@ -94,7 +94,7 @@ impl Tour {
         });
     }
 
-    /// Returns the rectangle that it covers in a scene.
+    /// Returns the rectangle of a scene that the card covers.
     pub fn covers(ctx: &egui::Context, rect: egui::Rect) -> egui::Rect {
         let usual = egui::Rect::from_min_size(rect.left_bottom() + vec2(0.0, -190.0), vec2(446.0, 190.0));
         ctx.memory(|m| m.area_rect(id())).unwrap_or(usual)
