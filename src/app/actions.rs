@@ -18,7 +18,7 @@ use stillbase_simulation::signals::signals;
 
 /// A command with a name.
 pub struct Action {
-    /// Its group.
+    /// The group in which it is listed.
     pub group: ActionGroup,
     /// Its name in lists.
     pub name: &'static str,

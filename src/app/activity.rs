@@ -50,7 +50,7 @@ impl Activity {
         self.texts().0
     }
 
-    /// Whether it can be cancelled.
+    /// Whether the work can be cancelled.
     pub(super) fn can_stop(self) -> bool {
         self.texts().1.is_some()
     }

@@ -21,10 +21,10 @@ trait Pending<A> {
     /// Returns the fraction that is done, from 0 to 1.
     fn progress(&self) -> f64;
 
-    /// Whether it has ended.
+    /// Whether the work has ended.
     fn has_ended(&mut self) -> bool;
 
-    /// Waits until it has ended.
+    /// Waits until the work has ended.
     fn wait(&mut self);
 
     /// Runs the follow-up with the result.
@@ -102,7 +102,7 @@ pub(super) struct Background<A> {
     waiting: Option<Arc<DeferredWorkers>>,
     /// Queries about the session.
     pub queries: Queries,
-    /// Repainted when a job has ended.
+    /// Context that is repainted when a job has ended.
     ctx: Option<egui::Context>,
     /// Work whose result changes the display, in the order of its start.
     running: Vec<(Activity, Box<dyn Pending<A>>)>,
@@ -179,7 +179,7 @@ impl<A> Background<A> {
         Job::start(workers, wake, work)
     }
 
-    /// Runs work in the background, and then `then` with its result, or with `None` if it panicked.
+    /// Runs work in the background, then calls `then` with its result, or with `None` if the work panicked.
     pub fn run<T: Send + 'static>(
         &mut self,
         activity: Activity,

@@ -1,4 +1,4 @@
-//! The card beside the pointer: name, values and units of the object under it, and how to edit it.
+//! The card beside the pointer: name, values and units of the object under the pointer, and how to edit the object.
 
 use egui::{RichText, Ui};
 

@@ -188,7 +188,7 @@ pub enum ViewChange {
     Drives([usize; 3]),
     /// Set the second cursor at a time, s, or remove it.
     Mark(Option<f64>),
-    /// Change what plots show.
+    /// Change the content of the plots.
     Charts(PlotChange),
     /// Preview the posture at the start point A on the plane of another b, rad, or end the preview.
     Preview(Option<f64>),
@@ -233,7 +233,7 @@ pub enum WindowCommand {
     SkipHints,
     /// Begin or leave the tour.
     Tour(bool),
-    /// Go to its next step (`true`), or to the previous one.
+    /// Go to the next step of the tour (`true`), or to the previous one.
     TurnTour(bool),
 }
 
@@ -251,11 +251,11 @@ pub enum FrontsCommand {
 /// Answers to the question about a session left by an earlier program run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
-    /// Open it.
+    /// Open that session.
     Open,
-    /// Remove it.
+    /// Remove that session.
     Forget,
-    /// Offer it again at the next start.
+    /// Offer that session again at the next start.
     Later,
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Setting {
     pub typed: String,
     /// Whether it has its default value.
     pub usual: bool,
-    /// The condition under which it has an effect, if it has none now.
+    /// If the setting has no effect now: the condition under which it has one.
     pub wants: Option<&'static str>,
     /// Path and explanation in lower case, to be searched.
     pub text: String,
@@ -52,7 +52,7 @@ impl QuickQuery for BalanceSummary {
     }
 }
 
-/// Whether machine and task setup of a scenario differ from the built-in ones of the same names.
+/// Differences of the machine and the task setup of a scenario from the built-in ones of the same names.
 struct Differs {
     machine: bool,
     work: bool,

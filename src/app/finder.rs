@@ -99,7 +99,7 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
         .filter(|entry| !(entry.hides && sought.trim().is_empty()))
         .filter_map(|entry| Some((score(&entry)? - i32::from(entry.hides), entry)))
         .collect();
-    // The sort is stable: equal scores keep the order of the table.
+    // The sort is stable: entries of equal scores keep their order.
     scored.sort_by_key(|(score, _)| -score);
     scored.into_iter().take(MAX_ENTRIES).map(|(_, entry)| entry).collect()
 }

@@ -34,7 +34,7 @@ pub struct DragGesture {
     pub force: [f64; 2],
     /// Whether the drag has changed something.
     pub dragged: bool,
-    /// Number of undo entries at its start.
+    /// Number of undo entries at the start of the drag.
     pub undo_entries: usize,
 }
 
@@ -44,7 +44,7 @@ pub enum Tool {
     /// Drags objects.
     #[default]
     Hold,
-    /// Draws a path; holds the points drawn so far, m.
+    /// Draws a path; contains the points drawn so far, m.
     Draw(Vec<[f64; 2]>),
     /// Pushes the end effector.
     Push,

@@ -48,7 +48,7 @@ const HINT_COUNT: usize = 3;
 /// hint.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     let map = session.run().pose_space().ok().filter(|_| session.can_be_dragged())?;
-    // The amber set of reachable points is a curve for two drives, and an area for more.
+    // The amber set of reachable points is a curve for two drives, and an area for more drives.
     let (on, off, amber) = if map.reaches_area() { ("inside", "out of", "area") } else { ("on", "off", "curve") };
     let (title, why) = match i {
         0 => (

@@ -1,4 +1,4 @@
-//! The keyboard, and the card that shows it.
+//! The keyboard, and the card that lists keys and gestures.
 
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
@@ -33,8 +33,8 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
-    // After a key that opens a text field, no other key of this pass is a shortcut: in a slow pass the user may
-    // already type text.
+    // After a key that opens a text field, no other key of this pass is a shortcut, since the user may already type
+    // text.
     if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
         commands.extend(action.command(session, view_state));
         return;

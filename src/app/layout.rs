@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use stillbase_picture::scene::palette::Theme;
 
-/// A layout of the window, for a purpose.
+/// A layout of the window that serves one purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
@@ -79,7 +79,7 @@ impl Panels {
     }
 }
 
-/// Content of the panel below the scene: there is room for one.
+/// Content of the panel below the scene; there is room for only one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BottomPanel {
     /// The table of runs side by side.

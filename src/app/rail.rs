@@ -115,7 +115,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
 fn height(room: f32) -> f32 {
     let words = ViewKind::ALL.len() as f32 * (VIEW_BUTTON_HEIGHT_PT + GAP_PT);
     let rules = 4.0 * (SEPARATOR_HEIGHT + GAP_PT);
-    // Including those of *show everything*, the arrangement and the history.
+    // The three other buttons are *show everything*, the arrangement and the history.
     let buttons = (POINTER_TOOLS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
     ((room - words - rules) / buttons - GAP_PT).floor().clamp(MIN_BUTTON_HEIGHT_PT, BUTTON_SIZE_PT.y)
 }

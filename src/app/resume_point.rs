@@ -1,5 +1,5 @@
-//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal keeps
-//! it in comments before the session, so that a crash loses neither.
+//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal
+//! contains this state in comments before the session, so that a crash does not lose it.
 
 use serde::{Deserialize, Serialize};
 

@@ -156,7 +156,7 @@ impl<'a> ScenePointer<'a> {
         if response.drag_stopped() || gives_up {
             let DragGesture { dragged, undo_entries, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
             if pushes && dragged {
-                // The force that acted before the push returns.
+                // The end of the push restores the force that acted before it.
                 commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
             }
             commands.push(SessionCommand::EndGesture.into());
@@ -176,7 +176,7 @@ impl<'a> ScenePointer<'a> {
     }
 
     /// Handles clicks. A click on a bar chooses its b; a click on an object with rows in the panel shows them. A
-    /// double click beside all draggable objects adds a point to the path.
+    /// double click where no object can be dragged adds a point to the path.
     fn handle_clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let pos = self.response.interact_pointer_pos();

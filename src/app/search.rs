@@ -50,6 +50,6 @@ fn scattered(word: &[char], name: &[char], starts: &dyn Fn(usize) -> bool) -> Op
         score += if beside.is_some() || starts(at) { 4 } else { 1 };
         (next, last) = (at + 1, Some(at));
     }
-    // Too many letters in the middle of words are no significant match.
+    // A match with too many letters in the middle of words is not significant.
     (score >= 3 * word.len() as i32).then_some(score)
 }

@@ -149,7 +149,7 @@ fn pose_constant(
     } else {
         let who = all_points(session);
         let text = match session.run().feasible_b() {
-            // Two drives reach a point at single values of b.
+            // With two drives, the machine reaches a point only at single values of b.
             Some(common) if !map.reaches_area() => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();

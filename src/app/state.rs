@@ -56,7 +56,7 @@ pub struct AppState {
     given: Option<OpenedTable>,
     /// Work in the background.
     background: Background<Self>,
-    /// Simulated time that is due but not yet run, s.
+    /// Simulated time that is due but not simulated yet, s.
     due_s: f64,
     pace: PlaybackRate,
     /// Message about the branch that the current gesture has left.
@@ -104,7 +104,7 @@ impl AppState {
         app_state
     }
 
-    /// Applies the user's preferences, and starts the introduction if it is still due.
+    /// Applies the user's preferences, and starts the introduction if the preferences and the scenario call for it.
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
         self.view_state.arrangement = liked.arrangement();

@@ -1,5 +1,5 @@
 //! The study of tolerances at the bottom: tolerances, base moment of many machines, contribution of each tolerance to
-//! its variance, and spectrum of the base reactions.
+//! its variance, spectrum of base reactions.
 
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};

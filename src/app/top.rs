@@ -72,8 +72,8 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     name(&response.response.on_hover_text(tip), "Machine");
 }
 
-/// Returns the scenario to open for a chosen machine: its built-in scenario if there is one; otherwise the present
-/// scenario with this machine and without edits.
+/// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
+/// machine and without edits.
 pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
     let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
     Scenario::builtin(machine.name()).unwrap_or_else(alike)

@@ -1,4 +1,4 @@
-//! [`Tour`]: the idea of the paper in seven steps on the live scene; each step is an exercise.
+//! [`Tour`]: the idea of the paper in seven steps on the live scene; each step contains an exercise.
 
 pub mod card;
 

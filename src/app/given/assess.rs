@@ -44,7 +44,7 @@ pub struct TableOptions {
     pub smoothing: Option<f64>,
     /// The part of the given motion that the proposed motion preserves; by default, the nearest motion is proposed.
     pub keep: Option<PreservedPath>,
-    /// Pose constant b of the proposed motion, rad.
+    /// Pose constant b of the proposed motion, rad; by default, the program chooses it.
     pub b: Option<f64>,
     /// Whether measured rates and accelerations are ignored.
     pub angles_only: bool,
@@ -61,7 +61,7 @@ pub struct OpenedTable {
     pub table: Shared<TableText>,
     /// Its options.
     pub options: TableOptions,
-    /// The measured machine: the one on display when the table was opened.
+    /// The measured machine: the machine on display when the table, or later a session, was opened.
     pub measured: Shared<Machine>,
 }
 
@@ -123,7 +123,7 @@ pub enum TableAssessment {
         motion: Arc<GivenMotion>,
         /// Number of jumps by a whole turn that were removed, for each column.
         unwrapped: Vec<usize>,
-        /// Its base reactions, and the proposed motion.
+        /// The base reactions of the given motion, and the proposed motion.
         imported: Box<Result<ImportedMotion, MotionImportError>>,
     },
     /// Assessment of a measured machine.

@@ -35,7 +35,7 @@ impl QuickQuery for Branches {
 /// Context of the chart.
 #[derive(Clone, Copy)]
 pub struct WhichB<'a> {
-    /// The session whose b it shows.
+    /// The session whose b the chart shows.
     pub session: &'a Session,
     /// Queries about the session.
     pub queries: &'a Queries,

@@ -1,5 +1,5 @@
-//! The section *Plant* of the panel on the left: differences of the simulated machine from the model, namely payload,
-//! friction, torque limits, links, lengths and a force.
+//! The section *Plant* of the panel on the left: differences of the simulated machine from the model. These are
+//! payload, friction, torque limits, links, lengths and a force.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The equations of the paper with present numbers.
+//! The equations of the paper with the present numbers of the machine.
 
 use egui::style::ScrollAnimation;
 use egui::{Align, Label, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};

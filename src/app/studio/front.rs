@@ -1,4 +1,5 @@
-//! The Pareto front of added mass and inertia: counterweights to choose from, each the lightest for its inertia.
+//! The Pareto front of added mass and inertia: sets of counterweights to choose from, each the lightest for its
+//! inertia.
 
 use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};

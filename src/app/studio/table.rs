@@ -81,8 +81,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                     p,
                     commands,
                     |mass| {
-                        // The disc keeps its thickness and density, so its radius goes with the square root of its
-                        // mass.
+                        // The disc keeps its thickness and density, so its radius is proportional to the square root
+                        // of its mass.
                         let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
                         let both =
                             TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
@@ -195,8 +195,8 @@ fn number(
     });
 }
 
-/// Draws a line under a number that shows its state while the balance is kept, and a menu that sets this state:
-/// fixed, free, or free within bounds.
+/// Draws a line under a number, which shows its state while the balance is kept. A menu sets this state: fixed, free,
+/// or free within bounds.
 fn holding(
     ui: &Ui,
     response: &Response,
