@@ -62,7 +62,7 @@ impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<
     }
 }
 
-/// What to do after a session has been opened.
+/// Actions and messages after a session has been opened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Opening {
     /// Whether the run plays at once.
@@ -146,7 +146,7 @@ impl<A> Background<A> {
         self.queries.set_workers(self.workers.clone());
     }
 
-    /// Returns a guard that holds new work back while the window is drawn.
+    /// Returns a guard that delays new work while the window is drawn.
     pub fn drawing(&self) -> DrawingGuard {
         DrawingGuard::begin(self.waiting.as_ref())
     }

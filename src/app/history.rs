@@ -83,8 +83,8 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
 }
 
-/// Draws each branch with its first edit, the newest on top. A click shows the branch; the run on display becomes a
-/// branch.
+/// Draws each branch, titled by its first gesture that the run on display lacks; the newest branch is on top. A click
+/// shows the branch; the run on display becomes a branch.
 fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing = vec2(2.0, 1.0);
     for (i, branch) in branches.iter().enumerate().rev() {

@@ -135,8 +135,8 @@ impl Intro {
         self.rested > 0.0
     }
 
-    /// Observes a command that was carried out: it may end the demonstration or complete the hint. `held` says
-    /// whether a drag is under way.
+    /// Observes a command that was carried out: it may end the demonstration or complete the hint. `held` is `true`
+    /// during a drag.
     pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
             Command::Session(

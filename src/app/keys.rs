@@ -14,7 +14,7 @@ use stillbase_session::Session;
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing =
         ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
-    let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
+    let pressed = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // During a drag or with a list open, Esc only ends the drag or closes the list.
     let busy = view_state.gesture.grabbed.is_some()
         || view_state.open.history
@@ -22,7 +22,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         || ctx.input(|i| i.pointer.any_down())
         || (view_state.open.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
-    if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
+    if !busy && pressed(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
     }
     let allowed = |key: &KeyboardShortcut| !typing || works_while_typing(key);
@@ -35,12 +35,12 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
     // After a key that opens a text field, no other key of this pass is a shortcut, since the user may already type
     // text.
-    if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
+    if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && pressed(key)) {
         commands.extend(action.command(session, view_state));
         return;
     }
     for (action, key) in all.into_iter().filter(|(_, key)| allowed(key)) {
-        if taken(key) {
+        if pressed(key) {
             commands.extend(action.command(session, view_state));
         }
     }
@@ -134,13 +134,13 @@ type Lines = Vec<(String, &'static str)>;
 
 /// Returns the groups of lines that match the search text: the title of each group, then keys and their effects.
 fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
-    let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
+    let matches = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
     let of = |group: ActionGroup| -> Lines {
         let keyed = ACTIONS.iter().filter(|action| action.group == group && !action.keys.is_empty());
         let lines = keyed.map(|action| (all_keys(action), action.name));
-        lines.filter(|(keys, does)| answers(keys, does)).collect()
+        lines.filter(|(keys, does)| matches(keys, does)).collect()
     };
-    let pointer = GESTURES.iter().filter(|(keys, does)| answers(keys, does));
+    let pointer = GESTURES.iter().filter(|(keys, does)| matches(keys, does));
     let pointer = ("Pointer", pointer.map(|(keys, does)| ((*keys).to_owned(), *does)).collect::<Lines>());
     let all = ActionGroup::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
     all.filter(|(_, lines)| !lines.is_empty()).collect()

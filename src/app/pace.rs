@@ -8,7 +8,7 @@ pub(super) struct PlaybackRate {
     rate: Option<f64>,
     /// Wall time in the average, s.
     counted_s: f64,
-    /// Whether playback counts as lagging.
+    /// Whether playback lags behind the requested rate.
     lags: bool,
     /// Wall time of a step, s; `None` until it has been measured.
     step_cost_s: Option<f64>,

@@ -34,7 +34,7 @@ pub struct ScenePointer<'a> {
 }
 
 impl<'a> ScenePointer<'a> {
-    /// Creates the pointer over a scene of a session; `demonstrates` says whether the scene is the demonstration.
+    /// Creates the pointer over a scene of a session; `demonstrates` is `true` for the scene of the demonstration.
     pub fn over(
         ui: &'a Ui,
         response: &'a Response,

@@ -179,8 +179,8 @@ pub(super) struct BalanceBars {
     /// Residual along the axes of the links, and across them, in `unit`.
     pub left: [f64; 2],
     pub is_balanced: bool,
-    /// Index and contribution of each link with all that it carries, the largest contribution first. Negligible
-    /// contributions are omitted.
+    /// Index and contribution of each link with all bodies that it carries, the largest contribution first.
+    /// Negligible contributions are omitted.
     pub parts: Vec<(usize, f64)>,
 }
 

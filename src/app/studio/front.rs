@@ -29,8 +29,8 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     ui.add_space(8.0);
     let under_way = facts.front_under_way();
     // Progress of a short search is not shown.
-    let lasts = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
-    match under_way.filter(|_| lasts >= 1.0) {
+    let delay = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
+    match under_way.filter(|_| delay >= 1.0) {
         Some(share) => heading(ui, p, "Counterweights", &format!("looking for them: {:.0} %", 100.0 * share)),
         None => heading(ui, p, "Counterweights", "hover shows, click takes"),
     }
