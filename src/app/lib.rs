@@ -1,6 +1,6 @@
 //! The user interface: panels, plots and the viewport. It draws the same pixels in a window, in a test and in a figure.
 //!
-//! Only the other crates of this Cargo workspace use this crate, so it may change in any version.
+//! This crate serves the workspace alone, and may change in any version.
 //!
 //! The panels read a [`Session`](stillbase_session::Session) and return [`Command`]s, which the [`AppState`] carries
 //! out at the end of the pass. Nothing is computed here.
